@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Surveys of one scene, as itself and as one of several types of maps, for `any_target.sh` to count their instructions: `bench_any_target`
-// runs each function below once. Prints a sum over the echoes of each; the two are equal.
+// Surveys of one scene, as itself and as one of several types of maps, for `any_target.sh` to count their instructions:
+// `bench_any_target` runs each function below once. Prints a sum over the echoes of each; the two are equal.
 
 #include <cstdio>
 
@@ -41,15 +41,17 @@ extern "C" {
 
 [[gnu::noinline]] double target_alone_single(const Still& ground) { return sum_of_ranges(ground, SingleRay{}); }
 [[gnu::noinline]] double target_any_single(const Any& ground) { return sum_of_ranges(ground, SingleRay{}); }
-[[gnu::noinline]] double target_alone_bundle(const Still& ground) { return sum_of_ranges(ground, SunflowerFootprint{19}); }
+[[gnu::noinline]] double target_alone_bundle(const Still& ground) {
+  return sum_of_ranges(ground, SunflowerFootprint{19});
+}
 [[gnu::noinline]] double target_any_bundle(const Any& ground) { return sum_of_ranges(ground, SunflowerFootprint{19}); }
 
 }  // extern "C"
 
 int main() {
-  const Still ground =
-      scene_of({.vertices = {{-600, -600, 0}, {600, -600, 0}, {600, 600, 0}, {-600, 600, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  const Still ground = scene_of({.vertices = {{-600, -600, 0}, {600, -600, 0}, {600, 600, 0}, {-600, 600, 0}},
+                                 .triangles = {{0, 1, 2}, {0, 2, 3}}});
   const Any any = ground;
-  std::printf("single %.9g %.9g\nbundle %.9g %.9g\n", target_alone_single(ground), target_any_single(any), target_alone_bundle(ground),
-              target_any_bundle(any));
+  std::printf("single %.9g %.9g\nbundle %.9g %.9g\n", target_alone_single(ground), target_any_single(any),
+              target_alone_bundle(ground), target_any_bundle(any));
 }

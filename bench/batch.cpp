@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Many rays at once in a street of some 50,000 triangles: batches of poses, on all threads, and `closest_hits` beside single rays, on one.
-// Rows of batches are named after rays by channels and columns; `differ` counts hits that are not the same.
+// Many rays at once in a street of some 50,000 triangles: batches of poses, on all threads, and `closest_hits` beside
+// single rays, on one. Rows of batches are named after rays by channels and columns; `differ` counts hits that are not
+// the same.
 
 #include <algorithm>
 #include <cstddef>
@@ -27,7 +28,8 @@ std::vector<Ray> lidar(int channels, int columns, double fan) {
   for (int column = 0; column < columns; ++column)
     for (int channel = 0; channel < channels; ++channel) {
       const double up = fan * (static_cast<double>(channel) / (channels - 1) - 0.5);
-      rays.push_back({.direction = rotation_about(axis::up, 2 * pi * column / columns) * rotation_about(axis::right, up) * axis::forward});
+      rays.push_back({.direction = rotation_about(axis::up, 2 * pi * column / columns) *
+                                   rotation_about(axis::right, up) * axis::forward});
     }
   return rays;
 }
@@ -36,7 +38,8 @@ std::vector<Ray> lidar(int channels, int columns, double fan) {
 std::vector<Ray> camera(int width, int height, double pixel) {
   std::vector<Ray> rays;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) rays.push_back({.direction = normalize(Vec3{pixel * (x - width / 2), 1, pixel * (y - height / 2)})});
+    for (int x = 0; x < width; ++x)
+      rays.push_back({.direction = normalize(Vec3{pixel * (x - width / 2), 1, pixel * (y - height / 2)})});
   return rays;
 }
 
@@ -62,14 +65,16 @@ int main(int count, char** words) {
     std::vector<Ray> rays;
     std::size_t poses;
   };
-  const std::vector<Sensor> sensors{{"16 x 125", lidar(16, 125, 30_deg), 4096}, {"32 x 1,024", lidar(32, 1024, 40_deg), 64}};
+  const std::vector<Sensor> sensors{{"16 x 125", lidar(16, 125, 30_deg), 4096},
+                                    {"32 x 1,024", lidar(32, 1024, 40_deg), 64}};
   std::vector<float> ranges;
   report.heading("batches");
   for (const Sensor& sensor : sensors) {
     if (!report.wanted(sensor.name)) continue;
     const auto poses = places(sensor.poses);
     ranges.resize(poses.size() * sensor.rays.size());
-    const std::vector<Times> times = report.by_turns({[&] { run_batch(scene, poses, sensor.rays, ranges); }}, wall_seconds);
+    const std::vector<Times> times =
+        report.by_turns({[&] { run_batch(scene, poses, sensor.rays, ranges); }}, wall_seconds);
     const double seconds = median(times[0]);
     report.row(sensor.name, {{"seconds", seconds},
                              {"scans/s", static_cast<double>(sensor.poses) / seconds},
@@ -85,9 +90,12 @@ int main(int count, char** words) {
     std::vector<Ray> rays = sensor.rays;
     for (Ray& ray : rays) ray.origin = places(64)[10].position;
     std::vector<std::optional<RayHit>> alone(rays.size()), together(rays.size());
-    const std::vector<Times> times = report.by_turns(
-        {[&] { std::transform(rays.begin(), rays.end(), alone.begin(), [&](const Ray& ray) { return scene.closest_hit(ray); }); },
-         [&] { closest_hits<street::Scene>(scene, rays, together); }});
+    const std::vector<Times> times =
+        report.by_turns({[&] {
+                           std::transform(rays.begin(), rays.end(), alone.begin(),
+                                          [&](const Ray& ray) { return scene.closest_hit(ray); });
+                         },
+                         [&] { closest_hits<street::Scene>(scene, rays, together); }});
     std::size_t differ = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) differ += alone[i] == together[i] ? 0U : 1U;
     const double per_ray = 1e9 / static_cast<double>(rays.size());

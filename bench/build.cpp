@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What making a mesh costs: million triangles a second, by the clock on the wall and by the processor's time, and bytes a triangle, for
-// tree and triangles together; beside it Embree 3, at its medium and its high build quality, by turns in the same run. A row is printed
-// only once the mesh has given the same answers as `Linear` on a sample. Rows are named scene/accelerator/threads. An OBJ file in metres,
-// if one is given, is a scene of its own. Embree's bytes are those of its tree with vertices and corners in single precision; the most it
-// held on the way stands beside them.
+// What making a mesh costs: million triangles a second, by the clock on the wall and by the processor's time, and bytes
+// a triangle, for tree and triangles together; beside it Embree 3, at its medium and its high build quality, by turns
+// in the same run. A row is printed only once the mesh has given the same answers as `Linear` on a sample. Rows are
+// named scene/accelerator/threads. An OBJ file in metres, if one is given, is a scene of its own. Embree's bytes are
+// those of its tree with vertices and corners in single precision; the most it held on the way stands beside them.
 
 #include <concepts>
 #include <cstddef>
@@ -107,8 +107,8 @@ void measure(Report& report, const std::string& scene, const MeshData& mesh) {
   std::erase_if(all, [&](const Entrant& entrant) { return !report.wanted(entrant.name); });
   if (all.empty()) return;
   const double count = static_cast<double>(mesh.triangles.size());
-  report.heading(scene + ": " + std::to_string(mesh.triangles.size()) + " triangles, " + std::to_string(mesh.vertices.size()) +
-                 " vertices");
+  report.heading(scene + ": " + std::to_string(mesh.triangles.size()) + " triangles, " +
+                 std::to_string(mesh.vertices.size()) + " vertices");
   const int rounds = count > 5e5 ? (report.rounds() + 1) / 2 : report.rounds();
   for (int round = 0; round < rounds; ++round)
     for (Entrant& entrant : all) entrant.go(entrant);
@@ -143,7 +143,7 @@ int main(int count, char** words) {
     }
     const double triangles = 2 * 866.0 * 866.0;
     report.heading("the same hills as a raster");
-    report.row("hills/HeightField/1",
-               {{"Mtriangles/s", triangles / median(times) / 1e6}, {"bytes/triangle", static_cast<double>(bytes) / triangles}});
+    report.row("hills/HeightField/1", {{"Mtriangles/s", triangles / median(times) / 1e6},
+                                       {"bytes/triangle", static_cast<double>(bytes) / triangles}});
   }
 }

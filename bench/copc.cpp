@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a COPC file costs, beside LAZ: time of the wall and of the processors for the writer alone, size, and greatest memory of the
-// program. An airplane flies over hills with trees, in strips of 500 m, with ten points a square metre; the points are made by formulas as
-// they are written. Usage: copc FORMAT POINTS THREADS FILE; FORMAT is laz or copc. bench/copc.sh runs both in turns.
+// What a COPC file costs, beside LAZ: time of the wall and of the processors for the writer alone, size, and greatest
+// memory of the program. An airplane flies over hills with trees, in strips of 500 m, with ten points a square metre;
+// the points are made by formulas as they are written. Usage: copc FORMAT POINTS THREADS FILE; FORMAT is laz or copc.
+// bench/copc.sh runs both in turns.
 
 #include <sys/resource.h>
 
@@ -48,8 +49,8 @@ struct Batch {
 void add_pulse(Batch& batch, std::uint64_t index) {
   constexpr std::uint64_t of_line = 1000, of_strip = 4'000'000;  // pulses
   const std::uint64_t strip = index / of_strip, line = index % of_strip / of_line, place = index % of_line;
-  const double x =
-      500 * static_cast<double>(strip) + 0.5 * (static_cast<double>(line % 2 == 0 ? place : of_line - 1 - place) + uniform(index));
+  const double x = 500 * static_cast<double>(strip) +
+                   0.5 * (static_cast<double>(line % 2 == 0 ? place : of_line - 1 - place) + uniform(index));
   const double y = 0.25 * static_cast<double>(line) + 0.2 * uniform(index + 1);
   const Vec3 plane(500 * static_cast<double>(strip) + 250, y, 800);
   const bool tree = std::sin(x / 31) * std::sin(y / 23) > 0.4;
@@ -97,10 +98,11 @@ void write(Writer writer, std::uint64_t points, const std::string& format, const
   timed([&] { writer.close(); });
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  std::printf("%s %.0f points: %.1f s, %.1f s of them in close(), %.1f s of processors, %.2f bytes a point, %.0f MB memory\n",
-              format.c_str(), static_cast<double>(written), wall, wall - gathered, processors,
-              static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(written),
-              static_cast<double>(usage.ru_maxrss) / 1024);
+  std::printf(
+      "%s %.0f points: %.1f s, %.1f s of them in close(), %.1f s of processors, %.2f bytes a point, %.0f MB memory\n",
+      format.c_str(), static_cast<double>(written), wall, wall - gathered, processors,
+      static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(written),
+      static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What making echoes of a pulse's reflections costs: ns a pulse and a reflection, by detector, by how many reflections there are, and by
-// what was met: one plane squarely, a slope, or the leaves of a tree. Rows are named case/reflections/detector. The reflections of 1,024
-// pulses come in the order of their subrays; they are copied for each go, as the detector sorts them, and that is in the figure.
+// What making echoes of a pulse's reflections costs: ns a pulse and a reflection, by detector, by how many reflections
+// there are, and by what was met: one plane squarely, a slope, or the leaves of a tree. Rows are named
+// case/reflections/detector. The reflections of 1,024 pulses come in the order of their subrays; they are copied for
+// each go, as the detector sorts them, and that is in the figure.
 
 #include <algorithm>
 #include <cstddef>
@@ -34,7 +35,8 @@ struct Case {
 };
 
 /// `range_of` gives the range of a subray from its place in the footprint and a die.
-Case made(const std::string& name, std::size_t number, const std::function<double(const Vec2&, wood::Dice&)>& range_of) {
+Case made(const std::string& name, std::size_t number,
+          const std::function<double(const Vec2&, wood::Dice&)>& range_of) {
   const SunflowerFootprint footprint(number);
   wood::Dice dice(3, static_cast<std::uint32_t>(number));
   Case all{name, number, {}};
@@ -42,15 +44,16 @@ Case made(const std::string& name, std::size_t number, const std::function<doubl
     const double shift = dice.between(0, 1);  // of the pulse in the bins
     for (std::size_t j = 0; j < number; ++j) {
       const double range = 100 + shift + range_of(footprint.offset(j), dice);
-      all.reflections.push_back({.range = range, .power = 1e-6 / static_cast<double>(number), .object = 1, .cos_incidence = 0.9});
+      all.reflections.push_back(
+          {.range = range, .power = 1e-6 / static_cast<double>(number), .object = 1, .cos_incidence = 0.9});
     }
   }
   return all;
 }
 
 template <class D>
-void add(const Report& report, const Case& what, const std::string& name, const D& detector, std::vector<std::string>& names,
-         std::vector<std::function<void()>>& works, std::vector<std::size_t>& echoes) {
+void add(const Report& report, const Case& what, const std::string& name, const D& detector,
+         std::vector<std::string>& names, std::vector<std::function<void()>>& works, std::vector<std::size_t>& echoes) {
   names.push_back(what.name + "/" + std::to_string(what.number) + "/" + name);
   if (!report.wanted(names.back())) return names.pop_back();
   echoes.push_back(0);
@@ -59,7 +62,8 @@ void add(const Report& report, const Case& what, const std::string& name, const 
     const Emitter emitter;
     std::size_t count = 0;
     for (std::size_t i = 0; i < pulses; ++i) {
-      std::copy_n(what.reflections.begin() + static_cast<std::ptrdiff_t>(i * what.number), what.number, scratch.begin());
+      std::copy_n(what.reflections.begin() + static_cast<std::ptrdiff_t>(i * what.number), what.number,
+                  scratch.begin());
       count += detector.detect(Heard{emitter, {}, scratch}, workspace).echoes.size();
     }
     echoes[k] = count;
@@ -70,7 +74,9 @@ void measure(Report& report, const Case& what) {
   std::vector<std::string> names;
   std::vector<std::function<void()>> works;
   std::vector<std::size_t> echoes;
-  const auto enter = [&](const std::string& name, const auto& detector) { add(report, what, name, detector, names, works, echoes); };
+  const auto enter = [&](const std::string& name, const auto& detector) {
+    add(report, what, name, detector, names, works, echoes);
+  };
   enter("FirstHit", FirstHit{});
   enter("FullWaveform", FullWaveform{});
   enter("FullWaveform, true ranges", FullWaveform{{.timing = EchoTiming::true_range}});

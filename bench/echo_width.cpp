@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of measuring echo widths in a whole survey: a tripod and an airplane scan a wood with 19 subrays a pulse, by the sampling and by the
-// analytic detector, on one thread. `--benchmark-samples 11` takes some minutes.
+// Cost of measuring echo widths in a whole survey: a tripod and an airplane scan a wood with 19 subrays a pulse, by the
+// sampling and by the analytic detector, on one thread. `--benchmark-samples 11` takes some minutes.
 
 #define CATCH_CONFIG_ENABLE_BENCHMARKING
 #define CATCH_CONFIG_MAIN
@@ -27,8 +27,10 @@ constexpr std::uint64_t seed = 1;
 auto tripod() {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.35_mrad};
   const double step = 1_deg;
-  const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror mirror{.lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
+  const Scanner scanner{
+      .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
+  const PolygonMirror mirror{
+      .lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
   const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
   return Platform{Tripod{.position = wood::glades(seed).front()}, Mount{.lever_arm = {0, 0, 1.7}},
                   Deflector{head, Deflector{mirror, scanner}}};
@@ -44,7 +46,8 @@ auto airplane() {
 
 /// Times a survey with a detector. Widths change no echo: there are as many as without.
 template <class Source, class D>
-void measure(const std::string& name, const Source& source, const wood::Scene& scene, const D& detector, std::uint64_t echoes) {
+void measure(const std::string& name, const Source& source, const wood::Scene& scene, const D& detector,
+             std::uint64_t echoes) {
   const Survey survey{source, RingFootprint{3}, scene, Receiver{}, detector, seed};
   const auto go = [&] { return run(survey, {.threads = 1}, [](const EchoBatch&) {}).echoes; };
   REQUIRE(go() == echoes);
@@ -56,7 +59,8 @@ using Sampled = FullWaveform<Width>;
 
 template <template <EchoWidth> class Detector, class Source>
 void compare(const std::string& name, const Source& source, const wood::Scene& scene) {
-  const std::uint64_t echoes = run(Survey{source, RingFootprint{3}, scene, Receiver{}, Detector<NoWidth>{}, seed}, {}).echoes;
+  const std::uint64_t echoes =
+      run(Survey{source, RingFootprint{3}, scene, Receiver{}, Detector<NoWidth>{}, seed}, {}).echoes;
   measure(name, source, scene, Detector<NoWidth>{}, echoes);
   measure(name + "<MomentWidth>", source, scene, Detector<MomentWidth>{}, echoes);
   measure(name + "<GaussianFit>", source, scene, Detector<GaussianFit>{}, echoes);

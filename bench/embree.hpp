@@ -33,12 +33,12 @@ class EmbreeMesh {
     rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, quality);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices.size()));
     for (const Vec3& v : mesh.vertices)
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(v[k]);
-    auto* corners = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
     for (const auto& triangle : mesh.triangles) corners = std::copy(triangle.begin(), triangle.end(), corners);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -60,9 +60,9 @@ class EmbreeMesh {
   }
 
   [[nodiscard]] RTCScene scene() const noexcept { return scene_; }
-  [[nodiscard]] double build_seconds() const noexcept { return build_seconds_; }            ///< of the processor, all threads [s]
+  [[nodiscard]] double build_seconds() const noexcept { return build_seconds_; }  ///< of the processor, all threads [s]
   [[nodiscard]] double build_wall_seconds() const noexcept { return build_wall_seconds_; }  ///< [s]
-  [[nodiscard]] double bytes() const noexcept { return static_cast<double>(bytes_); }       ///< with vertices and corners
+  [[nodiscard]] double bytes() const noexcept { return static_cast<double>(bytes_); }  ///< with vertices and corners
   [[nodiscard]] double max_bytes() const noexcept { return static_cast<double>(max_bytes_); }
 
  private:
@@ -92,8 +92,8 @@ template <class Number, std::size_t Width>
 }
 }  // namespace detail
 
-/// The rays of bundles in Embree's own layout, for `rtcIntersect1`, `8` or `16`: a bundle in as many packets as it takes. A packet is
-/// copied to where it is traced, as a bundle of ours is: tracing writes on it.
+/// The rays of bundles in Embree's own layout, for `rtcIntersect1`, `8` or `16`: a bundle in as many packets as it
+/// takes. A packet is copied to where it is traced, as a bundle of ours is: tracing writes on it.
 template <std::size_t Width>
 class EmbreeRays {
  public:
@@ -116,7 +116,8 @@ class EmbreeRays {
   /// The range of every ray, infinite where nothing is met.
   [[nodiscard]] std::vector<double> ranges(const EmbreeMesh& mesh) {
     std::vector<double> all;
-    trace(mesh, [&](float range, bool met) { all.push_back(met ? double{range} : std::numeric_limits<double>::infinity()); });
+    trace(mesh,
+          [&](float range, bool met) { all.push_back(met ? double{range} : std::numeric_limits<double>::infinity()); });
     return all;
   }
 

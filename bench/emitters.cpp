@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Surveys by devices of one divergence and of two that alternate, for `emitters.sh` to count their instructions: `bench_emitters` runs each
-// function below once. The pulses of the alternating device are, in turn, those of the other two. Prints a sum over the echoes of each.
+// Surveys by devices of one divergence and of two that alternate, for `emitters.sh` to count their instructions:
+// `bench_emitters` runs each function below once. The pulses of the alternating device are, in turn, those of the other
+// two. Prints a sum over the echoes of each.
 
 #include <cstdio>
 #include <vector>
@@ -45,7 +46,8 @@ extern "C" {
 }  // extern "C"
 
 int main() {
-  const Scene<Mesh> ground =
-      scene_of({.vertices = {{-600, -600, 0}, {600, -600, 0}, {600, 600, 0}, {-600, 600, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
-  std::printf("narrow %.9g\nwide %.9g\nboth %.9g\n", emitters_narrow(ground), emitters_wide(ground), emitters_both(ground));
+  const Scene<Mesh> ground = scene_of({.vertices = {{-600, -600, 0}, {600, -600, 0}, {600, 600, 0}, {-600, 600, 0}},
+                                       .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  std::printf("narrow %.9g\nwide %.9g\nboth %.9g\n", emitters_narrow(ground), emitters_wide(ground),
+              emitters_both(ground));
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of a raster as a height field, against the same raster as a mesh in a `Bvh`: memory, and rays a second from the air and from a
-// tripod, by turns. Both must give the same ranges. Rows are named pulses/subrays/shape. With `large` on the command line: a raster of
-// 20,000 x 20,000 alone.
+// Cost of a raster as a height field, against the same raster as a mesh in a `Bvh`: memory, and rays a second from the
+// air and from a tripod, by turns. Both must give the same ranges. Rows are named pulses/subrays/shape. With `large` on
+// the command line: a raster of 20,000 x 20,000 alone.
 
 #include <sys/resource.h>
 
@@ -35,8 +35,8 @@ Raster hills(std::uint32_t columns, std::uint32_t rows) {
   for (std::uint32_t r = 0; r < rows; ++r)
     for (std::uint32_t c = 0; c < columns; ++c) {
       const double rough = uniform({.seed = 1, .pulse = std::size_t{r} * columns + c, .purpose = Purpose::scene});
-      raster.heights[std::size_t{r} * columns + c] =
-          static_cast<float>(300 + 20 * std::sin(c / 90.0) * std::cos(r / 70.0) + 2 * std::sin(c / 7.0 + r / 11.0) + 0.3 * rough);
+      raster.heights[std::size_t{r} * columns + c] = static_cast<float>(
+          300 + 20 * std::sin(c / 90.0) * std::cos(r / 70.0) + 2 * std::sin(c / 7.0 + r / 11.0) + 0.3 * rough);
     }
   return raster;
 }
@@ -44,7 +44,8 @@ Raster hills(std::uint32_t columns, std::uint32_t rows) {
 /// The same in 16 bits, in steps of a centimetre.
 Raster packed(const Raster& wide) {
   constexpr double step = 0.01;
-  Raster raster{.columns = wide.columns, .rows = wide.rows, .first = wide.first, .pixel = wide.pixel, .packed = {.scale = step}};
+  Raster raster{
+      .columns = wide.columns, .rows = wide.rows, .first = wide.first, .pixel = wide.pixel, .packed = {.scale = step}};
   for (const float height : wide.heights)
     raster.packed.numbers.push_back(static_cast<std::uint16_t>(std::lround(static_cast<double>(height) / step)));
   return raster;
@@ -55,7 +56,8 @@ RayBundle pulse(const Vec3& place, const Rotation& aim, std::size_t subrays) {
   RayBundle rays;
   rays.origin = place;
   rays.size = subrays;
-  for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
+  for (std::size_t j = 0; j < subrays; ++j)
+    rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
   rays.pad();
   return rays;
 }
@@ -65,9 +67,11 @@ bench::Bundles from_the_air(const Box& ground, std::size_t subrays, std::size_t 
   bench::Bundles all;
   const Vec3 size = ground.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const double along = static_cast<double>(i) / static_cast<double>(count), line = 200 * along - std::floor(200 * along);
+    const double along = static_cast<double>(i) / static_cast<double>(count),
+                 line = 200 * along - std::floor(200 * along);
     const Vec3 place{ground.min.x + 0.5 * size.x, ground.min.y + along * size.y, ground.max.z + 800};
-    all.add(pulse(place, rotation_about(axis::forward, (2 * line - 1) * 30_deg) * rotation_about(axis::right, -90_deg), subrays));
+    all.add(pulse(place, rotation_about(axis::forward, (2 * line - 1) * 30_deg) * rotation_about(axis::right, -90_deg),
+                  subrays));
   }
   return all;
 }
@@ -82,7 +86,8 @@ bench::Bundles from_a_tripod(const HeightField& ground, std::size_t subrays, std
   bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
     const double turn = static_cast<double>(i) / static_cast<double>(count), line = 100 * turn - std::floor(100 * turn);
-    all.add(pulse(place, rotation_about(axis::up, 2 * pi * turn) * rotation_about(axis::right, -30_deg + line * 35_deg), subrays));
+    all.add(pulse(place, rotation_about(axis::up, 2 * pi * turn) * rotation_about(axis::right, -30_deg + line * 35_deg),
+                  subrays));
   }
   return all;
 }
@@ -101,7 +106,8 @@ void measure(bench::Report& report, const std::string& name, const HeightField& 
   const double rays = static_cast<double>(all.size() * all[0].size);
   for (std::size_t k = 0; k < works.size(); ++k)
     report.row(name + (k == 0 ? "/field" : "/mesh"),
-               {{"Mrays/s", rays / bench::median(times[k]) / 1e6}, {"times as fast as the field", bench::speed_ratio(times[k], times[0])}});
+               {{"Mrays/s", rays / bench::median(times[k]) / 1e6},
+                {"times as fast as the field", bench::speed_ratio(times[k], times[0])}});
 }
 
 void measure_all(bench::Report& report, const HeightField& field, const TriangleMesh<>* mesh) {
@@ -136,9 +142,9 @@ void measure_small(bench::Report& report) {
   const TriangleMesh<> mesh_of_classes(of_classes.mesh());
   const HeightField classes(std::move(of_classes));
   report.row("memory, field of 2 materials", {{"bytes/cell", static_cast<double>(classes.memory()) / cells}});
-  report.row("memory, mesh of 2 materials",
-             {{"bytes/cell", static_cast<double>(mesh_of_classes.memory()) / cells},
-              {"times that of the field", static_cast<double>(mesh_of_classes.memory()) / static_cast<double>(classes.memory())}});
+  report.row("memory, mesh of 2 materials", {{"bytes/cell", static_cast<double>(mesh_of_classes.memory()) / cells},
+                                             {"times that of the field", static_cast<double>(mesh_of_classes.memory()) /
+                                                                             static_cast<double>(classes.memory())}});
   const HeightField in_16_bits(packed(hills(1041, 713)));
   report.heading("1,041 x 713 pixels of 16 bits");
   measure_all(report, in_16_bits, nullptr);

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// The same work every time, for `budget.sh` to count its instructions: `bench_instructions` runs each function below once. What is counted
-// happens in these functions; what is made before them, is not. Prints a sum over what each found.
+// The same work every time, for `budget.sh` to count its instructions: `bench_instructions` runs each function below
+// once. What is counted happens in these functions; what is made before them, is not. Prints a sum over what each
+// found.
 
 #include <cmath>
 #include <cstddef>
@@ -54,8 +55,8 @@ std::vector<Ray> rays_of_a_robot(std::size_t count) {
 extern "C" {
 
 /// Beams and single rays, in a mesh, in a tree's leaves and in a height field.
-[[gnu::noinline]] double budget_trace(const Mesh& ground, const HeightField& field, const Bundles& from_above, const Mesh& tree,
-                                      const Bundles& from_aside, const Bundles& incoherent) {
+[[gnu::noinline]] double budget_trace(const Mesh& ground, const HeightField& field, const Bundles& from_above,
+                                      const Mesh& tree, const Bundles& from_aside, const Bundles& incoherent) {
   return sum_of_ranges(ground, from_above) + sum_of_ranges(field, from_above) + sum_of_ranges(tree, from_aside) +
          sum_of_ranges(tree, incoherent);
 }
@@ -104,13 +105,14 @@ int main() {
   const auto ground = std::make_shared<const Mesh>(raster.mesh());
   const Mesh leaves(tree());
   const auto town = street::scene(1);
-  std::printf("trace %.9g\n",
-              budget_trace(*ground, HeightField(raster), some(beams(from_the_air(), 19, 0.25_mrad)), leaves,
-                           some(beams(from_a_tripod(leaves.bounds()), 19, 0.3_mrad)), incoherent_rays(leaves.bounds(), 2048)));
+  std::printf("trace %.9g\n", budget_trace(*ground, HeightField(raster), some(beams(from_the_air(), 19, 0.25_mrad)),
+                                           leaves, some(beams(from_a_tripod(leaves.bounds()), 19, 0.3_mrad)),
+                                           incoherent_rays(leaves.bounds(), 2048)));
   std::printf("pipeline %.9g\n", budget_pipeline(scene_of(ground, {}), town));
 
   const auto plane = std::make_shared<const Mesh>(
-      MeshData{.vertices = {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+      MeshData{.vertices = {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}},
+               .triangles = {{0, 1, 2}, {0, 2, 3}}});
   std::printf("simple_scene %.9g\n", budget_simple_scene(scene_of(plane, {})));
   std::printf("single_rays %.9g\n", budget_single_rays(town, rays_of_a_robot(6'000)));
   std::printf("matt_surfaces %.9g\n", budget_matt_surfaces(scene_of(ground, {})));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Leaves as masks, two triangles each, against the same leaves cut out, by turns: time, memory and gap fraction of a crown seen from below,
-// by single rays and by pulses of 19 subrays. Rows are named subrays/shape.
+// Leaves as masks, two triangles each, against the same leaves cut out, by turns: time, memory and gap fraction of a
+// crown seen from below, by single rays and by pulses of 19 subrays. Rows are named subrays/shape.
 
 #include <cmath>
 #include <cstddef>
@@ -47,11 +47,15 @@ Mask outline() {
 MeshData crown(std::size_t leaves, bool masked) {
   MeshData data;
   for (std::size_t i = 0; i < leaves; ++i) {
-    const auto any = [&](std::uint32_t k) { return uniform({.seed = 1, .pulse = i, .subray = k, .purpose = Purpose::scene}); };
+    const auto any = [&](std::uint32_t k) {
+      return uniform({.seed = 1, .pulse = i, .subray = k, .purpose = Purpose::scene});
+    };
     const double up = 2 * any(0) - 1, turn = 2 * pi * any(1), spin = 2 * pi * any(2), across = std::sqrt(1 - up * up);
     const Vec3 normal{across * std::cos(turn), across * std::sin(turn), up};
-    const Vec3 aside = normalize(cross(normal, std::fabs(up) < 0.9 ? axis::up : axis::right)), ahead = cross(normal, aside);
-    const Vec3 u = 0.05 * (std::cos(spin) * aside + std::sin(spin) * ahead), v = 0.05 * (std::cos(spin) * ahead - std::sin(spin) * aside);
+    const Vec3 aside = normalize(cross(normal, std::fabs(up) < 0.9 ? axis::up : axis::right)),
+               ahead = cross(normal, aside);
+    const Vec3 u = 0.05 * (std::cos(spin) * aside + std::sin(spin) * ahead),
+               v = 0.05 * (std::cos(spin) * ahead - std::sin(spin) * aside);
     const Vec3 centre{4 * any(3) - 2, 4 * any(4) - 2, 4 * any(5) + 2};
     const auto first = static_cast<std::uint32_t>(data.vertices.size());
     const auto add = [&](const Vec2& at) { data.vertices.push_back(centre + at.x * u + at.y * v); };
@@ -75,12 +79,16 @@ bench::Bundles from_below(std::size_t subrays, std::size_t count) {
   const SunflowerFootprint footprint(subrays);
   bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto any = [&](std::uint32_t k) { return 2 * uniform({.seed = 2, .pulse = i, .subray = k, .purpose = Purpose::scene}) - 1; };
-    const Rotation aim = rotation_about(axis::right, 90_deg + any(0) * 30_deg) * rotation_about(axis::up, any(1) * 30_deg);
+    const auto any = [&](std::uint32_t k) {
+      return 2 * uniform({.seed = 2, .pulse = i, .subray = k, .purpose = Purpose::scene}) - 1;
+    };
+    const Rotation aim =
+        rotation_about(axis::right, 90_deg + any(0) * 30_deg) * rotation_about(axis::up, any(1) * 30_deg);
     RayBundle rays;
     rays.origin = {any(2), any(3), 0};
     rays.size = subrays;
-    for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.5_mrad));
+    for (std::size_t j = 0; j < subrays; ++j)
+      rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.5_mrad));
     rays.pad();
     all.add(rays);
   }
@@ -106,8 +114,8 @@ int main(int count, char** words) {
   report.heading("20,000 leaves");
   for (const std::size_t subrays : {std::size_t{1}, std::size_t{19}}) {
     const bench::Bundles all = from_below(subrays, 400'000 / subrays);
-    const std::vector<bench::Times> times =
-        report.by_turns({[&] { bench::keep(bench::sum_of_ranges(cut, all)); }, [&] { bench::keep(bench::sum_of_ranges(masked, all)); }});
+    const std::vector<bench::Times> times = report.by_turns({[&] { bench::keep(bench::sum_of_ranges(cut, all)); },
+                                                             [&] { bench::keep(bench::sum_of_ranges(masked, all)); }});
     const std::string number = std::to_string(subrays);
     const double rays = static_cast<double>(all.size() * subrays), gaps = gap_fraction(cut, all);
     report.row(number + "/cut", {{"Mrays/s", rays / bench::median(times[0]) / 1e6}, {"gap fraction", gaps}});
@@ -116,5 +124,6 @@ int main(int count, char** words) {
                                     {"difference", gap_fraction(masked, all) - gaps},
                                     {"times the cost of cut ones", bench::median(times[1]) / bench::median(times[0])}});
   }
-  report.row("memory", {{"MB masked", static_cast<double>(masked.memory()) / 1e6}, {"MB cut", static_cast<double>(cut.memory()) / 1e6}});
+  report.row("memory", {{"MB masked", static_cast<double>(masked.memory()) / 1e6},
+                        {"MB cut", static_cast<double>(cut.memory()) / 1e6}});
 }

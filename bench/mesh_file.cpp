@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Mesh files from file to scene, by the time that assimp takes alone. Usage: bench_mesh_file [triangles, default 10000000] [rounds]
+// Mesh files from file to scene, by the time that assimp takes alone. Usage: bench_mesh_file [triangles, default
+// 10000000] [rounds]
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -39,7 +40,8 @@ Grid grid_of(std::size_t triangles) {
   for (std::uint32_t y = 0; y <= side; ++y)
     for (std::uint32_t x = 0; x <= side; ++x) {
       const double at_x = 0.1 * x, at_y = 0.1 * y;
-      grid.vertices.push_back({static_cast<float>(at_x), static_cast<float>(at_y), static_cast<float>(std::sin(at_x) + std::cos(at_y))});
+      grid.vertices.push_back(
+          {static_cast<float>(at_x), static_cast<float>(at_y), static_cast<float>(std::sin(at_x) + std::cos(at_y))});
     }
   for (std::uint32_t y = 0; y < side; ++y)
     for (std::uint32_t x = 0; x < side; ++x) {
@@ -76,7 +78,8 @@ void write_glb(const std::filesystem::path& path, const Grid& grid) {
       R"(}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" + s(vertices) +
       R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" + s(3 * triangles) + "}]}";
   while (json.size() % 4 != 0) json += ' ';
-  const auto binary = static_cast<std::uint32_t>(12 * (vertices + triangles)), text = static_cast<std::uint32_t>(json.size());
+  const auto binary = static_cast<std::uint32_t>(12 * (vertices + triangles)),
+             text = static_cast<std::uint32_t>(json.size());
   const std::array<std::uint32_t, 5> head{0x46546C67, 2, 28 + text + binary, text, 0x4E4F534A};
   const std::array<std::uint32_t, 2> chunk{binary, 0x004E4942};
   std::ofstream file(path, std::ios::binary);
@@ -99,7 +102,8 @@ double seconds(const Work& work) {
 int main(int count, char** words) {
   const auto triangles = static_cast<std::size_t>(count > 1 ? std::atoll(words[1]) : 10'000'000);
   const int rounds = count > 2 ? std::atoi(words[2]) : 3;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("bench_mesh_file_" + std::to_string(triangles));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("bench_mesh_file_" + std::to_string(triangles));
   std::filesystem::create_directories(folder);
   std::size_t size = 0;
   {
@@ -125,10 +129,11 @@ int main(int count, char** words) {
       apart = std::min(apart, seconds([&] { file = io::read_mesh_file(folder / name, {.isolated = true}); }));
     }
     std::printf(
-        "%s, %.3g million triangles: assimp %.2f s, read %.2f s (%.2f of it), in a child %.2f s (%.2f), and to a scene %.2f s: "
+        "%s, %.3g million triangles: assimp %.2f s, read %.2f s (%.2f of it), in a child %.2f s (%.2f), and to a scene "
+        "%.2f s: "
         "%.2f million triangles a second\n",
-        name, static_cast<double>(size) / 1e6, assimp, reading, reading / assimp, apart, apart / assimp, reading + scene,
-        static_cast<double>(size) / 1e6 / (reading + scene));
+        name, static_cast<double>(size) / 1e6, assimp, reading, reading / assimp, apart, apart / assimp,
+        reading + scene, static_cast<double>(size) / 1e6 / (reading + scene));
   }
   std::filesystem::remove_all(folder);
 }

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of moving parts: cars drive around on a plain of 2 km by 2 km while a scanner on a mast turns. Time a pulse with 2 and with 2,000 of
-// them, by turns. Rows are named duration/cars, and printed only once every hit of a sample is on its part's place at that time.
+// Cost of moving parts: cars drive around on a plain of 2 km by 2 km while a scanner on a mast turns. Time a pulse with
+// 2 and with 2,000 of them, by turns. Rows are named duration/cars, and printed only once every hit of a sample is on
+// its part's place at that time.
 
 #include <array>
 #include <cmath>
@@ -54,10 +55,11 @@ Cars plain(std::size_t cars, double seconds) {
       round.motions.push_back({.velocity = rotation_about(axis::up, side * pi / 2) * way, .duration = block / speed});
       round.motions.push_back({.rate = pi / 2, .duration = 1});
     }
-    parts.push_back({.geometry = shape,
-                     .placement = {rotation_about(axis::up, heading), 1, {dice.between(-900, 900), dice.between(-900, 900), 0}},
-                     .object = static_cast<ObjectId>(i + 1),
-                     .motion = std::make_shared<const PartMotion>(std::vector<MotionSequence>{round}, 0)});
+    parts.push_back(
+        {.geometry = shape,
+         .placement = {rotation_about(axis::up, heading), 1, {dice.between(-900, 900), dice.between(-900, 900), 0}},
+         .object = static_cast<ObjectId>(i + 1),
+         .motion = std::make_shared<const PartMotion>(std::vector<MotionSequence>{round}, 0)});
   }
   return Cars(std::move(parts), {0, seconds});
 }
@@ -68,8 +70,9 @@ std::vector<RayBundle> pulses(std::size_t count, double seconds) {
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count);
     const double elevation = -25_deg + 1.5_deg * static_cast<double>(i % 16);
-    RayBundle ray =
-        bundle_of({{0, 0, 12}, rotation_about(axis::up, 200 * pi * share) * rotation_about(axis::right, elevation) * axis::forward});
+    RayBundle ray = bundle_of(
+        {{0, 0, 12},
+         rotation_about(axis::up, 200 * pi * share) * rotation_about(axis::right, elevation) * axis::forward});
     ray.tick = Tick::of_seconds(share * seconds);
     all.push_back(ray);
   }
@@ -86,7 +89,8 @@ double sum_of_ranges(const Cars& scene, const std::vector<RayBundle>& all) {
   return sum;
 }
 
-/// Checks a sample of hits against a scene in which every part rests where it is at that time. Returns the number of hits on cars.
+/// Checks a sample of hits against a scene in which every part rests where it is at that time. Returns the number of
+/// hits on cars.
 std::size_t check(const Cars& scene, const std::vector<RayBundle>& all) {
   std::size_t met = 0;
   for (std::size_t i = 0; i < all.size(); i += all.size() / 200) {

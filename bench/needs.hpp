@@ -14,7 +14,8 @@
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scene/height_field.hpp>
 
-/// What the programs `needs_*.cpp` share: the same ground, the same flight, one clock. They differ in what they hold besides.
+/// What the programs `needs_*.cpp` share: the same ground, the same flight, one clock. They differ in what they hold
+/// besides.
 namespace needs {
 
 using namespace pulsecast;
@@ -26,19 +27,21 @@ using namespace pulsecast::literals;
   Raster raster{.columns = cells + 1, .rows = cells + 1, .first = {-500, 500}, .pixel = {2.5, 2.5}};
   for (std::uint32_t r = 0; r <= cells; ++r)
     for (std::uint32_t c = 0; c <= cells; ++c)
-      raster.heights.push_back(static_cast<float>(20 * std::sin(c / 36.0) * std::cos(r / 28.0) + 2 * std::sin(c / 3.0 + r / 4.0)));
+      raster.heights.push_back(
+          static_cast<float>(20 * std::sin(c / 36.0) * std::cos(r / 28.0) + 2 * std::sin(c / 3.0 + r / 4.0)));
   return raster;
 }
 
 inline constexpr StraightLine flight{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60};
 inline constexpr OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg};
-inline constexpr Scanner laser{.pulse_rate = 100_kHz,
-                               .pulses = 100'000,
-                               .laser = {.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad}};
+inline constexpr Scanner laser{
+    .pulse_rate = 100_kHz,
+    .pulses = 100'000,
+    .laser = {.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad}};
 [[nodiscard]] inline Mount mount() { return {.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})}; }
 
-/// Prints what a pulse takes [ns], by the processor's time of this thread, and the sum of all ranges [m], which tells whether others did
-/// the same work.
+/// Prints what a pulse takes [ns], by the processor's time of this thread, and the sum of all ranges [m], which tells
+/// whether others did the same work.
 template <class S>
 int go(const S& survey) {
   auto workspace = survey.workspace();
@@ -48,7 +51,8 @@ int go(const S& survey) {
   for (PulseIndex i = 0; i < survey.size(); ++i)
     for (const Echo& echo : survey(i, workspace).echoes) sum += echo.range;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
-  const double passed = static_cast<double>(to.tv_sec - from.tv_sec) * 1e9 + static_cast<double>(to.tv_nsec - from.tv_nsec);
+  const double passed =
+      static_cast<double>(to.tv_sec - from.tv_sec) * 1e9 + static_cast<double>(to.tv_nsec - from.tv_nsec);
   std::printf("%.1f %.9g\n", passed / static_cast<double>(survey.size()), sum);
   return 0;
 }

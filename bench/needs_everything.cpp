@@ -24,7 +24,8 @@ using namespace needs;
 
 namespace {
 
-using AnyScene = MovingScene<TriangleMesh<>, HeightField, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+using AnyScene = MovingScene<TriangleMesh<>, HeightField, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>,
+                             VoxelGrid<TransmissiveVoxels>>;
 
 template <class Optic>
 using Behind = Deflector<Optic, Scanner>;
@@ -57,7 +58,8 @@ int scan(std::string_view detector, const AnyPlatform& platform, const Pattern& 
 int main(int count, char** words) {
   const std::string_view detector = count > 1 ? words[1] : "first_hit", pattern = count > 2 ? words[2] : detector;
   const AnyScene scene({{.geometry = std::make_shared<const TriangleMesh<>>(ground().mesh())}}, {.to = 60});
-  const AnyPlatform platform = On<StraightLine>{flight, mount(), Channels<Heads>{{Instrument{Behind<OscillatingMirror>{mirror, laser}}}}};
+  const AnyPlatform platform =
+      On<StraightLine>{flight, mount(), Channels<Heads>{{Instrument{Behind<OscillatingMirror>{mirror, laser}}}}};
   if (pattern == "first_hit") return scan(detector, platform, SingleRay{}, scene);
   if (pattern == "rings") return scan(detector, platform, RingFootprint{}, scene);
   return scan(detector, platform, SunflowerFootprint{19}, scene);

@@ -9,5 +9,6 @@ using namespace needs;
 
 int main() {
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(ground().mesh())}});
-  return go(Survey{Platform{flight, mount(), Deflector{mirror, laser}}, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{}});
+  return go(Survey{Platform{flight, mount(), Deflector{mirror, laser}}, SunflowerFootprint{19}, scene, Receiver{},
+                   FullWaveform{}});
 }

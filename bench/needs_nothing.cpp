@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Makes the ground that the other programs scan, and scans nothing: what `needs.sh` subtracts from the size of the others.
+// Makes the ground that the other programs scan, and scans nothing: what `needs.sh` subtracts from the size of the
+// others.
 
 #include "needs.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a pulse costs on one thread, stage by stage [ns]: an airplane over hills, a tripod beside a tree, a car in a street. A survey is run
-// again and again, each time with one more of its stages; what the others would have given is known from before. So every stage is measured
-// where it is at work, and they sum to the whole survey. Rows are named survey/subrays/stage; `--only` is held against survey/subrays/.
-// They are printed only once the accelerator has given the same answers as `Linear` on a sample, and the survey of known hits the same
-// echoes.
+// What a pulse costs on one thread, stage by stage [ns]: an airplane over hills, a tripod beside a tree, a car in a
+// street. A survey is run again and again, each time with one more of its stages; what the others would have given is
+// known from before. So every stage is measured where it is at work, and they sum to the whole survey. Rows are named
+// survey/subrays/stage; `--only` is held against survey/subrays/. They are printed only once the accelerator has given
+// the same answers as `Linear` on a sample, and the survey of known hits the same echoes.
 
 #include <algorithm>
 #include <cstddef>
@@ -33,7 +33,9 @@ namespace {
 
 /// A map in which nothing is met.
 struct Nothing {
-  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { std::fill_n(hits.begin(), rays.size, Hit{}); }
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    std::fill_n(hits.begin(), rays.size, Hit{});
+  }
 };
 
 /// The hits of all pulses, as many a pulse as it has subrays.
@@ -41,7 +43,9 @@ struct Known {
   std::vector<Hit> hits;
   std::size_t subrays;
 
-  [[nodiscard]] std::size_t place(const RayBundle& rays) const noexcept { return rays.pulse * subrays + rays.first_subray; }
+  [[nodiscard]] std::size_t place(const RayBundle& rays) const noexcept {
+    return rays.pulse * subrays + rays.first_subray;
+  }
   void closest(const RayBundle& rays, std::span<Hit> to) const noexcept {
     std::copy_n(hits.begin() + static_cast<std::ptrdiff_t>(place(rays)), rays.size, to.begin());
   }
@@ -133,7 +137,8 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   const Noting noting{scene, known, bundles};
   const double sum = go(survey_of(noting, FullWaveform{}));
   const MeshData flat = flattened(scene);
-  if (const Bundles some = bundles.sample(16); answers(Mesh(flat), some) != answers(TriangleMesh<Linear<>>(flat), some)) {
+  if (const Bundles some = bundles.sample(16);
+      answers(Mesh(flat), some) != answers(TriangleMesh<Linear<>>(flat), some)) {
     std::printf("%s DIFFERS from Linear\n", prefix.c_str());
     std::exit(1);
   }

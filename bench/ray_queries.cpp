@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Queries of single rays in the tree of `bench_trace`, for callgrind to count: each function below asks the same rays, spread over the
-// whole tree. Compare the counts of `rays_closest_hit` and `rays_occluded` with that of `rays_by_bundle`. Prints what each found.
+// Queries of single rays in the tree of `bench_trace`, for callgrind to count: each function below asks the same rays,
+// spread over the whole tree. Compare the counts of `rays_closest_hit` and `rays_occluded` with that of
+// `rays_by_bundle`. Prints what each found.
 //
 //     g++ -std=c++20 -O2 -DNDEBUG -Iinclude bench/ray_queries.cpp -o ray_queries -pthread
 //     valgrind --tool=callgrind --toggle-collect='rays_*' ./ray_queries
@@ -70,6 +71,6 @@ int main() {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < bundles.size(); ++i) rays.push_back(bundles[i].ray(0));
   std::printf("%zu rays: by_bundle %zu, closest_hit %zu, occluded %zu, all_hits %zu, surface %zu\n", rays.size(),
-              rays_by_bundle(scene, rays), rays_closest_hit(scene, rays), rays_occluded(scene, rays), rays_all_hits(scene, rays),
-              rays_surface(scene, rays));
+              rays_by_bundle(scene, rays), rays_closest_hit(scene, rays), rays_occluded(scene, rays),
+              rays_all_hits(scene, rays), rays_surface(scene, rays));
 }

@@ -31,7 +31,8 @@ namespace detail {
 }
 }  // namespace detail
 
-/// Clocks [s]: the processor's time of this thread or of this program, which others on the machine do not add to, and the time on the wall.
+/// Clocks [s]: the processor's time of this thread or of this program, which others on the machine do not add to, and
+/// the time on the wall.
 [[nodiscard]] inline double thread_seconds() noexcept { return detail::seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 [[nodiscard]] inline double process_seconds() noexcept { return detail::seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
 [[nodiscard]] inline double wall_seconds() noexcept { return detail::seconds_of(CLOCK_MONOTONIC); }
@@ -63,7 +64,8 @@ using Times = std::vector<double>;
 using Figures = std::vector<std::pair<std::string, double>>;
 
 /// The command line, what is to be measured, and what was.
-/// Options: `--only PATTERN` (of the shell's kind, over the names of the rows; may be given again), `--rounds N`, `--seconds S`,
+/// Options: `--only PATTERN` (of the shell's kind, over the names of the rows; may be given again), `--rounds N`,
+/// `--seconds S`,
 /// `--markdown`.
 class Report {
  public:
@@ -84,14 +86,15 @@ class Report {
       } else if (word == "--seconds") {
         seconds_ = std::atof(value(i).c_str());
       } else if (word.starts_with("-")) {
-        std::fprintf(stderr, "usage: %s [--only PATTERN]... [--rounds N] [--seconds S] [--markdown] [FILE]...\n", program_.c_str());
+        std::fprintf(stderr, "usage: %s [--only PATTERN]... [--rounds N] [--seconds S] [--markdown] [FILE]...\n",
+                     program_.c_str());
         std::exit(word == "--help" ? 0 : 2);
       } else {
         files_.emplace_back(word);
       }
     }
-    const char* line =
-        markdown_ ? "`%s`: %s; %s, `%s`; %d rounds of %g s\n" : "%s\nmachine:  %s\ncompiler: %s\nflags:    %s\nrounds:   %d of %g s\n";
+    const char* line = markdown_ ? "`%s`: %s; %s, `%s`; %d rounds of %g s\n"
+                                 : "%s\nmachine:  %s\ncompiler: %s\nflags:    %s\nrounds:   %d of %g s\n";
     std::printf(line, program_.c_str(), machine().c_str(), compiler().c_str(), flags().c_str(), rounds_, seconds_);
   }
 
@@ -103,9 +106,10 @@ class Report {
     return only_.empty() || std::any_of(only_.begin(), only_.end(), matches);
   }
 
-  /// Times pieces of work by turns: in a round, each is repeated until its seconds have passed by the clock. What slows the machine down
-  /// for a while slows them all. Gives the seconds that each took for one go, round by round.
-  [[nodiscard]] std::vector<Times> by_turns(const std::vector<std::function<void()>>& works, double (*clock)() = thread_seconds) const {
+  /// Times pieces of work by turns: in a round, each is repeated until its seconds have passed by the clock. What slows
+  /// the machine down for a while slows them all. Gives the seconds that each took for one go, round by round.
+  [[nodiscard]] std::vector<Times> by_turns(const std::vector<std::function<void()>>& works,
+                                            double (*clock)() = thread_seconds) const {
     std::vector<Times> times(works.size());
     for (const auto& work : works) work();  // memory is touched, branches are learnt
     for (int round = 0; round < rounds_; ++round)
@@ -157,7 +161,8 @@ class Report {
     std::string name = "unknown processor", model, line;
     std::ifstream in("/proc/cpuinfo");
     const auto take = [&](std::string_view key, std::string& to) {
-      if (const std::size_t colon = line.find(": "); line.starts_with(key) && colon != line.npos) to = line.substr(colon + 2);
+      if (const std::size_t colon = line.find(": "); line.starts_with(key) && colon != line.npos)
+        to = line.substr(colon + 2);
     };
     while (std::getline(in, line) && !line.empty()) {
       take("model name", name);

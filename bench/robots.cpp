@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Ten robots with a VLP-16 each, ten turns a second, in one street with 20 moving cars: the loop of examples/robot_loop.cpp, step by step
-// at 60 Hz. Prints how many times faster than real time it is: the median over ten seconds of the drive, and the least of them. Usage:
-// bench_robots [ROBOTS [THREADS]]
+// Ten robots with a VLP-16 each, ten turns a second, in one street with 20 moving cars: the loop of
+// examples/robot_loop.cpp, step by step at 60 Hz. Prints how many times faster than real time it is: the median over
+// ten seconds of the drive, and the least of them. Usage: bench_robots [ROBOTS [THREADS]]
 
 #include <algorithm>
 #include <atomic>
@@ -62,8 +62,9 @@ int main(int argc, char** argv) {
     robots[k] = {.from = {1.9, -street::half_size.x}, .along = {0, 1}, .way = 12 * static_cast<double>(k), .speed = 5};
     surveys.push_back(survey_of(robots[k], k));
     const auto pose = [platform = surveys.back().source()](Tick t) { return platform.instrument_at(t); };
-    scans.emplace_back(io::layouts::velodyne(),
-                       io::PointSettings{.sensor = pose, .axes = io::PointAxes::forward_left_up, .rings = sensor.rings()});
+    scans.emplace_back(
+        io::layouts::velodyne(),
+        io::PointSettings{.sensor = pose, .axes = io::PointAxes::forward_left_up, .rings = sensor.rings()});
   }
 
   ThreadPool pool(threads);
@@ -80,7 +81,8 @@ int main(int argc, char** argv) {
     const auto scan = [&](std::size_t k) {  // a robot on one thread, as there are more robots than threads
       robots[k].begin_step(start.seconds());
       if (step % (rate / 10) == 0) scans[k].begin_scan(start);
-      const RunOptions options{.threads = 1, .executor = pool, .first = sensor.slot_from(start), .end = sensor.slot_from(end)};
+      const RunOptions options{
+          .threads = 1, .executor = pool, .first = sensor.slot_from(start), .end = sensor.slot_from(end)};
       found += run(surveys[k], options, scans[k]).echoes;
     };
     pool.for_each(count, scan);
@@ -88,6 +90,7 @@ int main(int argc, char** argv) {
     if (step % rate == 0) times.push_back(0);
     times.back() += bench::wall_seconds() - began;
   }
-  std::printf("%zu robots, %u threads, %zu points a second: %.2f times real time, the slowest second %.2f times\n", count, pool.threads(),
-              points / seconds, 1 / bench::median(times), 1 / *std::max_element(times.begin(), times.end()));
+  std::printf("%zu robots, %u threads, %zu points a second: %.2f times real time, the slowest second %.2f times\n",
+              count, pool.threads(), points / seconds, 1 / bench::median(times),
+              1 / *std::max_element(times.begin(), times.end()));
 }

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a pulse of 19 subrays takes on one thread, and what the machine can do at most, for `roofline.sh`: the peak rates of arithmetic and
-// of reading, and the time of surveys beside a tree, in a street and over hills of a raster. `--once NAME` runs one of the surveys once to
-// warm the caches and once in the function `roofline_counted`, whose operations and bytes the script counts.
+// What a pulse of 19 subrays takes on one thread, and what the machine can do at most, for `roofline.sh`: the peak
+// rates of arithmetic and of reading, and the time of surveys beside a tree, in a street and over hills of a raster.
+// `--once NAME` runs one of the surveys once to warm the caches and once in the function `roofline_counted`, whose
+// operations and bytes the script counts.
 
 #include <array>
 #include <cmath>
@@ -88,8 +89,8 @@ int main(int count, char** words) {
   Report report("roofline", count, words);
   constexpr std::size_t rounds = 100'000;
   const std::vector<std::uint64_t> near(1U << 15, 1), far(1U << 26, 1);
-  std::vector<std::function<void()>> works{[] { multiply<float>(rounds); }, [] { multiply<double>(rounds); }, [&] { read(near); },
-                                           [&] { read(far); }};
+  std::vector<std::function<void()>> works{[] { multiply<float>(rounds); }, [] { multiply<double>(rounds); },
+                                           [&] { read(near); }, [&] { read(far); }};
   for (const auto& survey : surveys) works.emplace_back([&work = survey.second] { keep(work()); });
   const std::vector<Times> times = report.by_turns(works);
   const auto per_ns = [&](std::size_t i, double amount) { return amount / (1e9 * median(times[i])); };
@@ -99,5 +100,6 @@ int main(int count, char** words) {
   report.row("bytes of the second-level cache", {{"", per_ns(2, 8.0 * static_cast<double>(near.size()))}});
   report.row("bytes of memory", {{"", per_ns(3, 8.0 * static_cast<double>(far.size()))}});
   report.heading("surveys of " + std::to_string(pulses) + " pulses of 19 subrays, ns a pulse");
-  for (std::size_t i = 0; i < 3; ++i) report.row(surveys[i].first, {{"", 1e9 * median(times[4 + i]) / static_cast<double>(pulses)}});
+  for (std::size_t i = 0; i < 3; ++i)
+    report.row(surveys[i].first, {{"", 1e9 * median(times[4 + i]) / static_cast<double>(pulses)}});
 }

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// How the cost grows: with threads, with triangles, with instances and with subrays. Threads are measured by the clock on the wall, while
-// nothing else should run; the rest by the processor's time of one thread. A row is printed only once the accelerator has given the same
-// answers as `Linear` on a sample. Rows are named by what grows and how much: `--only 'triangles/*'`. Ten million triangles take some 2 GB.
+// How the cost grows: with threads, with triangles, with instances and with subrays. Threads are measured by the clock
+// on the wall, while nothing else should run; the rest by the processor's time of one thread. A row is printed only
+// once the accelerator has given the same answers as `Linear` on a sample. Rows are named by what grows and how much:
+// `--only 'triangles/*'`. Ten million triangles take some 2 GB.
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +115,8 @@ void grow_instances(Report& report) {
 
     Aims aims;  // down, in lines of 64 pulses, 10 cm apart, that lie anywhere
     for (std::size_t line = 0; line < 64; ++line) {
-      const double width = std::min(6.4, 2 * half), x = dice.between(-half, half - width), y = dice.between(-half, half);
+      const double width = std::min(6.4, 2 * half), x = dice.between(-half, half - width),
+                   y = dice.between(-half, half);
       for (std::size_t i = 0; i < 64; ++i)
         aims.push_back({{x + width * static_cast<double>(i) / 64, y, 300}, rotation_about(axis::right, -90_deg)});
     }
@@ -144,14 +146,17 @@ void grow_instances(Report& report) {
     report.row(name, {{"ns/beam", 1e9 * median(times[0]) / static_cast<double>(all.size())},
                       {"% of rays meet a tree", 100 * static_cast<double>(met) / static_cast<double>(19 * all.size())},
                       {"ns to build/instance", 1e9 * built / static_cast<double>(number)},
-                      {"bytes/instance", static_cast<double>(scene.memory() - shape->memory()) / static_cast<double>(number)}});
+                      {"bytes/instance",
+                       static_cast<double>(scene.memory() - shape->memory()) / static_cast<double>(number)}});
   }
 }
 
 void grow_subrays(Report& report) {
   const auto measure = [&](const std::string& scene, const MeshData& data, const Aims& aims, double divergence) {
     const std::vector<std::size_t> numbers{1, 3, 7, 19, 37, 61, 127, 279};
-    if (std::none_of(numbers.begin(), numbers.end(), [&](std::size_t n) { return report.wanted(named("subrays/" + scene, n)); })) return;
+    if (std::none_of(numbers.begin(), numbers.end(),
+                     [&](std::size_t n) { return report.wanted(named("subrays/" + scene, n)); }))
+      return;
     const Mesh mesh(data);
     report.heading(scene + ", " + std::to_string(mesh.size()) + " triangles");
     for (const std::size_t number : numbers) {

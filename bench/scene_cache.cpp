@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a scene cache saves: hills as an OBJ file, loaded and built, and then opened from their cache. Usage: bench_scene_cache [TRIANGLES],
-// 6,000,000 if not told. The files stand in the system's folder for temporary ones, and are removed.
+// What a scene cache saves: hills as an OBJ file, loaded and built, and then opened from their cache. Usage:
+// bench_scene_cache [TRIANGLES], 6,000,000 if not told. The files stand in the system's folder for temporary ones, and
+// are removed.
 
 #include <chrono>
 #include <cmath>
@@ -36,7 +37,8 @@ void write_hills(const std::filesystem::path& path, int cells) {
     for (int i = 0; i <= cells; ++i) {
       const double x = i * step, y = j * step;
       file.write("v ");
-      file.write(row.add(x, 3).add(y, 3).add(20 * std::sin(x / 90) * std::cos(y / 70) + std::sin(x / 7 + y / 11), 3).end());
+      file.write(
+          row.add(x, 3).add(y, 3).add(20 * std::sin(x / 90) * std::cos(y / 70) + std::sin(x / 7 + y / 11), 3).end());
     }
   for (int j = 0; j < cells; ++j)
     for (int i = 1; i <= cells; ++i) {
@@ -78,8 +80,8 @@ int main(int count, char** arguments) {
   write_hills(obj, static_cast<int>(std::ceil(std::sqrt(triangles / 2))));
 
   const Run built = run(obj, cache);
-  std::printf("%.0f triangles: OBJ of %.0f MB, cache of %.0f MB\n", triangles, static_cast<double>(file_size(obj)) / 1e6,
-              static_cast<double>(file_size(cache)) / 1e6);
+  std::printf("%.0f triangles: OBJ of %.0f MB, cache of %.0f MB\n", triangles,
+              static_cast<double>(file_size(obj)) / 1e6, static_cast<double>(file_size(cache)) / 1e6);
   std::printf("loading, building and saving: %.2f s\n", built.seconds);
   int wrong = built.from_cache ? 1 : 0;
   for (int i = 0; i < 5; ++i) {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of a world that changes, in instructions: 10,000 parts placed anew, 10,000 movers of each kind of motion made (1,000 where
-// they need windows of time), a mesh refitted. What is counted happens in the functions `update_*`, on one thread:
+// Cost of a world that changes, in instructions: 10,000 parts placed anew, 10,000 movers of each kind of motion made
+// (1,000 where they need windows of time), a mesh refitted. What is counted happens in the functions `update_*`, on one
+// thread:
 //   bash bench/count.sh scene_update update
 // Prints the counts to divide by, and a sum over what was found.
 
@@ -33,8 +34,8 @@ constexpr std::size_t part_count = 10'000;
 constexpr std::uint32_t cells = 224;  // 100,352 triangles
 
 std::shared_ptr<const Mesh> tent() {
-  return std::make_shared<const Mesh>(
-      MeshData{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 2}}, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}});
+  return std::make_shared<const Mesh>(MeshData{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 2}},
+                                               {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}});
 }
 
 std::vector<Similarity> anywhere(wood::Dice& dice) {
@@ -54,7 +55,8 @@ std::vector<Similarity> nudged(std::vector<Similarity> all, wood::Dice& dice) {
 std::vector<Vec3> waves(double time) {
   std::vector<Vec3> vertices;
   for (std::uint32_t y = 0; y <= cells; ++y)
-    for (std::uint32_t x = 0; x <= cells; ++x) vertices.push_back({x, y, std::sin(0.1 * x + time) + std::cos(0.13 * y + time)});
+    for (std::uint32_t x = 0; x <= cells; ++x)
+      vertices.push_back({x, y, std::sin(0.1 * x + time) + std::cos(0.13 * y + time)});
   return vertices;
 }
 
@@ -69,23 +71,27 @@ MeshData sea() {
   return mesh;
 }
 
-/// A motion of each kind: at rest, along a line, on a screw about the part's own centre, and between poses twice in the time.
+/// A motion of each kind: at rest, along a line, on a screw about the part's own centre, and between poses twice in the
+/// time.
 enum class Kind { rest, steady, screw, keyed };
 
 std::shared_ptr<const PartMotion> motion(Kind kind, wood::Dice& dice) {
   const auto speed = [&] { return Vec3{dice.between(-10, 10), dice.between(-10, 10), 0}; };
   if (kind == Kind::rest) return std::make_shared<const PartMotion>(std::vector<TimedPose>{{0, speed(), no_rotation}});
   if (kind == Kind::steady) return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed()});
-  if (kind == Kind::screw) return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed(), .rate = dice.between(-1, 1)});
+  if (kind == Kind::screw)
+    return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed(), .rate = dice.between(-1, 1)});
   const Vec3 to = 0.05 * speed(), from{};
   const Rotation turned = rotation_about(axis::up, dice.between(-1e-4, 1e-4));  // about the world's origin
-  return std::make_shared<const PartMotion>(std::vector<TimedPose>{{0, from, no_rotation}, {0.05, to, turned}, {1, from, no_rotation}});
+  return std::make_shared<const PartMotion>(
+      std::vector<TimedPose>{{0, from, no_rotation}, {0.05, to, turned}, {1, from, no_rotation}});
 }
 
-std::vector<Movers::Part> movers(const std::shared_ptr<const Mesh>& shape, std::span<const Similarity> placements, Kind kind,
-                                 wood::Dice& dice) {
+std::vector<Movers::Part> movers(const std::shared_ptr<const Mesh>& shape, std::span<const Similarity> placements,
+                                 Kind kind, wood::Dice& dice) {
   std::vector<Movers::Part> all;
-  for (const Similarity& placement : placements) all.push_back({.geometry = shape, .placement = placement, .motion = motion(kind, dice)});
+  for (const Similarity& placement : placements)
+    all.push_back({.geometry = shape, .placement = placement, .motion = motion(kind, dice)});
   return all;
 }
 
@@ -98,7 +104,8 @@ double sum_of_ranges(const Map& map, double reach, double seconds = 0) {
   for (int i = 0; i < 20'000; ++i) {
     const Vec3 from{dice.between(-reach, reach), dice.between(-reach, reach), 60};
     const Vec3 direction = normalize(Vec3{dice.between(-1, 1), dice.between(-1, 1), -1});
-    map.closest(bundle_of({.origin = from, .direction = direction, .tick = Tick::of_seconds(seconds * i / 20'000)}), hits);
+    map.closest(bundle_of({.origin = from, .direction = direction, .tick = Tick::of_seconds(seconds * i / 20'000)}),
+                hits);
     if (hits[0].met()) sum += hits[0].range;
   }
   return sum;
@@ -118,16 +125,30 @@ extern "C" {
   to = world.with_placements(placements, std::move(to), 1);
 }
 
-[[gnu::noinline]] void update_movers_at_rest(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 0.1}, 1); }
-[[gnu::noinline]] void update_movers_steady(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 0.1}, 1); }
-[[gnu::noinline]] void update_movers_screws(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 0.1}, 1); }
-[[gnu::noinline]] void update_movers_keyed(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 0.1}, 1); }
-[[gnu::noinline]] void update_movers_windows(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 10}, 1); }
+[[gnu::noinline]] void update_movers_at_rest(std::vector<Movers::Part> parts, Movers& to) {
+  to = Movers(std::move(parts), {.to = 0.1}, 1);
+}
+[[gnu::noinline]] void update_movers_steady(std::vector<Movers::Part> parts, Movers& to) {
+  to = Movers(std::move(parts), {.to = 0.1}, 1);
+}
+[[gnu::noinline]] void update_movers_screws(std::vector<Movers::Part> parts, Movers& to) {
+  to = Movers(std::move(parts), {.to = 0.1}, 1);
+}
+[[gnu::noinline]] void update_movers_keyed(std::vector<Movers::Part> parts, Movers& to) {
+  to = Movers(std::move(parts), {.to = 0.1}, 1);
+}
+[[gnu::noinline]] void update_movers_windows(std::vector<Movers::Part> parts, Movers& to) {
+  to = Movers(std::move(parts), {.to = 10}, 1);
+}
 
 [[gnu::noinline]] void update_mesh(DeformingMesh& mesh, const std::vector<Vec3>& vertices) { mesh.refit(vertices, 1); }
 
-[[gnu::noinline]] double update_trace_movers(const Movers& movers, double seconds) { return sum_of_ranges(movers, 500, seconds); }
-[[gnu::noinline]] double update_trace_windows(const Movers& movers, double seconds) { return sum_of_ranges(movers, 500, seconds); }
+[[gnu::noinline]] double update_trace_movers(const Movers& movers, double seconds) {
+  return sum_of_ranges(movers, 500, seconds);
+}
+[[gnu::noinline]] double update_trace_windows(const Movers& movers, double seconds) {
+  return sum_of_ranges(movers, 500, seconds);
+}
 [[gnu::noinline]] double update_trace_built(const World& world) { return sum_of_ranges(world, 500); }
 [[gnu::noinline]] double update_trace_nudged(const World& world) { return sum_of_ranges(world, 500); }
 [[gnu::noinline]] double update_trace_anywhere(const World& world) { return sum_of_ranges(world, 500); }

@@ -32,7 +32,8 @@ using namespace pulsecast::literals;
     for (std::uint32_t c = 0; c <= cells; ++c) {
       const double x = c * raster.pixel.x, y = r * raster.pixel.y;
       const double rough = uniform({.seed = 1, .pulse = raster.heights.size(), .purpose = Purpose::scene});
-      raster.heights.push_back(static_cast<float>(20 * std::sin(x / 90) * std::cos(y / 70) + 2 * std::sin(x / 7 + y / 11) + 0.2 * rough));
+      raster.heights.push_back(
+          static_cast<float>(20 * std::sin(x / 90) * std::cos(y / 70) + 2 * std::sin(x / 7 + y / 11) + 0.2 * rough));
     }
   return raster;
 }
@@ -76,9 +77,11 @@ inline constexpr std::size_t pulse_count = 4096;
   Aims all;
   for (std::size_t line = 0; line < lines; ++line)
     for (std::size_t i = 0; i < in_line; ++i) {
-      const double across = -480 + 960.0 * static_cast<double>(i) / in_line, along = -450 + 900.0 * static_cast<double>(line) / lines;
+      const double across = -480 + 960.0 * static_cast<double>(i) / in_line,
+                   along = -450 + 900.0 * static_cast<double>(line) / lines;
       const double y = along + 50.0 / lines * static_cast<double>(i) / in_line;
-      all.push_back({{0, y, 1250}, rotation_about(axis::forward, -std::atan(across / 1250)) * rotation_about(axis::right, -90_deg)});
+      all.push_back({{0, y, 1250},
+                     rotation_about(axis::forward, -std::atan(across / 1250)) * rotation_about(axis::right, -90_deg)});
     }
   return all;
 }
@@ -89,7 +92,8 @@ inline constexpr std::size_t pulse_count = 4096;
   const Vec3 place{box.max.x + 0.5 * box.size().z, box.centre().y, box.min.z + 1.7};
   double min_turn = 0, max_turn = 0, low = 90_deg, high = -90_deg;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 to = Vec3{i & 1 ? box.min.x : box.max.x, i & 2 ? box.min.y : box.max.y, i & 4 ? box.min.z : box.max.z} - place;
+    const Vec3 to =
+        Vec3{i & 1 ? box.min.x : box.max.x, i & 2 ? box.min.y : box.max.y, i & 4 ? box.min.z : box.max.z} - place;
     const double turn = std::atan2(to.y, -to.x), elevation = std::atan2(to.z, std::hypot(to.x, to.y));
     min_turn = std::min(min_turn, turn);
     max_turn = std::max(max_turn, turn);
@@ -100,7 +104,8 @@ inline constexpr std::size_t pulse_count = 4096;
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t i = 0; i < in_sweep; ++i) {
       const double turn = std::lerp(min_turn, max_turn, (static_cast<double>(sweep) + 0.5) / sweeps);
-      const double share = static_cast<double>(i) / in_sweep, elevation = std::lerp(low, high, sweep % 2 == 0 ? share : 1 - share);
+      const double share = static_cast<double>(i) / in_sweep,
+                   elevation = std::lerp(low, high, sweep % 2 == 0 ? share : 1 - share);
       all.push_back({place, rotation_about(axis::up, 90_deg - turn) * rotation_about(axis::right, elevation)});
     }
   return all;
@@ -118,8 +123,9 @@ inline constexpr std::size_t pulse_count = 4096;
   return all;
 }
 
-/// Bundles side by side, each in as much memory as it needs, so that going through many of them costs little. One that is asked for is made
-/// where it is wanted, as a survey makes its own: in the nearest cache, and with all that `pad` finds about its directions.
+/// Bundles side by side, each in as much memory as it needs, so that going through many of them costs little. One that
+/// is asked for is made where it is wanted, as a survey makes its own: in the nearest cache, and with all that `pad`
+/// finds about its directions.
 class Bundles {
  public:
   void add(const RayBundle& rays) {
@@ -145,7 +151,8 @@ class Bundles {
   [[nodiscard]] BundleOfOne ray(std::size_t i) const noexcept {
     const BundleOrigin& from = origins_[i];
     const double* const d = directions_.data() + first_[i];
-    return BundleOfOne(Ray{.origin = from.origin, .direction = {d[0], d[from.size], d[2 * from.size]}, .near = from.near});
+    return BundleOfOne(
+        Ray{.origin = from.origin, .direction = {d[0], d[from.size], d[2 * from.size]}, .near = from.near});
   }
 
   /// Some of them, from everywhere among them.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What pulses are spared because the scene does not ask for it: the shares of pulses that take each short cut, in the surveys of
-// `bench_pipeline`. Nothing is timed; what the stages cost that are spared, `bench_pipeline` tells.
+// What pulses are spared because the scene does not ask for it: the shares of pulses that take each short cut, in the
+// surveys of `bench_pipeline`. Nothing is timed; what the stages cost that are spared, `bench_pipeline` tells.
 
 #include <cstddef>
 #include <memory>
@@ -68,24 +68,29 @@ struct WatchedDetector : DetectorAdaptor<FullWaveform<>> {
 };
 
 template <class Source>
-void count(Report& report, const std::string& name, const Source& source, const Scene<Mesh>& scene, std::size_t subrays) {
+void count(Report& report, const std::string& name, const Source& source, const Scene<Mesh>& scene,
+           std::size_t subrays) {
   const std::string row = name + "/" + std::to_string(subrays);
   if (!report.wanted(row)) return;
   Counts counts;
   const Mesh flat(flattened(scene));
   const WatchedScene watched{scene, flat, counts};
-  const Survey survey{source, SunflowerFootprint(subrays), watched, Receiver{}, WatchedDetector{{FullWaveform{}}, &counts}};
+  const Survey survey{source, SunflowerFootprint(subrays), watched, Receiver{},
+                      WatchedDetector{{FullWaveform{}}, &counts}};
   auto workspace = survey.workspace();
   for (PulseIndex i = 0; i < survey.size(); ++i) {
     const Outcome outcome = survey(i, workspace);
     if (outcome.shot.fate == Fate::blocked) continue;
     ++counts.pulses;
   }
-  const auto percent = [](std::size_t some, std::size_t all) { return 100.0 * static_cast<double>(some) / static_cast<double>(all); };
-  report.row(row, {{"% nothing met: nothing described, no detector", percent(counts.pulses - counts.met, counts.pulses)},
-                   {"% one surface met: described once", percent(counts.described_once, counts.pulses)},
-                   {"descriptions a hit", static_cast<double>(counts.described) / static_cast<double>(counts.hits)},
-                   {"% of detections in closed form, without samples", percent(counts.in_closed_form, counts.detected)}});
+  const auto percent = [](std::size_t some, std::size_t all) {
+    return 100.0 * static_cast<double>(some) / static_cast<double>(all);
+  };
+  report.row(row,
+             {{"% nothing met: nothing described, no detector", percent(counts.pulses - counts.met, counts.pulses)},
+              {"% one surface met: described once", percent(counts.described_once, counts.pulses)},
+              {"descriptions a hit", static_cast<double>(counts.described) / static_cast<double>(counts.hits)},
+              {"% of detections in closed form, without samples", percent(counts.in_closed_form, counts.detected)}});
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 
 #include "report.hpp"
 
-// Time of slots without tracing, one thread: a run of nothing but blocked slots, and pulses made by a mirror on a head, and by prisms.
-// `bench_source PART` does one part alone, a million slots, for counts of instructions: blocked, head, prisms, and the
-// latter two asked one by one: head_alone, prisms_alone.
+// Time of slots without tracing, one thread: a run of nothing but blocked slots, and pulses made by a mirror on a head,
+// and by prisms. `bench_source PART` does one part alone, a million slots, for counts of instructions: blocked, head,
+// prisms, and the latter two asked one by one: head_alone, prisms_alone.
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -29,8 +29,9 @@ struct Void {
 
 template <class Optic>
 auto on_tripod(Optic optic) {
-  return Platform{Tripod{}, Mount{},
-                  Deflector{RotatingHead{.rate = 0.1}, Deflector{optic, Scanner{.pulse_rate = 300_kHz, .pulses = slots}}}};
+  return Platform{
+      Tripod{}, Mount{},
+      Deflector{RotatingHead{.rate = 0.1}, Deflector{optic, Scanner{.pulse_rate = 300_kHz, .pulses = slots}}}};
 }
 
 const PolygonMirror open_mirror{.lines_per_second = 100, .sweep = 60_deg};
@@ -39,7 +40,8 @@ const RisleyPrisms prisms{.prisms = {{.turns_per_second = 100}, {.turns_per_seco
 
 std::uint64_t run_blocked() {
   const Void nothing;
-  return run(Survey{on_tripod(blind_mirror), SingleRay{}, nothing, Receiver{}, FirstHit{}}, {.threads = 1}).count(Fate::blocked);
+  return run(Survey{on_tripod(blind_mirror), SingleRay{}, nothing, Receiver{}, FirstHit{}}, {.threads = 1})
+      .count(Fate::blocked);
 }
 
 /// One, after the compiler had to make the whole pulse.
@@ -82,6 +84,7 @@ int main(int argc, char** argv) {
   row("blocked", "a blocked slot, mean over a sweep, in a run", [] { return run_blocked(); });
   row("head", "a pulse made by a mirror on a head", [] { return make_pulses(on_tripod(open_mirror)); });
   row("prisms", "a pulse made by two prisms on a head", [] { return make_pulses(on_tripod(prisms)); });
-  row("head_alone", "a pulse made by a mirror on a head, alone", [] { return make_one_by_one(on_tripod(open_mirror)); });
+  row("head_alone", "a pulse made by a mirror on a head, alone",
+      [] { return make_one_by_one(on_tripod(open_mirror)); });
   row("prisms_alone", "a pulse made by two prisms on a head, alone", [] { return make_one_by_one(on_tripod(prisms)); });
 }

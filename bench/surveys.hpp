@@ -25,13 +25,16 @@ using Mesh = TriangleMesh<>;
                             Scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser}}};
 }
 
-/// A tripod 12 m from the tree, which stands at the origin: lines from below the horizon up, in slow steps across the crown.
+/// A tripod 12 m from the tree, which stands at the origin: lines from below the horizon up, in slow steps across the
+/// crown.
 [[nodiscard]] inline auto tripod(PulseIndex pulses) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser};
   const RotatingHead head{.rate = 40_deg / scanner.duration().seconds()};
-  return Platform{Tripod{.position = {12, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about(axis::up, 70_deg)},
-                  Deflector{head, Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 45_deg, .angle_min = -10_deg}, scanner}}};
+  return Platform{
+      Tripod{.position = {12, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about(axis::up, 70_deg)},
+      Deflector{head,
+                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 45_deg, .angle_min = -10_deg}, scanner}}};
 }
 
 /// A car in the street, with a scanner that turns across.

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Threads and memory that a run takes: threads started (calls of pthread_create) and allocations (calls of operator new), of runs over one
-// pulse and over many with `threads = 64`. Fails if a run over one pulse starts a thread, or a later run on a pool starts one or allocates.
+// Threads and memory that a run takes: threads started (calls of pthread_create) and allocations (calls of operator
+// new), of runs over one pulse and over many with `threads = 64`. Fails if a run over one pulse starts a thread, or a
+// later run on a pool starts one or allocates.
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -34,7 +35,8 @@ std::atomic<std::size_t> threads_started = 0, allocations = 0;
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 /// Stands before that of the C library.
-extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*), void* argument) {
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                              void* argument) {
   using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
   static const auto create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
   ++threads_started;
@@ -73,7 +75,8 @@ int main() {
   taken("one pulse, a pool of 64, first run", work(1, pool));
   const Taken second = taken("one pulse, a pool of 64, second run", work(1, pool));
   const Taken third = taken("one pulse, a pool of 64, third run", work(1, pool));
-  const bool kept = counted && alone.threads + second.threads + second.allocations + third.threads + third.allocations == 0;
+  const bool kept =
+      counted && alone.threads + second.threads + second.allocations + third.threads + third.allocations == 0;
   if (!kept) std::fputs("a run takes what it must not, or nothing is counted\n", stderr);
   return kept ? 0 : 1;
 }

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What tracing costs on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and beside them Embree 3
-// on the same rays, by turns in the same run. A row is printed only once the accelerator has given the same answers as `Linear`, bit by
-// bit, on a sample; of Embree it is printed how many of its ranges agree.
+// What tracing costs on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and
+// beside them Embree 3 on the same rays, by turns in the same run. A row is printed only once the accelerator has given
+// the same answers as `Linear`, bit by bit, on a sample; of Embree it is printed how many of its ranges agree.
 //
-// Rows are named scene/subrays/accelerator, with `alone` for a `BundleOfOne` in place of a bundle: `--only '*/19/Bvh<float>' --only
-// '*/19/Embree*'`. An OBJ file in metres, if one is given, is scanned as a scene of its own. A beam's ratio is to the best of Embree's
-// rows; a single ray's, to the best of `rtcIntersect1`.
+// Rows are named scene/subrays/accelerator, with `alone` for a `BundleOfOne` in place of a bundle: `--only
+// '*/19/Bvh<float>' --only
+// '*/19/Embree*'`. An OBJ file in metres, if one is given, is scanned as a scene of its own. A beam's ratio is to the
+// best of Embree's rows; a single ray's, to the best of `rtcIntersect1`.
 
 #include <cmath>
 #include <cstddef>
@@ -77,7 +78,8 @@ struct Group {
 std::vector<Group> groups(const Course& course) {
   std::vector<Group> all;
   for (const std::size_t subrays : {1U, 7U, 19U, 61U})
-    all.push_back({course.name + "/" + std::to_string(subrays), beams(course.aims, subrays, course.divergence), subrays, 16});
+    all.push_back(
+        {course.name + "/" + std::to_string(subrays), beams(course.aims, subrays, course.divergence), subrays, 16});
   all.push_back({course.name + "/incoherent", incoherent_rays(bounds_of(course.mesh), 4 * pulse_count), 1, 64});
   return all;
 }
@@ -90,8 +92,8 @@ struct EmbreeSubject {
 };
 
 template <std::size_t Width>
-void add_embree(const Report& report, const Group& group, const std::vector<EmbreeSubject>& subjects, std::vector<std::string>& names,
-                std::vector<std::function<void()>>& works, double& sum) {
+void add_embree(const Report& report, const Group& group, const std::vector<EmbreeSubject>& subjects,
+                std::vector<std::string>& names, std::vector<std::function<void()>>& works, double& sum) {
   if (Width > 1 && group.subrays == 1) return;  // there is no packet in a single ray
   const auto rays = std::make_shared<EmbreeRays<Width>>(group.bundles, group.subrays > 1);
   for (const EmbreeSubject& subject : subjects) {
@@ -137,9 +139,9 @@ class Races {
     add<KdTree<double>>("KdTree<double>");
     if (course.field && wanted("HeightField")) subjects_.push_back(subject("HeightField", course.field()));
 #ifdef PULSECAST_BENCH_EMBREE
-    for (const auto& [name, quality, robust] :
-         {std::tuple{"Embree", RTC_BUILD_QUALITY_MEDIUM, false}, std::tuple{"Embree high", RTC_BUILD_QUALITY_HIGH, false},
-          std::tuple{"Embree high robust", RTC_BUILD_QUALITY_HIGH, true}})
+    for (const auto& [name, quality, robust] : {std::tuple{"Embree", RTC_BUILD_QUALITY_MEDIUM, false},
+                                                std::tuple{"Embree high", RTC_BUILD_QUALITY_HIGH, false},
+                                                std::tuple{"Embree high robust", RTC_BUILD_QUALITY_HIGH, true}})
       if (wanted(std::string(name) + " 1") || wanted(std::string(name) + " 8") || wanted(std::string(name) + " 16"))
         embree_.push_back({name, std::make_unique<EmbreeMesh>(course.mesh, quality, robust)});
 #endif
@@ -164,7 +166,8 @@ class Races {
     if (expected.empty()) expected = bench::answers(*linear_, some);
     auto found = subject.answers(some);
     if (subject.name == "HeightField")  // its triangles have other numbers
-      for (std::size_t i = 0; i < found.size(); ++i) found[i].id = found[i].range == expected[i].range ? expected[i].id : found[i].id;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        found[i].id = found[i].range == expected[i].range ? expected[i].id : found[i].id;
     if (found != expected) {
       std::printf("%s/%s DIFFERS from Linear\n", group.name.c_str(), subject.name.c_str());
       std::exit(1);
@@ -233,8 +236,10 @@ int main(int count, char** words) {
     race({name, std::move(mesh), from_a_tripod(box), 0.3_mrad});
   };
   const Raster ground = hills(866);
-  race({"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
+  race(
+      {"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
   beside("tree", tree());
-  for (const std::string& file : report.files()) beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
+  for (const std::string& file : report.files())
+    beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
   race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of scanning a grid of voxels by their number: 10^4 and 10^7 cells of the same kind of scene, single rays and bundles, by turns. Rows
-// are named scene/cells/subrays.
+// Cost of scanning a grid of voxels by their number: 10^4 and 10^7 cells of the same kind of scene, single rays and
+// bundles, by turns. Rows are named scene/cells/subrays.
 
 #include <cmath>
 #include <cstddef>
@@ -67,14 +67,16 @@ bench::Bundles pulses(const VoxelGrid<Filling>& grid, std::size_t subrays, std::
   const Vec3 size = box.size(), place{box.centre().x, box.centre().y, box.max.z + 0.3 * size.x};
   bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
-    const double along = static_cast<double>(i) / static_cast<double>(count), across = 300 * along - std::floor(300 * along);
+    const double along = static_cast<double>(i) / static_cast<double>(count),
+                 across = 300 * along - std::floor(300 * along);
     const Vec3 towards = normalize(box.min + size * Vec3{across, along, 0.5} - place);
     const Rotation aim = rotation_about(cross(axis::forward, towards), std::acos(dot(axis::forward, towards)));
     RayBundle rays;
     rays.origin = place;
     rays.size = subrays;
     rays.pulse = i;
-    for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
+    for (std::size_t j = 0; j < subrays; ++j)
+      rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
     rays.pad();
     all.add(rays);
   }
@@ -89,21 +91,25 @@ struct Built {
 
 template <class Filling>
 Built<Filling> build(VoxelData data) {
-  if constexpr (!std::is_same_v<Filling, OpaqueVoxels>) data.densities.assign(data.cells.size(), static_cast<float>(5 / data.edge));
+  if constexpr (!std::is_same_v<Filling, OpaqueVoxels>)
+    data.densities.assign(data.cells.size(), static_cast<float>(5 / data.edge));
   const double start = bench::process_seconds();
   VoxelGrid<Filling> grid(data);
   return {std::move(grid), bench::process_seconds() - start};
 }
 
 template <class Filling>
-void compare(bench::Report& report, const std::string& scene, VoxelData (*make)(std::uint32_t), std::uint32_t small, std::uint32_t large) {
+void compare(bench::Report& report, const std::string& scene, VoxelData (*make)(std::uint32_t), std::uint32_t small,
+             std::uint32_t large) {
   if (!report.wanted(scene)) return;
   report.heading(scene);
   const std::vector<Built<Filling>> built{build<Filling>(make(small)), build<Filling>(make(large))};
   for (const std::size_t subrays : {std::size_t{1}, std::size_t{19}}) {
     std::vector<std::function<void()>> works;
     for (const auto& [grid, seconds] : built)
-      works.emplace_back([&grid = grid, all = pulses(grid, subrays, 200'000 / subrays)] { bench::keep(bench::sum_of_ranges(grid, all)); });
+      works.emplace_back([&grid = grid, all = pulses(grid, subrays, 200'000 / subrays)] {
+        bench::keep(bench::sum_of_ranges(grid, all));
+      });
     const std::vector<bench::Times> times = report.by_turns(works);
     const double rays = static_cast<double>(200'000 / subrays * subrays);
     for (std::size_t k = 0; k < built.size(); ++k) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What writing costs: million points a second of the processor's time, that of the system included, and bytes a point, by format. One
-// batch, from an airplane over hills with waveforms of 80 samples a pulse, is written again and again to the system's folder for temporary
-// files. The files are removed.
+// What writing costs: million points a second of the processor's time, that of the system included, and bytes a point,
+// by format. One batch, from an airplane over hills with waveforms of 80 samples a pulse, is written again and again to
+// the system's folder for temporary files. The files are removed.
 
 #include <cstddef>
 #include <filesystem>
@@ -47,7 +47,8 @@ int main(int count, char** words) {
   };
   constexpr std::size_t many = 20;  // so that what a file costs does not count
   const auto las = [&](LasFormat format, bool waveforms) {
-    return [=](const std::filesystem::path& path) { return LasWriter(path, {.format = format, .waveforms = waveforms}); };
+    return
+        [=](const std::filesystem::path& path) { return LasWriter(path, {.format = format, .waveforms = waveforms}); };
   };
   add("LAS 1.4 f6.las", many, las(LasFormat::las_1_4, false));
   add("LAS 1.4 f9.las", many, las(LasFormat::las_1_4, true));
@@ -63,9 +64,11 @@ int main(int count, char** words) {
     const bool fewer = names[i] == "text.xyz.gz" || names[i] == "waveforms.txt";
     const double points = static_cast<double>(batch.echoes.size() * (fewer ? many / 4 : many));
     auto bytes = static_cast<double>(std::filesystem::file_size(folder / names[i]));
-    if (names[i] == "LAS 1.4 f9.las") bytes += static_cast<double>(std::filesystem::file_size(folder / "LAS 1.4 f9.wdp"));
-    report.row(names[i],
-               {{"Mpoints/s", points / median(times[i]) / 1e6}, {"MB/s", bytes / median(times[i]) / 1e6}, {"bytes/point", bytes / points}});
+    if (names[i] == "LAS 1.4 f9.las")
+      bytes += static_cast<double>(std::filesystem::file_size(folder / "LAS 1.4 f9.wdp"));
+    report.row(names[i], {{"Mpoints/s", points / median(times[i]) / 1e6},
+                          {"MB/s", bytes / median(times[i]) / 1e6},
+                          {"bytes/point", bytes / points}});
   }
   std::filesystem::remove_all(folder);
 }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Airborne scanner: overlapping strips over hills in alternating directions. Writes cloud.las, cloud.png and trajectory.txt.
+// Airborne scanner: overlapping strips over hills in alternating directions. Writes cloud.las, cloud.png and
+// trajectory.txt.
 
 #include <cmath>
 #include <cstddef>
@@ -22,14 +23,15 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// Airplane on one pass: an oscillating mirror sweeps the beam across the track. The instrument looks down, its up axis points to the right
-/// of the flight. Its lever arm is forward and below the airplane's origin.
+/// Airplane on one pass: an oscillating mirror sweeps the beam across the track. The instrument looks down, its up axis
+/// points to the right of the flight. Its lever arm is forward and below the airplane's origin.
 auto airplane(const StraightLine& pass, double pulse_rate) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 2500_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const auto pulses = static_cast<PulseIndex>(std::ceil(pass.duration().seconds() * pulse_rate));
   const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 18_deg, .turning_time = 1_ms};
-  return Platform{pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                  Deflector{mirror, Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
+  return Platform{
+      pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
+      Deflector{mirror, Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
 }
 
 int main(int argc, char** argv) {
@@ -57,7 +59,8 @@ int main(int argc, char** argv) {
 
     const Survey survey{Legs{legs}, RingFootprint{2}, scene, Receiver{}, FullWaveform{{.threshold = 20_nW}}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(line.output / "cloud.png",
+                          {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close();
@@ -71,6 +74,7 @@ int main(int argc, char** argv) {
     std::cout << "Flew " << strips.size() << " strips over " << std::round(size.x) << " m by " << std::round(size.y)
               << " m; the results are in " << line.output.string() << ".\n";
     print(summary);
-    std::cout << "  density      " << std::setw(12) << static_cast<double>(summary.echoes) / (size.x * size.y) << " points/m^2\n";
+    std::cout << "  density      " << std::setw(12) << static_cast<double>(summary.echoes) / (size.x * size.y)
+              << " points/m^2\n";
   });
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Two scanners on the roof of a car in a small town. The car turns right, reverses to turn round where the street is too narrow for a
-// curve, and drives on. Writes cloud.las, cloud.png and trajectory.txt.
+// Two scanners on the roof of a car in a small town. The car turns right, reverses to turn round where the street is
+// too narrow for a curve, and drives on. Writes cloud.las, cloud.png and trajectory.txt.
 
 #include <cmath>
 #include <iostream>
@@ -47,7 +47,8 @@ int main(int argc, char** argv) {
 
     const Survey survey{both, SingleRay{}, scene, Receiver{.range_min = 1.5}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(line.output / "cloud.png",
+                          {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close();
@@ -57,8 +58,8 @@ int main(int argc, char** argv) {
     trajectory.close();
 
     const auto& last = drive.sections().back();
-    std::cout << "Drove " << std::round(last.start + last.path.length) << " m in " << std::round(drive.duration().seconds())
-              << " s; the results are in " << line.output.string() << ".\n";
+    std::cout << "Drove " << std::round(last.start + last.path.length) << " m in "
+              << std::round(drive.duration().seconds()) << " s; the results are in " << line.output.string() << ".\n";
     print(summary);
   });
 }

@@ -31,13 +31,17 @@ void CommandLine::add_number(const std::string& name, double& value, double leas
   app_->add_option(name, value, meaning)->type_name(type)->check(CLI::Range(least, most));
 }
 
-void CommandLine::add_number(const std::string& name, std::size_t& value, int least, int most, const std::string& meaning) {
+void CommandLine::add_number(const std::string& name, std::size_t& value, int least, int most,
+                             const std::string& meaning) {
   app_->add_option(name, value, meaning)->type_name("N")->check(CLI::Range(least, most));
 }
 
-void CommandLine::add_flag(const std::string& name, bool& value, const std::string& meaning) { app_->add_flag(name, value, meaning); }
+void CommandLine::add_flag(const std::string& name, bool& value, const std::string& meaning) {
+  app_->add_flag(name, value, meaning);
+}
 
-void CommandLine::add_positions(const std::string& name, std::vector<pulsecast::Vec3>& positions, const std::string& meaning) {
+void CommandLine::add_positions(const std::string& name, std::vector<pulsecast::Vec3>& positions,
+                                const std::string& meaning) {
   const auto add = [&positions](const std::string& text) {
     std::istringstream in(text);
     pulsecast::Vec3 position{};
@@ -51,16 +55,22 @@ void CommandLine::add_positions(const std::string& name, std::vector<pulsecast::
   app_->add_option(name, add_all, meaning)->type_name("X,Y,Z")->expected(1, -1)->allow_extra_args(false);
 }
 
-void CommandLine::add_file(const std::string& name, std::filesystem::path& file, const std::string& type, const std::string& meaning) {
+void CommandLine::add_file(const std::string& name, std::filesystem::path& file, const std::string& type,
+                           const std::string& meaning) {
   app_->add_option(name, file, meaning)->type_name(type);
 }
 
-void CommandLine::add_files(const std::string& name, std::vector<std::string>& files, const std::string& type, const std::string& meaning) {
+void CommandLine::add_files(const std::string& name, std::vector<std::string>& files, const std::string& type,
+                            const std::string& meaning) {
   app_->add_option(name, files, meaning)->type_name(type);
 }
 
-void CommandLine::add_folders(const std::string& name, std::vector<std::filesystem::path>& folders, const std::string& meaning) {
-  app_->add_option(name, folders, meaning)->type_name("DIR")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+void CommandLine::add_folders(const std::string& name, std::vector<std::filesystem::path>& folders,
+                              const std::string& meaning) {
+  app_->add_option(name, folders, meaning)
+      ->type_name("DIR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 int CommandLine::run(int argc, char** argv, const std::function<void()>& work) {
@@ -74,7 +84,9 @@ int CommandLine::run(int argc, char** argv, const std::function<void()>& work) {
   try {
     std::error_code problem;
     std::filesystem::create_directories(output, problem);
-    if (problem) throw pulsecast::FileError(output.string(), "", "the output folder cannot be created (" + problem.message() + ")");
+    if (problem)
+      throw pulsecast::FileError(output.string(), "",
+                                 "the output folder cannot be created (" + problem.message() + ")");
     work();
   } catch (const std::exception& error) {
     std::cerr << "\nerror: " << error.what() << '\n';

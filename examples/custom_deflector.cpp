@@ -39,7 +39,8 @@ int main(int argc, char** argv) {
     const Platform balloon{Tripod{.position = {0, 0, 80}}, downwards, deflector};
     const Survey survey{balloon, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
 
-    io::ImageWriter map(line.output / "custom_deflector.png", {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
+    io::ImageWriter map(line.output / "custom_deflector.png",
+                        {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, map));
     map.close();
   });

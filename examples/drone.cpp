@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Scanner under a drone: it rises before a hut in a wood, flies rows over the trees, hovers, and comes down again. It banks in turns, and
-// the beam with it. Writes cloud.las, cloud.png and trajectory.txt.
+// Scanner under a drone: it rises before a hut in a wood, flies rows over the trees, hovers, and comes down again. It
+// banks in turns, and the beam with it. Writes cloud.las, cloud.png and trajectory.txt.
 
 #include <cmath>
 #include <iostream>
@@ -47,20 +47,26 @@ int main(int argc, char** argv) {
     const auto scene = wood::scene(line.seed);
     const MulticopterFlight flight =
         plan_multicopter(route(wood::glades(line.seed)[0], height),
-                         {.speed = speed, .turn = stop ? MulticopterTurn::stop_and_turn : MulticopterTurn::smooth, .arrival_heading = 0});
+                         {.speed = speed,
+                          .turn = stop ? MulticopterTurn::stop_and_turn : MulticopterTurn::smooth,
+                          .arrival_heading = 0});
 
     const Laser laser{.wavelength = 1550_nm, .peak_power = 100_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
     const double pulse_rate = 1e3 * pulse_rate_kHz;
-    const Scanner scanner{
-        .pulse_rate = pulse_rate, .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate), .laser = laser};
+    const Scanner scanner{.pulse_rate = pulse_rate,
+                          .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate),
+                          .laser = laser};
     const PolygonMirror mirror{.lines_per_second = 40_Hz, .sweep = 45_deg};
     // The instrument looks down; its up axis points to the right of the flight.
-    const Platform drone{flight, Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                         Deflector{mirror, scanner}};
+    const Platform drone{
+        flight,
+        Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
+        Deflector{mirror, scanner}};
 
     const Survey survey{drone, RingFootprint{2}, scene, Receiver{}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
+    io::ImageWriter image(line.output / "cloud.png",
+                          {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close();
@@ -69,7 +75,8 @@ int main(int argc, char** argv) {
     trajectory.add(flight, {}, flight.duration(), 0.1);
     trajectory.close();
 
-    std::cout << "Flew for " << std::round(flight.duration().seconds()) << " s; the results are in " << line.output.string() << ".\n";
+    std::cout << "Flew for " << std::round(flight.duration().seconds()) << " s; the results are in "
+              << line.output.string() << ".\n";
     print(summary);
   });
 }

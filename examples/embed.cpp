@@ -10,7 +10,8 @@ using namespace pulsecast::literals;
 
 int main() {
   // the scene: a white wall, 8 m wide and 5 m high, 10 m to the north
-  const MeshData wall{.vertices = {{-4, 10, 0}, {4, 10, 0}, {4, 10, 5}, {-4, 10, 5}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const MeshData wall{.vertices = {{-4, 10, 0}, {4, 10, 0}, {4, 10, 5}, {-4, 10, 5}},
+                      .triangles = {{0, 1, 2}, {0, 2, 3}}};
   const auto plaster = material_table({{.name = "plaster", .reflectance = 0.8}});
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(wall), .materials = plaster}});
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Forest of three tree models in one scene, on a terrain raster: a mesh with all leaves; voxels with random transmission by leaf density;
-// voxels of a point cloud of the mesh. An airplane flies over it. Writes cloud.las, cloud.png, and tree.xyz, the point cloud of the third
-// model.
+// Forest of three tree models in one scene, on a terrain raster: a mesh with all leaves; voxels with random
+// transmission by leaf density; voxels of a point cloud of the mesh. An airplane flies over it. Writes cloud.las,
+// cloud.png, and tree.xyz, the point cloud of the third model.
 
 #include <algorithm>
 #include <array>
@@ -55,7 +55,8 @@ Raster terrain(std::uint64_t seed, double side) {
   return raster;
 }
 
-/// Crown without branches: an ellipsoid of leaves, 8 m wide, from 5 m to 17 m above the foot, with fewer leaves towards its centre.
+/// Crown without branches: an ellipsoid of leaves, 8 m wide, from 5 m to 17 m above the foot, with fewer leaves towards
+/// its centre.
 VoxelData crown() {
   constexpr double edge = 0.25, radius = 4, half_height = 6;
   VoxelData voxels{.corner = {-radius, -radius, 5}, .edge = edge};
@@ -81,8 +82,8 @@ void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::p
     const double heading = side * 90_deg;  // towards the tree; the head turns from left of it to right of it
     const Vec3 foot = -15.0 * Vec3(std::sin(heading), std::cos(heading), 0);
     const RotatingHead head{.rate = -40_deg / scanner.duration().seconds(), .start = 20_deg};
-    set_ups.push_back(
-        {Tripod{.position = foot, .heading = heading}, Mount{.lever_arm = {0, 0, 8}}, Deflector{head, Deflector{mirror, scanner}}});
+    set_ups.push_back({Tripod{.position = foot, .heading = heading}, Mount{.lever_arm = {0, 0, 8}},
+                       Deflector{head, Deflector{mirror, scanner}}});
   }
   io::XyzWriter xyz(file);
   run(Survey{Legs{set_ups}, SingleRay{}, alone, Receiver{}, FirstHit{}}, {.threads = threads}, xyz);
@@ -92,11 +93,13 @@ void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::p
 /// Forest of `count` trees, drawn from models of one part or several.
 Forest plant(std::uint64_t seed, std::size_t count, double side, const std::vector<std::vector<Forest::Part>>& models) {
   const auto soil = material_table({{.name = "soil", .reflectance = 0.35, .classification = 2, .ground = true}});
-  std::vector<Forest::Part> parts{{.geometry = std::make_shared<const HeightField>(terrain(seed, side)), .materials = soil}};
+  std::vector<Forest::Part> parts{
+      {.geometry = std::make_shared<const HeightField>(terrain(seed, side)), .materials = soil}};
   wood::Dice dice(seed, 50);
   for (std::size_t tree = 1; tree <= count; ++tree) {
     const Vec2 at{dice.between(-0.49, 0.49) * side, dice.between(-0.49, 0.49) * side};
-    const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
+    const Similarity placement{
+        rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
     const auto model = static_cast<std::size_t>(dice.between(0, static_cast<double>(models.size())));
     for (Forest::Part part : models[model]) {
       part.placement = placement;
@@ -117,7 +120,8 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const auto tree = std::make_shared<const Mesh>(wood::broadleaf({}, wood::Dice(line.seed, 1)));
     scan_tree(tree, line.output / "tree.xyz", line.threads);
-    io::PointCloud cloud = io::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = io::VoxelNormals::fitted});
+    io::PointCloud cloud =
+        io::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = io::VoxelNormals::fitted});
 
     const auto foliage = std::make_shared<const Foliage>(crown(), TransmissiveVoxels{LeafAngles::plagiophile()});
     const auto solid = std::make_shared<const Solid>(std::move(cloud.voxels));
@@ -140,7 +144,8 @@ int main(int argc, char** argv) {
                                            .speed = 60});
     const auto airplane = [&](const StraightLine& strip) {
       const auto pulses = static_cast<PulseIndex>(strip.duration().seconds() * pulse_rate);
-      const Scanner scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = {.peak_power = 1000_W, .divergence = 0.5_mrad}};
+      const Scanner scanner{
+          .pulse_rate = pulse_rate, .pulses = pulses, .laser = {.peak_power = 1000_W, .divergence = 0.5_mrad}};
       return Platform{strip, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                       Deflector{OscillatingMirror{.cycles_per_second = 60_Hz, .half_angle = half_angle}, scanner}};
     };
@@ -149,16 +154,18 @@ int main(int argc, char** argv) {
 
     const Survey survey{Legs{legs}, LatticeFootprint{19}, forest, Receiver{}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
+    io::ImageWriter image(line.output / "cloud.png",
+                          {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
     las.close();
     image.close();
 
     const auto mebibytes = [](std::size_t bytes) { return static_cast<double>(bytes) / 1024 / 1024; };
-    std::cout << std::fixed << std::setprecision(1) << trees << " trees on " << std::round(size.x) << " m by " << std::round(size.y)
-              << " m take " << mebibytes(forest.memory()) << " MiB: the mesh " << mebibytes(tree->memory()) << ", the foliage "
-              << mebibytes(foliage->memory()) << ", the voxels of " << cloud.points << " points " << mebibytes(solid->memory())
-              << ".\nFlew " << strips.size() << " strips; the results are in " << line.output.string() << ".\n";
+    std::cout << std::fixed << std::setprecision(1) << trees << " trees on " << std::round(size.x) << " m by "
+              << std::round(size.y) << " m take " << mebibytes(forest.memory()) << " MiB: the mesh "
+              << mebibytes(tree->memory()) << ", the foliage " << mebibytes(foliage->memory()) << ", the voxels of "
+              << cloud.points << " points " << mebibytes(solid->memory()) << ".\nFlew " << strips.size()
+              << " strips; the results are in " << line.output.string() << ".\n";
     print(summary);
   });
 }

@@ -32,7 +32,8 @@ inline constexpr Vec3 middle{512000, 5403000, 0};  ///< of the square, in coordi
 /// Numbers of the materials in `materials()`.
 enum MaterialIndex : std::uint32_t { meadow, field, water, asphalt, wall, roof };
 
-/// Reflectances at 1550 nm, chosen to stand apart; water sends light back from below only. Classes: ASPRS LAS 1.4 R15, table 17.
+/// Reflectances at 1550 nm, chosen to stand apart; water sends light back from below only. Classes: ASPRS LAS 1.4 R15,
+/// table 17.
 [[nodiscard]] inline std::vector<Material> materials() {
   std::vector<Material> all(6);
   all[meadow] = {.name = "meadow", .reflectance = 0.3, .classification = 3, .ground = true};
@@ -61,7 +62,9 @@ class Terrain {
   explicit Terrain(std::uint64_t seed) noexcept : seed_(seed) {}
 
   /// Where the middle of the river, or of the road, runs from south to north [m].
-  [[nodiscard]] static double river(double y) noexcept { return 75 * std::sin(y / 140) + 30 * std::sin(y / 57 + 1) - 60; }
+  [[nodiscard]] static double river(double y) noexcept {
+    return 75 * std::sin(y / 140) + 30 * std::sin(y / 57 + 1) - 60;
+  }
   [[nodiscard]] static double road(double y) noexcept { return 70 * std::sin(y / 150 - 0.1) + 14; }
 
   /// How far a place is from the middle of the river, or of the road, about [m].
@@ -91,7 +94,8 @@ class Terrain {
       for (std::uint32_t i = 0; i < cells; ++i) {
         const std::uint32_t a = j * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
         for (const auto& triangle : {std::array{a, b, d}, std::array{a, d, c}}) {
-          const Vec3 centre = (mesh.vertices[triangle[0]] + mesh.vertices[triangle[1]] + mesh.vertices[triangle[2]]) / 3.0;
+          const Vec3 centre =
+              (mesh.vertices[triangle[0]] + mesh.vertices[triangle[1]] + mesh.vertices[triangle[2]]) / 3.0;
           mesh.triangles.push_back(triangle);
           mesh.materials.push_back(cover({centre.x, centre.y}));
         }
@@ -109,9 +113,10 @@ class Terrain {
   [[nodiscard]] double valley(const Vec2& at) const noexcept {
     const double far = from_river(at), level = 300 - 0.006 * at.y;  // of the water
     const double bottom = level + 2.2 * smooth_step(8, 14, far) + 0.03 * far;
-    const double hill = 355 + 45 * noise(seed_ + 1, at.x / 260, at.y / 260) + 22 * noise(seed_ + 2, at.x / 110, at.y / 110) +
-                        5 * noise(seed_ + 3, at.x / 40, at.y / 40);
-    return std::lerp(bottom, std::max(hill, bottom), smooth_step(60, 300, far + 25 * noise(seed_ + 7, at.x / 80, at.y / 80)));
+    const double hill = 355 + 45 * noise(seed_ + 1, at.x / 260, at.y / 260) +
+                        22 * noise(seed_ + 2, at.x / 110, at.y / 110) + 5 * noise(seed_ + 3, at.x / 40, at.y / 40);
+    return std::lerp(bottom, std::max(hill, bottom),
+                     smooth_step(60, 300, far + 25 * noise(seed_ + 7, at.x / 80, at.y / 80)));
   }
 
   std::uint64_t seed_;
@@ -133,9 +138,13 @@ inline void add_house(MeshData& mesh, const Vec3& foot, double width, double len
   const auto at = [&](double right, double ahead, double height) { return foot + Vec3{right, ahead, height}; };
   for (const double s : {-1.0, 1.0}) {
     add_face(mesh, {at(s * x, -y, -3), at(s * x, y, -3), at(s * x, y, eaves), at(s * x, -y, eaves)}, wall);
-    add_face(mesh, {at(-x, s * y, -3), at(x, s * y, -3), at(x, s * y, eaves), at(0, s * y, ridge), at(-x, s * y, eaves)}, wall);
+    add_face(mesh,
+             {at(-x, s * y, -3), at(x, s * y, -3), at(x, s * y, eaves), at(0, s * y, ridge), at(-x, s * y, eaves)},
+             wall);
     const double edge = s * (x + beyond), gable = y + beyond;
-    add_face(mesh, {at(edge, -gable, eaves - drop), at(edge, gable, eaves - drop), at(0, gable, ridge), at(0, -gable, ridge)}, roof);
+    add_face(mesh,
+             {at(edge, -gable, eaves - drop), at(edge, gable, eaves - drop), at(0, gable, ridge), at(0, -gable, ridge)},
+             roof);
   }
 }
 
@@ -148,7 +157,9 @@ inline void add_house(MeshData& mesh, const Vec3& foot, double width, double len
 /// A nave, and a tower with a spire to its south.
 [[nodiscard]] inline MeshData church() {
   MeshData mesh = house(11, 24, 9, 17);
-  const auto corner = [](int k, double z) { return Vec3{k % 4 == 0 || k % 4 == 3 ? -3.5 : 3.5, k % 4 < 2 ? -22 : -15, z}; };
+  const auto corner = [](int k, double z) {
+    return Vec3{k % 4 == 0 || k % 4 == 3 ? -3.5 : 3.5, k % 4 < 2 ? -22 : -15, z};
+  };
   for (int k = 0; k < 4; ++k) {
     add_face(mesh, {corner(k, -3), corner(k + 1, -3), corner(k + 1, 26), corner(k, 26)}, wall);
     add_face(mesh, {corner(k, 26), corner(k + 1, 26), {0, -18.5, 45}}, roof);
@@ -162,9 +173,10 @@ using Scene = pulsecast::Scene<Mesh>;
 /// The valley of a seed. The ground is object 0.
 [[nodiscard]] inline Scene scene(std::uint64_t seed) {
   const auto model = [](const MeshData& mesh) { return std::make_shared<const Mesh>(mesh); };
-  const std::array trees{model(broadleaf({}, Dice(seed, 1))),
-                         model(broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.4, .spread = 4.2}, Dice(seed, 2))),
-                         model(conifer({}, Dice(seed, 3))), model(conifer({.height = 27, .girth = 0.3, .spread = 3.4}, Dice(seed, 4)))};
+  const std::array trees{
+      model(broadleaf({}, Dice(seed, 1))),
+      model(broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.4, .spread = 4.2}, Dice(seed, 2))),
+      model(conifer({}, Dice(seed, 3))), model(conifer({.height = 27, .girth = 0.3, .spread = 3.4}, Dice(seed, 4)))};
   const std::array houses{model(house(9, 12, 5.5, 9.5)), model(house(10, 17, 6, 11)), model(house(8, 9, 3, 7))};
 
   const Terrain terrain(seed);
@@ -190,7 +202,8 @@ using Scene = pulsecast::Scene<Mesh>;
   for (double y = -170; y < 210; y += 24)
     for (const double row : {-40.0, -17.0, 17.0, 72.0}) {
       const Vec2 at{Terrain::road(y) + row + dice.between(-5, 5), y + dice.between(-8, 8)};
-      const double along = -std::atan2(Terrain::road(y + 1) - Terrain::road(y - 1), 2.0), turn = along + dice.between(-0.1, 0.1);
+      const double along = -std::atan2(Terrain::road(y + 1) - Terrain::road(y - 1), 2.0),
+                   turn = along + dice.between(-0.1, 0.1);
       const auto& shape = houses[static_cast<std::size_t>(dice.between(0, 2.999))];
       if (dice.between(0, 1) < 0.8) build(shape, at, dice.between(0, 1) < 0.7 ? turn : turn + pulsecast::pi / 2);
     }
@@ -199,10 +212,12 @@ using Scene = pulsecast::Scene<Mesh>;
   for (double y = -side / 2 + apart; y < side / 2 - apart; y += apart)
     for (double x = -side / 2 + apart; x < side / 2 - apart; x += apart) {
       const Vec2 at{x + dice.between(-2.7, 2.7), y + dice.between(-2.7, 2.7)};
-      const double chance = dice.between(0, 1), kind = dice.between(0, 1), turn = dice.between(0, 6.28), scale = dice.between(0.65, 1.15);
+      const double chance = dice.between(0, 1), kind = dice.between(0, 1), turn = dice.between(0, 6.28),
+                   scale = dice.between(0.65, 1.15);
       const double river = Terrain::from_river(at),
                    wooded = noise(seed + 8, at.x / 120, at.y / 120) + 0.3 * noise(seed + 9, at.x / 30, at.y / 30);
-      const bool on_hill = river > 110 && wooded > -0.05 && chance<0.95, on_bank = river> 11 && river < 19 && chance < 0.35;
+      const bool on_hill =
+          river > 110 && wooded > -0.05 && chance<0.95, on_bank = river> 11 && river < 19 && chance < 0.35;
       const bool alone = river > 22 && chance < 0.03;
       const bool free = std::ranges::none_of(taken, [&](const Vec2& other) { return length(other - at) < 14; });
       if (!(on_hill || on_bank || alone) || Terrain::from_road(at) < 8 || !free) continue;

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Light that goes on. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle show what is not where it seems;
-// a drone over a river, whose green light passes the waves down to the bed. Writes street.las, street.png, river.las and river.png.
+// Light that goes on. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle show what is
+// not where it seems; a drone over a river, whose green light passes the waves down to the bed. Writes street.las,
+// street.png, river.las and river.png.
 
 #include <cmath>
 #include <cstdint>
@@ -70,7 +71,8 @@ MeshData car_with_mirrors() {
   for (const double side : {-1.0, 1.0}) {
     const Vec3 middle{side * 1.02, 0.75, 1.02};
     const Vec3 across{0.12, -0.02 * side, 0}, up{0, 0.01, 0.075};
-    street::add_face(mesh, {middle - across - up, middle + across - up, middle + across + up, middle - across + up}, mirror);
+    street::add_face(mesh, {middle - across - up, middle + across - up, middle + across + up, middle - across + up},
+                     mirror);
   }
   return mesh;
 }
@@ -109,15 +111,19 @@ street::Scene scene(std::uint64_t seed, double wavelength) {
 
 void scan(const CommandLine& line, double visibility, double step) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
-  const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(100_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror polygon{.lines_per_second = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
+  const Scanner scanner{
+      .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(100_deg / step * 360_deg / step), .laser = laser};
+  const PolygonMirror polygon{
+      .lines_per_second = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
   const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
   const Vec3 foot = street::on({0.5, -82});
-  const Platform tripod{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{polygon, scanner}}};
+  const Platform tripod{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}},
+                        Deflector{head, Deflector{polygon, scanner}}};
 
   const street::Scene map = scene(line.seed, laser.wavelength);
   const LightPaths light{.least_share = 1e-3, .air = Media({{.medium = fog(visibility, laser.wavelength)}})};
-  const Survey survey{tripod,   LatticeFootprint{7}, map, light, Receiver{}, FullWaveform{{.sample_interval = 1_ns, .threshold = 2e-9}},
+  const Survey survey{tripod,   LatticeFootprint{7}, map,
+                      light,    Receiver{},          FullWaveform{{.sample_interval = 1_ns, .threshold = 2e-9}},
                       line.seed};
   ::scan(survey, line, "street",
          {.azimuth = -34_deg,
@@ -146,7 +152,8 @@ constexpr Vec2 half{45, 60};  ///< of the ground [m]
 MeshData ground(double depth) {
   MeshData mesh;
   const double step = 0.5;
-  const auto columns = static_cast<std::uint32_t>(2 * half.x / step) + 1, rows = static_cast<std::uint32_t>(2 * half.y / step) + 1;
+  const auto columns = static_cast<std::uint32_t>(2 * half.x / step) + 1,
+             rows = static_cast<std::uint32_t>(2 * half.y / step) + 1;
   for (std::uint32_t j = 0; j < rows; ++j)
     for (std::uint32_t i = 0; i < columns; ++i) {
       const Vec2 at{-half.x + step * i, -half.y + step * j};
@@ -166,8 +173,10 @@ using Scene = pulsecast::Scene<TriangleMesh<>, WaterSurface>;
 Scene scene(std::uint64_t seed, double depth, double wind, double wavelength) {
   std::vector<Scene::Part> parts;
   const auto place = [&](auto geometry, const MaterialTable& materials, const Similarity& placement = {}) {
-    parts.push_back(
-        {.geometry = std::move(geometry), .materials = materials, .placement = placement, .object = static_cast<ObjectId>(parts.size())});
+    parts.push_back({.geometry = std::move(geometry),
+                     .materials = materials,
+                     .placement = placement,
+                     .object = static_cast<ObjectId>(parts.size())});
   };
   place(std::make_shared<const TriangleMesh<>>(ground(depth)),
         material_table({{.name = "gravel", .reflectance = 0.2, .classification = 40, .ground = true},
@@ -194,14 +203,19 @@ void scan(const CommandLine& line, double depth, double wind, double pulse_rate)
   const Laser laser{.wavelength = 532_nm, .peak_power = 20e3, .pulse_length = 1.5_ns, .divergence = 1_mrad};
   const MulticopterFlight flight =
       plan_multicopter(std::vector<FlightPoint>{{{0, -36, 60}}, {{0, 36, 60}}}, {.speed = 8, .arrival_heading = 0});
-  const Scanner scanner{
-      .pulse_rate = pulse_rate, .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate), .laser = laser};
+  const Scanner scanner{.pulse_rate = pulse_rate,
+                        .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate),
+                        .laser = laser};
   const Platform drone{flight, Mount{.boresight = extrinsic({{axis::right, -90_deg}})},
                        Deflector{PalmerMirror{.turns_per_second = 40, .half_angle = 20_deg}, scanner}};
   const Scene map = scene(line.seed, depth, wind, laser.wavelength);
   const Survey survey{drone, SingleRay{}, map, LightPaths{}, Receiver{}, FullWaveform{{.threshold = 20e-9}}, line.seed};
   ::scan(survey, line, "river",
-         {.azimuth = 5_deg, .elevation = 7_deg, .field_of_view = 25_deg, .colour_by = io::ColourBy::kind, .point_size = 3});
+         {.azimuth = 5_deg,
+          .elevation = 7_deg,
+          .field_of_view = 25_deg,
+          .colour_by = io::ColourBy::kind,
+          .point_size = 3});
 }
 
 }  // namespace river
@@ -210,7 +224,8 @@ int main(int argc, char** argv) {
   CommandLine line("Scans a foggy street with shop windows and mirrors, and a river with its bed.");
   double visibility = 150, step_deg = 0.15, depth = 3, wind = 3, pulse_rate_kHz = 30;
   line.add_number("--visibility", visibility, 20, 1000, "M", "Visibility in the fog of the street");
-  line.add_number("--resolution", step_deg, 0.02, 5, "DEG", "Angular step between pulses and between lines, in the street");
+  line.add_number("--resolution", step_deg, 0.02, 5, "DEG",
+                  "Angular step between pulses and between lines, in the street");
   line.add_number("--depth", depth, 0.5, 8, "M", "Depth of the river");
   line.add_number("--wind", wind, 0, 15, "M/S", "Speed of the wind over the river");
   line.add_number("--pulse-rate", pulse_rate_kHz, 1, 500, "kHz", "Pulse rate over the river");

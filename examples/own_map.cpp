@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Robot that scans a user-defined map: a struct that answers ray queries, without mesh or scene. Here it is a signed distance function of
-// an underground cistern with columns and vaults; an occupancy grid works as well. Writes own_map.png.
+// Robot that scans a user-defined map: a struct that answers ray queries, without mesh or scene. Here it is a signed
+// distance function of an underground cistern with columns and vaults; an occupancy grid works as well. Writes
+// own_map.png.
 
 #include <array>
 #include <cmath>
@@ -31,13 +32,14 @@ struct Cistern {
     const double x = cell(p.x), y = cell(p.y), across = std::hypot(x, y);
     const double base = std::fmax(std::fmax(std::fabs(x), std::fabs(y)) - 0.45, std::fmax(std::fabs(p.z) - 0.35, -p.z));
     const double shaft = across - 0.3;
-    const double capital =
-        std::fmax(std::fmax(std::fabs(x), std::fabs(y)) - 0.30 - 0.5 * std::fabs(p.z - 2.55), std::fabs(p.z - 2.8) - 0.25);
+    const double capital = std::fmax(std::fmax(std::fabs(x), std::fabs(y)) - 0.30 - 0.5 * std::fabs(p.z - 2.55),
+                                     std::fabs(p.z - 2.8) - 0.25);
     const double above = std::fmax(p.z - springing, 0.0), radius = spacing / 2 - 0.25;
     const double along_x = radius - std::hypot(spacing / 2 - std::fabs(y), above),
                  along_y = radius - std::hypot(spacing / 2 - std::fabs(x), above);
-    const double vaults = p.z > springing ? std::fmax(along_x, along_y)
-                                          : springing + 0.05 - p.z;  // below the springing: lower bound of the distance to the vaults
+    const double vaults =
+        p.z > springing ? std::fmax(along_x, along_y)
+                        : springing + 0.05 - p.z;  // below the springing: lower bound of the distance to the vaults
     const double walls = std::fmin(10 - std::fabs(p.x - 2), 18 - std::fabs(p.y - 14));
     return {p.z, std::fmin(base, std::fmin(shaft, 0.8 * capital)), std::fmin(walls, vaults)};
   }
@@ -83,9 +85,11 @@ int main(int argc, char** argv) {
     };
     const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // set-ups along an aisle
     const Survey survey{stops, SingleRay{}, map, Receiver{}, FirstHit{}};
-    io::ImageWriter image(
-        line.output / "own_map.png",
-        {.azimuth = 0, .elevation = 2_deg, .field_of_view = 80_deg, .eye = Vec3(2, -3, 1.5), .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(line.output / "own_map.png", {.azimuth = 0,
+                                                        .elevation = 2_deg,
+                                                        .field_of_view = 80_deg,
+                                                        .eye = Vec3(2, -3, 1.5),
+                                                        .colour_by = io::ColourBy::classification});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, image));
     image.close();
   });

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Robot that drives down a street with a spinning sensor of 32 beams. Each turn of the sensor is one scan, requested as in a robotics
-// program: pose in; points out, with ring, time offset and intensity. Writes robot.png.
+// Robot that drives down a street with a spinning sensor of 32 beams. Each turn of the sensor is one scan, requested as
+// in a robotics program: pose in; points out, with ring, time offset and intensity. Writes robot.png.
 //
-// Each scan has its own clock. For scenes with moving parts, let the scanner last the whole drive, and run the slots of the scans in order
+// Each scan has its own clock. For scenes with moving parts, let the scanner last the whole drive, and run the slots of
+// the scans in order
 // (`RunOptions::first` and `end`): then time continues from scan to scan.
 
 #include <array>
@@ -26,7 +27,9 @@ using namespace pulsecast::literals;
 
 /// One turn of the sensor: beams that fire together on a rotating head.
 auto spinning_sensor(std::size_t beams, double turns_per_second, PulseIndex columns) {
-  const Scanner scanner{.pulse_rate = turns_per_second * static_cast<double>(columns), .pulses = columns, .laser = {.wavelength = 905_nm}};
+  const Scanner scanner{.pulse_rate = turns_per_second * static_cast<double>(columns),
+                        .pulses = columns,
+                        .laser = {.wavelength = 905_nm}};
   std::vector<Deflector<FixedBeam, Scanner>> emitters;
   for (std::size_t k = 0; k < beams; ++k) {
     const double elevation = std::lerp(-25_deg, 15_deg, static_cast<double>(k) / static_cast<double>(beams - 1));
@@ -40,16 +43,19 @@ struct Drive {
   Vec3 start;    ///< [m]
   double speed;  ///< to the north [m/s]
 
-  Pose<frame::Body, frame::World> at(Tick t) const noexcept { return {no_rotation, start + speed * t.seconds() * axis::forward}; }
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    return {no_rotation, start + speed * t.seconds() * axis::forward};
+  }
 };
 static_assert(Trajectory<Drive>);
 
 /// Scan as columns of numbers, for the robot's program.
 struct Scan {
-  std::vector<std::array<float, 3>> points;  ///< in the frame of the robot at the scan's start: x right, y forward, z up [m]
-  std::vector<std::uint16_t> rings;          ///< beam number, from 0 at the bottom
-  std::vector<float> time_offsets;           ///< since the scan's start [s]
-  std::vector<float> intensities;            ///< 1 for a white surface
+  std::vector<std::array<float, 3>>
+      points;                        ///< in the frame of the robot at the scan's start: x right, y forward, z up [m]
+  std::vector<std::uint16_t> rings;  ///< beam number, from 0 at the bottom
+  std::vector<float> time_offsets;   ///< since the scan's start [s]
+  std::vector<float> intensities;    ///< 1 for a white surface
 
   void clear() {
     points.clear();
@@ -100,7 +106,8 @@ int main(int argc, char** argv) {
       if (n % 10 == 0) run(survey, {.threads = line.threads}, image);  // for the picture
     }
     image.close();
-    std::cout << scans << " scans of " << beams << " beams, " << points / scans << " points each, in " << std::fixed << std::setprecision(2)
-              << spent.count() << " s: " << std::setprecision(0) << static_cast<double>(scans) / spent.count() << " scans per second\n";
+    std::cout << scans << " scans of " << beams << " beams, " << points / scans << " points each, in " << std::fixed
+              << std::setprecision(2) << spent.count() << " s: " << std::setprecision(0)
+              << static_cast<double>(scans) / spent.count() << " scans per second\n";
   });
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Loop of a robot in traffic: physics at 60 Hz, and a VLP-16 that spins on from step to step, ten turns a second. The poses of the cars are
-// known now and not before. Each turn is a scan in the sensor's frame, by which the robot brakes. Writes the last scan to scan.ply.
-// docs/robotics.md explains the loop.
+// Loop of a robot in traffic: physics at 60 Hz, and a VLP-16 that spins on from step to step, ten turns a second. The
+// poses of the cars are known now and not before. Each turn is a scan in the sensor's frame, by which the robot brakes.
+// Writes the last scan to scan.ply. docs/robotics.md explains the loop.
 
 #include <algorithm>
 #include <chrono>
@@ -59,10 +59,11 @@ int main(int argc, char** argv) {
     const Platform platform{traffic::LivePath{&robot}, Mount{.lever_arm = {0, 0, 1.9}}, sensor.source(1e6)};
     const Survey survey{platform, SingleRay{}, world, sensor.receiver(), FirstHit{}, line.seed};
     const auto layout = io::layouts::velodyne();
-    io::PointBuffer scan(layout, {.sensor = [&](Tick t) { return platform.instrument_at(t); },
-                                  .distortion = undistorted ? io::MotionDistortion::removed : io::MotionDistortion::kept,
-                                  .axes = io::PointAxes::forward_left_up,
-                                  .rings = sensor.rings()});
+    io::PointBuffer scan(layout,
+                         {.sensor = [&](Tick t) { return platform.instrument_at(t); },
+                          .distortion = undistorted ? io::MotionDistortion::removed : io::MotionDistortion::kept,
+                          .axes = io::PointAxes::forward_left_up,
+                          .rings = sensor.rings()});
 
     ThreadPool pool(line.threads);
     std::vector<double> step_ms;
@@ -92,7 +93,8 @@ int main(int argc, char** argv) {
     ply.add(scan);
     ply.close();
     std::sort(step_ms.begin() + 60, step_ms.end());  // without the first second
-    std::cout << steps << " steps with " << points / steps << " points each; a step takes " << std::fixed << std::setprecision(2)
-              << step_ms[(60 + steps) / 2] << " ms, the longest after the first second " << step_ms.back() << " ms\n";
+    std::cout << steps << " steps with " << points / steps << " points each; a step takes " << std::fixed
+              << std::setprecision(2) << step_ms[(60 + steps) / 2] << " ms, the longest after the first second "
+              << step_ms.back() << " ms\n";
   });
 }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Scan pattern of each optic on a floor of blue and orange squares, ten metres wide. Writes one picture per optic, seen from above.
+// Scan pattern of each optic on a floor of blue and orange squares, ten metres wide. Writes one picture per optic, seen
+// from above.
 
 #include <cmath>
 #include <cstdint>
@@ -32,7 +33,8 @@ struct PaintedFloor {
     const Vec3 p = ray.origin + range * ray.direction;
     const bool even = std::fmod(std::floor(p.x / 10) + std::floor(p.y / 10), 2) == 0;
     const double cosine = -ray.direction.z;
-    return Hit{.range = range, .cos_incidence = cosine, .backscatter = 0.5 * cosine, .classification = even ? blue : orange};
+    return Hit{
+        .range = range, .cos_incidence = cosine, .backscatter = 0.5 * cosine, .classification = even ? blue : orange};
   }
 };
 static_assert(Target<PaintedFloor>);
@@ -51,11 +53,12 @@ class Picture {
                                                .point_size = 3,
                                                .background = {250, 250, 247}}) {}
 
-  /// Flight to the north at 60 m/s and 100 m height, for the duration of the scanner. The beam points down; the optic's up axis points to
-  /// the right.
+  /// Flight to the north at 60 m/s and 100 m height, for the duration of the scanner. The beam points down; the optic's
+  /// up axis points to the right.
   Picture& flight(double x, const InstrumentSource auto& instrument) {
     const double way = 60 * instrument.duration().seconds();
-    return scan(Platform{StraightLine{.from = {x, -way / 2, 100}, .to = {x, way / 2, 100}, .speed = 60}, looking_down(), instrument});
+    return scan(Platform{StraightLine{.from = {x, -way / 2, 100}, .to = {x, way / 2, 100}, .speed = 60}, looking_down(),
+                         instrument});
   }
 
   /// Fixed position at the same height, looking down.
@@ -71,7 +74,9 @@ class Picture {
   void close() { image_.close(); }
 
  private:
-  static Mount looking_down() { return {.boresight = rotation_about(axis::up, -90_deg) * rotation_about(axis::right, -90_deg)}; }
+  static Mount looking_down() {
+    return {.boresight = rotation_about(axis::up, -90_deg) * rotation_about(axis::right, -90_deg)};
+  }
 
   Picture& scan(const WorldSource auto& device) {
     const PaintedFloor floor;
@@ -106,8 +111,8 @@ void draw_curves(const CommandLine& line) {
   const PalmerMirror flat{.turns_per_second = 12, .half_angle = 18_deg, .half_angle_across = 9_deg};
   Picture(line, "palmer_mirror").flight(-45, Deflector{round, slow}).flight(45, Deflector{flat, slow}).close();
 
-  RisleyPrisms prisms{
-      .prisms = {{.wedge = 18.7_deg, .turns_per_second = -121.6}, {.wedge = 18.0_deg, .turns_per_second = 77.7, .inclined_exit = true}}};
+  RisleyPrisms prisms{.prisms = {{.wedge = 18.7_deg, .turns_per_second = -121.6},
+                                 {.wedge = 18.0_deg, .turns_per_second = 77.7, .inclined_exit = true}}};
   const Scanner fast{.pulse_rate = 100_kHz, .pulses = 12'000};
   Picture rosettes(line, "risley_prisms");
   rosettes.balloon(-45, Deflector{prisms, fast});
@@ -130,7 +135,8 @@ void draw_heads(const CommandLine& line) {
 
   std::vector<Deflector<FixedBeam, Scanner>> beams;  // sixteen beams in turn
   for (int k = 0; k < 16; ++k)
-    beams.emplace_back(FixedBeam{aimed_at(0, radians(-25 + k))}, Scanner{.pulse_rate = 5_kHz, .pulses = 500, .delay = k * 10_us});
+    beams.emplace_back(FixedBeam{aimed_at(0, radians(-25 + k))},
+                       Scanner{.pulse_rate = 5_kHz, .pulses = 500, .delay = k * 10_us});
   const Deflector spinning{RotatingHead{.rate = -10 * 360_deg}, Channels{beams}};
   const Deflector tilted{RotatingHead{.rate = 0, .start = -4_deg, .axis = axis::right}, spinning};
   Picture(line, "channels").tripod(-14, spinning).tripod(20, tilted).close();

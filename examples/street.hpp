@@ -17,8 +17,8 @@
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
-/// Two streets that cross in a small town: houses with windows, parked cars, lamp posts, trees; about 50,000 triangles. One street runs
-/// from south to north, the other from west to east; they cross at the origin.
+/// Two streets that cross in a small town: houses with windows, parked cars, lamp posts, trees; about 50,000 triangles.
+/// One street runs from south to north, the other from west to east; they cross at the origin.
 namespace street {
 
 using pulsecast::Material;
@@ -33,10 +33,24 @@ inline constexpr double kerb = 0.12;      ///< height of the pavement above the 
 inline constexpr Vec2 half_size{62, 92};  ///< from the crossing to the edges of what there is [m]
 
 /// Numbers of the materials in `materials()`.
-enum MaterialIndex : std::uint32_t { asphalt, paving, plaster, brick, tiles, glass, frame, door, paint, rubber, metal, bark, leaf };
+enum MaterialIndex : std::uint32_t {
+  asphalt,
+  paving,
+  plaster,
+  brick,
+  tiles,
+  glass,
+  frame,
+  door,
+  paint,
+  rubber,
+  metal,
+  bark,
+  leaf
+};
 
-/// Reflectances at 905 nm, chosen to stand apart; glass shines only when met head-on. Classes: ASPRS LAS 1.4 R15, table 17; from 64 on
-/// they are its users' own, here for cars and for posts.
+/// Reflectances at 905 nm, chosen to stand apart; glass shines only when met head-on. Classes: ASPRS LAS 1.4 R15, table
+/// 17; from 64 on they are its users' own, here for cars and for posts.
 [[nodiscard]] inline std::vector<Material> materials() {
   using enum pulsecast::Scattering;
   std::vector<Material> all(13);
@@ -45,12 +59,20 @@ enum MaterialIndex : std::uint32_t { asphalt, paving, plaster, brick, tiles, gla
   all[plaster] = {.name = "plaster", .reflectance = 0.65, .classification = 6};
   all[brick] = {.name = "brick", .reflectance = 0.4, .classification = 6};
   all[tiles] = {.name = "tiles", .reflectance = 0.3, .classification = 6};
-  all[glass] = {
-      .name = "glass", .reflectance = 0.2, .scattering = phong, .specular_share = 0.9, .specular_exponent = 60, .classification = 6};
+  all[glass] = {.name = "glass",
+                .reflectance = 0.2,
+                .scattering = phong,
+                .specular_share = 0.9,
+                .specular_exponent = 60,
+                .classification = 6};
   all[frame] = {.name = "frame", .reflectance = 0.75, .classification = 6};
   all[door] = {.name = "door", .reflectance = 0.25, .classification = 6};
-  all[paint] = {
-      .name = "paint", .reflectance = 0.5, .scattering = phong, .specular_share = 0.3, .specular_exponent = 20, .classification = 64};
+  all[paint] = {.name = "paint",
+                .reflectance = 0.5,
+                .scattering = phong,
+                .specular_share = 0.3,
+                .specular_exponent = 20,
+                .classification = 64};
   all[rubber] = {.name = "rubber", .reflectance = 0.06, .classification = 64};
   all[metal] = {.name = "metal", .reflectance = 0.45, .classification = 65};
   all[bark] = {.name = "bark", .reflectance = 0.35, .classification = 5};
@@ -91,7 +113,8 @@ inline void add_face(MeshData& mesh, std::initializer_list<Vec3> corners, Materi
 }
 
 /// A rectangle that stands on its lower edge, along x.
-inline void add_upright(MeshData& mesh, double left, double right, double y, double low, double high, MaterialIndex material) {
+inline void add_upright(MeshData& mesh, double left, double right, double y, double low, double high,
+                        MaterialIndex material) {
   add_face(mesh, {{left, y, low}, {right, y, low}, {right, y, high}, {left, y, high}}, material);
 }
 
@@ -140,8 +163,8 @@ struct House {
   [[nodiscard]] double width() const noexcept { return 2.7 * bays; }  ///< [m]
 };
 
-/// Its front stands on x, and it reaches to y = 9 m. In front it has windows with frames, and a door; its saddle roof has a chimney. It
-/// goes down below the ground, for slopes.
+/// Its front stands on x, and it reaches to y = 9 m. In front it has windows with frames, and a door; its saddle roof
+/// has a chimney. It goes down below the ground, for slopes.
 [[nodiscard]] inline MeshData house(const House& kind) {
   constexpr double bay = 2.7, storey = 3.1, depth = 9, plinth = 0.4, reveal = 0.22;
   const double width = kind.width(), eaves = plinth + storey * kind.storeys;
@@ -152,14 +175,21 @@ struct House {
     for (int k = 0; k < kind.bays; ++k) {
       const bool entry = i == 0 && k == 1;
       const bool wide = kind.shop && i == 0 && !entry;
-      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay, margin = wide ? 0.15 : 0.75;
-      const double l = left + margin, r = right - margin, sill = low + (entry ? 0 : wide ? 0.2 : 0.9), lintel = low + 2.5;
+      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay,
+                   margin = wide ? 0.15 : 0.75;
+      const double l = left + margin, r = right - margin,
+                   sill = low + (entry  ? 0
+                                 : wide ? 0.2
+                                        : 0.9),
+                   lintel = low + 2.5;
       add_upright(mesh, left, l, 0, low, high, kind.wall);
       add_upright(mesh, r, right, 0, low, high, kind.wall);
       add_upright(mesh, l, r, 0, lintel, high, kind.wall);
       if (!entry) add_upright(mesh, l, r, 0, low, sill, kind.wall);
-      for (const double z : {sill, lintel}) add_face(mesh, {{l, 0, z}, {r, 0, z}, {r, reveal, z}, {l, reveal, z}}, kind.wall);
-      for (const double x : {l, r}) add_face(mesh, {{x, 0, sill}, {x, reveal, sill}, {x, reveal, lintel}, {x, 0, lintel}}, kind.wall);
+      for (const double z : {sill, lintel})
+        add_face(mesh, {{l, 0, z}, {r, 0, z}, {r, reveal, z}, {l, reveal, z}}, kind.wall);
+      for (const double x : {l, r})
+        add_face(mesh, {{x, 0, sill}, {x, reveal, sill}, {x, reveal, lintel}, {x, 0, lintel}}, kind.wall);
       add_upright(mesh, l, r, reveal, sill, lintel, entry ? door : glass);
       if (entry || wide) continue;
       const double bars = 0.8 * reveal, middle = (l + r) / 2, cross = sill + 1.05;
@@ -170,7 +200,8 @@ struct House {
   if (kind.shop) {
     constexpr double back = 4;  // of the room behind the windows
     add_upright(mesh, 0, width, back, plinth, plinth + storey, plaster);
-    for (const double z : {plinth, plinth + storey}) add_face(mesh, {{0, 0.3, z}, {width, 0.3, z}, {width, back, z}, {0, back, z}}, paving);
+    for (const double z : {plinth, plinth + storey})
+      add_face(mesh, {{0, 0.3, z}, {width, 0.3, z}, {width, back, z}, {0, back, z}}, paving);
     for (double x = 0.8; x < width; x += 1.3) {  // what it sells: vases on a shelf, and taller ones before it
       add_tube(mesh, {x, 0.8, plinth}, {x, 0.8, plinth + 1.1}, 0.22, 0.1, 12, door);
       add_tube(mesh, {x + 0.5, 2.4, plinth}, {x + 0.5, 2.4, plinth + 1.7}, 0.1, 0.3, 12, brick);
@@ -183,9 +214,13 @@ struct House {
     add_face(mesh, {{x, 0, eaves}, {x, depth, eaves}, {x, depth / 2, ridge}}, kind.wall);
   }
   for (const double eave : {-beyond, depth + beyond})
-    add_face(mesh, {{0, eave, eaves - drop}, {width, eave, eaves - drop}, {width, depth / 2, ridge}, {0, depth / 2, ridge}}, tiles);
+    add_face(mesh,
+             {{0, eave, eaves - drop}, {width, eave, eaves - drop}, {width, depth / 2, ridge}, {0, depth / 2, ridge}},
+             tiles);
   for (int k = 0; k < 4; ++k) {  // chimney
-    const auto corner = [&](int c) { return Vec3{width - 1.4 + (c % 4 == 1 || c % 4 == 2 ? 0.7 : 0), 5 + (c % 4 < 2 ? 0 : 0.7), 0}; };
+    const auto corner = [&](int c) {
+      return Vec3{width - 1.4 + (c % 4 == 1 || c % 4 == 2 ? 0.7 : 0), 5 + (c % 4 < 2 ? 0 : 0.7), 0};
+    };
     const Vec3 low = eaves * pulsecast::axis::up, high = (ridge + 0.9) * pulsecast::axis::up;
     add_face(mesh, {corner(k) + low, corner(k + 1) + low, corner(k + 1) + high, corner(k) + high}, brick);
   }
@@ -211,7 +246,8 @@ struct House {
                                         {2.08, 0.4, 0.5, 0.55}}};
   const auto corners = [](const Ring& r) {
     const double roof = 0.85 - 0.45 * (r.roof - r.belt), end = std::fabs(r.y) > 1.9 ? 0.9 : 1.0;
-    std::array<Vec3, 8> all{{{0.78, 0, r.sill}, {0.86, 0, 0.6 * r.sill + 0.4 * r.belt}, {0.86, 0, r.belt}, {roof, 0, r.roof - 0.04}}};
+    std::array<Vec3, 8> all{
+        {{0.78, 0, r.sill}, {0.86, 0, 0.6 * r.sill + 0.4 * r.belt}, {0.86, 0, r.belt}, {roof, 0, r.roof - 0.04}}};
     for (std::size_t k = 0; k < 4; ++k) all[7 - k] = Vec3{-1, 1, 1} * all[k];
     for (Vec3& c : all) c = {end * c.x, r.y, c.z};
     return all;
@@ -248,12 +284,15 @@ struct House {
   MeshData mesh;
   add_tube(mesh, {0, 0, -0.3}, {0, 0, 2.6}, 0.16, 0.12, 8, bark);
   for (int k = 0; k < 9; ++k) {
-    const double turn = 2.4 * k, reach = dice.between(1, 1.9);  // the golden angle, as in many plants. Source: Vogel 1979
+    const double turn = 2.4 * k,
+                 reach = dice.between(1, 1.9);  // the golden angle, as in many plants. Source: Vogel 1979
     const Vec3 foot{0, 0, 2.2 + 0.05 * k};
-    add_tube(mesh, foot, foot + Vec3{reach * std::cos(turn), reach * std::sin(turn), dice.between(1.2, 3.2)}, 0.06, 0.015, 4, bark);
+    add_tube(mesh, foot, foot + Vec3{reach * std::cos(turn), reach * std::sin(turn), dice.between(1.2, 3.2)}, 0.06,
+             0.015, 4, bark);
   }
   for (int k = 0; k < 420; ++k) {
-    const double turn = 2.4 * k, z = dice.between(-1, 1), out = std::cbrt(dice.between(0.25, 1)), r = std::sqrt(1 - z * z);
+    const double turn = 2.4 * k, z = dice.between(-1, 1), out = std::cbrt(dice.between(0.25, 1)),
+                 r = std::sqrt(1 - z * z);
     const Vec3 at = Vec3{0, 0, 4.6} + out * Vec3{2.1, 2.1, 2.5} * Vec3{r * std::cos(turn), r * std::sin(turn), z};
     const double size = dice.between(0.12, 0.24);
     const Vec3 along{dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 0.2)};
@@ -273,12 +312,15 @@ inline constexpr Houses dwellings{House{3, 2, plaster}, House{4, 3, plaster}, Ho
                                   House{5, 3, plaster}, House{4, 2, brick},   House{3, 4, plaster}};
 
 /// The streets of a seed. The ground is object 0.
-[[nodiscard]] inline std::vector<Scene::Part> parts(std::uint64_t seed, const Houses& kinds, const pulsecast::MaterialTable& table) {
+[[nodiscard]] inline std::vector<Scene::Part> parts(std::uint64_t seed, const Houses& kinds,
+                                                    const pulsecast::MaterialTable& table) {
   const auto model = [](const MeshData& mesh) { return std::make_shared<const Mesh>(mesh); };
   std::vector<Scene::Part> parts;
   const auto place = [&](const std::shared_ptr<const Mesh>& shape, const Vec3& at, double turn) {
-    parts.push_back(
-        {shape, table, {pulsecast::rotation_about(pulsecast::axis::up, turn), 1, at}, static_cast<pulsecast::ObjectId>(parts.size())});
+    parts.push_back({shape,
+                     table,
+                     {pulsecast::rotation_about(pulsecast::axis::up, turn), 1, at},
+                     static_cast<pulsecast::ObjectId>(parts.size())});
   };
   place(model(ground()), {}, 0);
 
@@ -325,6 +367,8 @@ inline constexpr Houses dwellings{House{3, 2, plaster}, House{4, 3, plaster}, Ho
   return parts;
 }
 
-[[nodiscard]] inline Scene scene(std::uint64_t seed) { return Scene(parts(seed, dwellings, pulsecast::material_table(materials()))); }
+[[nodiscard]] inline Scene scene(std::uint64_t seed) {
+  return Scene(parts(seed, dwellings, pulsecast::material_table(materials())));
+}
 
 }  // namespace street

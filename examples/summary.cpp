@@ -16,10 +16,11 @@ void ProgressLine::operator()(const pulsecast::Progress& progress) {
   if (progress.done == 0 || (progress.seconds < next_ && !(last && shown_))) return;
   next_ = progress.seconds + interval_;
   shown_ = true;
-  const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total), rate = done / progress.seconds;
-  std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total << " %  "
-            << std::setprecision(2) << rate / 1e6 << " million pulses/s  " << std::setprecision(0) << (total - done) / rate << " s left   "
-            << (terminal_ && !last ? "" : "\n") << std::flush;
+  const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total),
+               rate = done / progress.seconds;
+  std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total
+            << " %  " << std::setprecision(2) << rate / 1e6 << " million pulses/s  " << std::setprecision(0)
+            << (total - done) / rate << " s left   " << (terminal_ && !last ? "" : "\n") << std::flush;
 }
 
 void print(const pulsecast::RunSummary& run) {
@@ -27,7 +28,8 @@ void print(const pulsecast::RunSummary& run) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto line = [](const char* name, auto value, const char* unit) {
-    std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << value << ' ' << unit << '\n';
+    std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << value << ' ' << unit
+              << '\n';
   };
   std::cout << std::fixed << std::setprecision(2);
   line("pulses", run.pulses(), "");

@@ -68,8 +68,12 @@ static_assert(pulsecast::Trajectory<LivePath>);
 
 /// Scene of cars, one a vehicle, at places of their own.
 [[nodiscard]] inline street::Scene scene_of(const std::vector<Vehicle>& cars) {
-  const street::Scene::Part car{
-      std::make_shared<const street::Mesh>(street::car()), pulsecast::material_table(street::materials()), {}, 0, "car", {}};
+  const street::Scene::Part car{std::make_shared<const street::Mesh>(street::car()),
+                                pulsecast::material_table(street::materials()),
+                                {},
+                                0,
+                                "car",
+                                {}};
   std::vector<street::Scene::Part> parts(cars.size(), car);
   for (std::size_t k = 0; k < parts.size(); ++k) parts[k].object = static_cast<pulsecast::ObjectId>(1000 + k);
   return street::Scene(parts);

@@ -155,12 +155,15 @@ struct Broadleaf {
   MaterialIndex leaves = leaf;
 };
 
-inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Vec3& foot, const Vec3& direction, double reach) {
-  const Axis twig = grow(dice, foot, direction, {.length = reach, .radius = 0.006, .wander = 0.25, .lift = -kind.droop, .steps = 2});
+inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Vec3& foot, const Vec3& direction,
+                     double reach) {
+  const Axis twig =
+      grow(dice, foot, direction, {.length = reach, .radius = 0.006, .wander = 0.25, .lift = -kind.droop, .steps = 2});
   add_tube(mesh, twig, 3, kind.stem);
   for (int k = 0; k < 12; ++k) {
     const double share = dice.between(0.15, 1), fork = dice.between(0.5, 1.2);
-    const Vec3 midrib = normalize(branching(twig.tangent(share), fork, golden_angle * k) + dice.vector(0.3) - 0.3 * pulsecast::axis::up);
+    const Vec3 midrib = normalize(branching(twig.tangent(share), fork, golden_angle * k) + dice.vector(0.3) -
+                                  0.3 * pulsecast::axis::up);
     const Vec3 side = normalize(cross(midrib, pulsecast::axis::up + dice.vector(0.5)));
     const double size = dice.about(kind.leaf_length, 0.3);
     add_leaf(mesh, twig.at(share), size * midrib, 0.3 * size * side, kind.leaves);
@@ -178,19 +181,27 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
   for (int i = 0; i < kind.limbs; ++i) {
     const double up_crown = (i + dice.between(0, 0.9)) / kind.limbs;
     const double share = kind.crown_base + (0.98 - kind.crown_base) * up_crown;
-    const double envelope = std::sqrt(1 - std::pow((up_crown - 0.35) / 0.67, 2));  // an ellipse, widest a third up the crown
+    const double envelope =
+        std::sqrt(1 - std::pow((up_crown - 0.35) / 0.67, 2));  // an ellipse, widest a third up the crown
     const double angle = kind.steepness * (1.25 - 0.6 * up_crown);
     const double reach = dice.about(kind.spread * envelope, 0.15);
     const Axis limb =
         grow(dice, stem.at(share), branching(stem.tangent(share), angle, golden_angle * i + dice.between(-0.4, 0.4)),
-             {.length = reach, .radius = std::min(0.55 * stem.radius(share), 0.028 * reach), .wander = 0.16, .lift = 0.06, .steps = 6});
+             {.length = reach,
+              .radius = std::min(0.55 * stem.radius(share), 0.028 * reach),
+              .wander = 0.16,
+              .lift = 0.06,
+              .steps = 6});
     add_tube(mesh, limb, 6, kind.stem);
     for (int j = 0; j < 9; ++j) {
       const double out = 0.2 + 0.8 * (j + dice.between(0, 1)) / 9;
       const double fork = dice.between(0.5, 1.0), around = golden_angle * j + dice.between(-0.5, 0.5);
-      const Axis bough =
-          grow(dice, limb.at(out), branching(limb.tangent(out), fork, around),
-               {.length = reach * (0.55 - 0.3 * out) + 0.3, .radius = 0.5 * limb.radius(out), .wander = 0.2, .lift = 0.04, .steps = 4});
+      const Axis bough = grow(dice, limb.at(out), branching(limb.tangent(out), fork, around),
+                              {.length = reach * (0.55 - 0.3 * out) + 0.3,
+                               .radius = 0.5 * limb.radius(out),
+                               .wander = 0.2,
+                               .lift = 0.04,
+                               .steps = 4});
       add_tube(mesh, bough, 4, kind.stem);
       for (int k = 0; k < 5; ++k) {
         const double at = k == 4 ? 1.0 : dice.between(0.25, 1);
@@ -225,20 +236,24 @@ struct Conifer {
     const double turn = dice.between(0, 2 * pulsecast::pi);
     for (int b = 0; b < kind.branches; ++b) {
       const double reach = dice.about(kind.spread * (1.02 - up_crown) * (up_crown < 0.1 ? 0.7 : 1), 0.2) + 0.15;
-      const double angle = 1.75 - 0.9 * up_crown + dice.between(-0.15, 0.15);  // from hanging below to rising at the top
+      const double angle =
+          1.75 - 0.9 * up_crown + dice.between(-0.15, 0.15);  // from hanging below to rising at the top
       const Vec3 foot = stem.at(share + dice.between(-0.3, 0.3) * (1 - kind.crown_base) / kind.whorls);
-      const Axis branch =
-          grow(dice, foot, branching(pulsecast::axis::up, angle, turn + 2 * pulsecast::pi * b / kind.branches + dice.between(-0.2, 0.2)),
-               {.length = reach, .radius = 0.012 * reach + 0.004, .wander = 0.05, .lift = 0.07, .steps = 4});
+      const Axis branch = grow(
+          dice, foot,
+          branching(pulsecast::axis::up, angle, turn + 2 * pulsecast::pi * b / kind.branches + dice.between(-0.2, 0.2)),
+          {.length = reach, .radius = 0.012 * reach + 0.004, .wander = 0.05, .lift = 0.07, .steps = 4});
       add_tube(mesh, branch, 4, bark);
       const int sprays = 3 + static_cast<int>(reach * 9);
       for (int k = 0; k < sprays; ++k) {  // to the left and right in turn, and hanging
         const double out = 0.15 + 0.85 * (k + 0.5) / sprays;
-        const Vec3 along = branch.tangent(out), across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
+        const Vec3 along = branch.tangent(out),
+                   across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
         const double size = (0.2 + 0.42 * reach * (1.05 - out)) * dice.between(0.7, 1.1);
         const Vec3 midrib = size * normalize(0.75 * along + across - dice.between(0.25, 0.6) * pulsecast::axis::up);
         for (const double roll : {0.1, 1.4}) {
-          const Vec3 side = normalize(std::cos(roll) * cross(midrib, pulsecast::axis::up) + std::sin(roll) * size * pulsecast::axis::up);
+          const Vec3 side = normalize(std::cos(roll) * cross(midrib, pulsecast::axis::up) +
+                                      std::sin(roll) * size * pulsecast::axis::up);
           add_leaf(mesh, branch.at(out), midrib, (0.03 + 0.05 * size) * side, needle);
         }
       }
@@ -257,7 +272,8 @@ struct Conifer {
     add_tube(mesh, frond, 3, fern);
     for (int k = 0; k < 24; ++k) {
       const double out = 0.15 + 0.85 * k / 24.0;
-      const Vec3 along = frond.tangent(out), across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
+      const Vec3 along = frond.tangent(out),
+                 across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
       const double size = 0.34 * reach * (1.05 - out) + 0.02;
       add_leaf(mesh, frond.at(out), size * normalize(across + 0.5 * along), 0.12 * size * along, fern);
     }

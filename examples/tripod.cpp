@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Scanner on a tripod: scans the mesh files of the command line (OBJ, PLY, glTF, GLB, STL, DAE or FBX), by default a wood, from several
-// set-ups. Writes cloud.las, cloud.png, trajectory.txt, and cloud.xyz on request.
+// Scanner on a tripod: scans the mesh files of the command line (OBJ, PLY, glTF, GLB, STL, DAE or FBX), by default a
+// wood, from several set-ups. Writes cloud.las, cloud.png, trajectory.txt, and cloud.xyz on request.
 
 #include <cmath>
 #include <cstddef>
@@ -27,17 +27,21 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// Scanner: a polygon mirror of four facets sweeps the beam upwards, while the head turns once around. `step` is the angle between pulses
-/// and between lines [rad].
+/// Scanner: a polygon mirror of four facets sweeps the beam upwards, while the head turns once around. `step` is the
+/// angle between pulses and between lines [rad].
 auto set_up(const Vec3& foot, double step) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.35_mrad};
-  const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror mirror{.lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
+  const Scanner scanner{
+      .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
+  const PolygonMirror mirror{
+      .lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
   const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
-  return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{mirror, scanner}}};
+  return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}},
+                  Deflector{head, Deflector{mirror, scanner}}};
 }
 
-/// Scene of mesh files, a part for each node. Formats other than OBJ are read by a child process, as they may come from anywhere.
+/// Scene of mesh files, a part for each node. Formats other than OBJ are read by a child process, as they may come from
+/// anywhere.
 wood::Scene read_scene(const std::vector<std::string>& files, bool y_up) {
   io::MeshFileSettings settings{.isolated = true};
   if (y_up) settings.up = io::UpAxis::y;
@@ -45,7 +49,8 @@ wood::Scene read_scene(const std::vector<std::string>& files, bool y_up) {
   for (const std::string& file : files) {
     io::MeshFile model = io::read_mesh_file(file, settings);
     for (const std::string& warning : model.warnings) std::cerr << "warning: " << warning << '\n';
-    for (wood::Scene::Part& part : io::parts_of(std::move(model), static_cast<ObjectId>(parts.size()))) parts.push_back(std::move(part));
+    for (wood::Scene::Part& part : io::parts_of(std::move(model), static_cast<ObjectId>(parts.size())))
+      parts.push_back(std::move(part));
   }
   return wood::Scene(std::move(parts));
 }
@@ -78,7 +83,8 @@ int main(int argc, char** argv) {
   std::vector<Vec3> positions;
   double step_deg = 0.25;
   bool xyz = false, y_up = false;
-  line.add_files("scene", files, "FILE", "OBJ, PLY, glTF, GLB, STL, DAE or FBX files of the scene; without any, a generated wood");
+  line.add_files("scene", files, "FILE",
+                 "OBJ, PLY, glTF, GLB, STL, DAE or FBX files of the scene; without any, a generated wood");
   line.add_positions("-p,--position", positions, "Position of the tripod [m]; repeatable for further set-ups");
   line.add_number("-r,--resolution", step_deg, 0.005, 10, "DEG", "Angular step between pulses and between lines");
   line.add_flag("--y-up", y_up, "Vertical axis of the files is y; by default z, or as the file says");
@@ -98,17 +104,20 @@ int main(int argc, char** argv) {
     const auto write_text = [&](const EchoBatch& batch) {
       if (text) (*text)(batch);
     };
-    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image, write_text);
+    const RunSummary summary =
+        run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image, write_text);
 
     las.close();
     image.close();
     if (text) text->close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     const auto& legs = survey.source();
-    for (std::size_t k = 0; k < set_ups.size(); ++k) trajectory.add(set_ups[k].trajectory(), legs.start(k), set_ups[k].duration(), 1);
+    for (std::size_t k = 0; k < set_ups.size(); ++k)
+      trajectory.add(set_ups[k].trajectory(), legs.start(k), set_ups[k].duration(), 1);
     trajectory.close();
 
-    std::cout << "Scanned from " << positions.size() << " set-ups; the results are in " << line.output.string() << ".\n";
+    std::cout << "Scanned from " << positions.size() << " set-ups; the results are in " << line.output.string()
+              << ".\n";
     print(summary);
   });
 }

@@ -33,9 +33,10 @@ inline constexpr std::array<Vec2, 3> bare_places{{{-1.6, -1.5}, {-10.2, -11}, {1
   return at.y < hut_place.y ? length(at - nearest) : length(at - hut_place);
 }
 
-/// Reflectances at 1550 nm. Stems are about twice as bright as leaves at this wavelength, as water in the leaves absorbs it.
-/// Source: Li et al. 2013, "Separating leaves from trunks and branches with dual-wavelength terrestrial lidar scanning"; all else is
-/// chosen to stand apart. Classes: ASPRS LAS 1.4 R15, table 17; 64 is the first that it leaves to its users, here for wood.
+/// Reflectances at 1550 nm. Stems are about twice as bright as leaves at this wavelength, as water in the leaves
+/// absorbs it. Source: Li et al. 2013, "Separating leaves from trunks and branches with dual-wavelength terrestrial
+/// lidar scanning"; all else is chosen to stand apart. Classes: ASPRS LAS 1.4 R15, table 17; 64 is the first that it
+/// leaves to its users, here for wood.
 [[nodiscard]] inline std::vector<Material> materials() {
   std::vector<Material> all(10);
   all[soil] = {.name = "soil", .reflectance = 0.35, .classification = 2, .ground = true};
@@ -61,7 +62,8 @@ inline constexpr std::array<Vec2, 3> bare_places{{{-1.6, -1.5}, {-10.2, -11}, {1
     return 2 * pulsecast::uniform({seed, (std::uint64_t{column} << 32) | row, 0, pulsecast::Purpose::scene}) - 1;
   };
   const auto fade = [](double t) { return t * t * t * (t * (6 * t - 15) + 10); };
-  return std::lerp(std::lerp(value(0, 0), value(1, 0), fade(x - left)), std::lerp(value(0, 1), value(1, 1), fade(x - left)), fade(y - low));
+  return std::lerp(std::lerp(value(0, 0), value(1, 0), fade(x - left)),
+                   std::lerp(value(0, 1), value(1, 1), fade(x - left)), fade(y - low));
 }
 
 /// The height of the ground: noise of ever smaller bumps, level around the hut [m].
@@ -133,7 +135,9 @@ class Terrain {
 [[nodiscard]] inline MeshData hut() {
   constexpr double width = 5, depth = 4, log = 0.22, eaves = 11 * log, ridge = eaves + 1.7;
   MeshData mesh;
-  const auto beam = [&](const Vec3& from, const Vec3& to, double radius) { add_tube(mesh, {{from, to}, {radius, radius}}, 8, timber); };
+  const auto beam = [&](const Vec3& from, const Vec3& to, double radius) {
+    add_tube(mesh, {{from, to}, {radius, radius}}, 8, timber);
+  };
   const auto board = [&](const Vec3& corner, const Vec3& along, const Vec3& across, MaterialIndex material) {
     add_triangle(mesh, corner, corner + along, corner + along + across, material);
     add_triangle(mesh, corner, corner + along + across, corner + across, material);
@@ -156,7 +160,8 @@ class Terrain {
     }
     constexpr int courses = 14;
     for (int k = 0; k < courses; ++k) {  // each course of shingles lies upon the one below
-      const double low = slope_run * (1 - static_cast<double>(k) / courses), high = slope_run * (1 - (k + 1.0) / courses);
+      const double low = slope_run * (1 - static_cast<double>(k) / courses),
+                   high = slope_run * (1 - (k + 1.0) / courses);
       const Vec3 corner{-width / 2 - 0.6, face * low, ridge + 0.12 - low * rise + 0.05};
       board(corner, {width + 1.2, 0, 0}, {0, face * (high - low), (low - high) * rise - 0.05}, shingle);
       board(corner, {width + 1.2, 0, 0}, {0, 0, -0.05}, shingle);
@@ -177,22 +182,25 @@ class Planting {
  public:
   Planting(std::uint64_t seed, const Terrain& terrain) : seed_(seed), terrain_(terrain) {}
 
-  void place(std::shared_ptr<const Mesh> model, const Vec2& at, const Rotation& rotation, double scale = 1, double sink = 0) {
+  void place(std::shared_ptr<const Mesh> model, const Vec2& at, const Rotation& rotation, double scale = 1,
+             double sink = 0) {
     parts_.push_back({model,
                       materials_,
                       {rotation, scale, terrain_.on(at) - sink * pulsecast::axis::up},
                       static_cast<pulsecast::ObjectId>(parts_.size())});
   }
 
-  /// Tries random places that are `apart` from each other [m] and where `free(place)` allows it; `choose(place, chance)` gives the model.
+  /// Tries random places that are `apart` from each other [m] and where `free(place)` allows it; `choose(place,
+  /// chance)` gives the model.
   void scatter(std::uint32_t stream, int tries, double apart, double sink, auto&& free, auto&& choose) {
     Dice dice(seed_, stream);
     std::vector<Vec2> taken;
     for (int i = 0; i < tries; ++i) {
       const Vec2 at{dice.between(-side / 2 + 1, side / 2 - 1), dice.between(-side / 2 + 1, side / 2 - 1)};
-      const double turn = dice.between(0, 2 * pulsecast::pi), lean = dice.between(0, 0.05), scale = dice.between(0.72, 1.15),
-                   chance = dice.between(0, 1);
-      if (std::ranges::any_of(taken, [&](const Vec2& other) { return length(other - at) < apart; }) || !free(at)) continue;
+      const double turn = dice.between(0, 2 * pulsecast::pi), lean = dice.between(0, 0.05),
+                   scale = dice.between(0.72, 1.15), chance = dice.between(0, 1);
+      if (std::ranges::any_of(taken, [&](const Vec2& other) { return length(other - at) < apart; }) || !free(at))
+        continue;
       taken.push_back(at);
       const Rotation leaning = pulsecast::rotation_about({std::cos(turn), std::sin(turn), 0}, lean);
       place(choose(at, chance), at, leaning * pulsecast::rotation_about(pulsecast::axis::up, 3 * turn), scale, sink);
@@ -220,7 +228,8 @@ class Planting {
 [[nodiscard]] inline Scene scene(std::uint64_t seed) {
   const auto model = [](const MeshData& mesh) { return std::make_shared<const Mesh>(mesh); };
   const auto oak = model(broadleaf({}, Dice(seed, 1)));
-  const auto beech = model(broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.42, .spread = 3.8, .steepness = 0.75}, Dice(seed, 2)));
+  const auto beech = model(
+      broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.42, .spread = 3.8, .steepness = 0.75}, Dice(seed, 2)));
   const auto birch = model(broadleaf({.height = 16,
                                       .girth = 0.13,
                                       .crown_base = 0.35,
@@ -233,9 +242,10 @@ class Planting {
                                       .leaves = birch_leaf},
                                      Dice(seed, 3)));
   const auto spruce = model(conifer({}, Dice(seed, 4)));
-  const auto fir = model(conifer({.height = 27, .girth = 0.3, .crown_base = 0.3, .spread = 2.7, .whorls = 40}, Dice(seed, 5)));
-  const auto sapling =
-      model(conifer({.height = 9, .girth = 0.11, .crown_base = 0.04, .spread = 2.1, .whorls = 30, .branches = 8}, Dice(seed, 6)));
+  const auto fir =
+      model(conifer({.height = 27, .girth = 0.3, .crown_base = 0.3, .spread = 2.7, .whorls = 40}, Dice(seed, 5)));
+  const auto sapling = model(conifer(
+      {.height = 9, .girth = 0.11, .crown_base = 0.04, .spread = 2.1, .whorls = 30, .branches = 8}, Dice(seed, 6)));
   const auto ferns = model(fern_plant(Dice(seed, 7)));
   const auto boulder = model(rock(seed + 11));
 
@@ -263,11 +273,15 @@ class Planting {
       });
   planting.scatter(
       31, 1500, 0.9, 0.02,
-      [&](const Vec2& at) { return clear(at, 4.5, 1.3) && from_path(at) > 1.1 && noise(seed + 21, at.x / 6, at.y / 6) > 0.1; },
+      [&](const Vec2& at) {
+        return clear(at, 4.5, 1.3) && from_path(at) > 1.1 && noise(seed + 21, at.x / 6, at.y / 6) > 0.1;
+      },
       [&](const Vec2&, double) { return ferns; });
   planting.scatter(
       32, 120, 1.5, 0.15,
-      [&](const Vec2& at) { return clear(at, 4.5, 2) && from_path(at) > 1.6 && noise(seed + 22, at.x / 9, at.y / 9) > 0.3; },
+      [&](const Vec2& at) {
+        return clear(at, 4.5, 2) && from_path(at) > 1.6 && noise(seed + 22, at.x / 9, at.y / 9) > 0.3;
+      },
       [&](const Vec2&, double) { return boulder; });
   return std::move(planting).scene();
 }

@@ -13,11 +13,23 @@ using namespace pulsecast;
 static_assert(EchoSink<Cloud&>);
 
 TEST_CASE("a cloud keeps every echo of every batch, with its point, pulse and tick") {
-  const std::vector<Echo> echoes{{.range = 10, .object = 1}, {.range = 20, .object = 2, .number = 2}, {.range = 30, .object = 3}};
-  const std::vector<Shot> shots{
-      {.index = 4, .tick = {1, 0.5}, .origin = {0, 0, 100}, .direction = -axis::up, .fate = Fate::returned, .first_echo = 0, .echoes = 2},
-      {.index = 5, .direction = -axis::up, .first_echo = 2},
-      {.index = 6, .tick = {2, 0}, .origin = {1, 0, 0}, .direction = axis::forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1}};
+  const std::vector<Echo> echoes{
+      {.range = 10, .object = 1}, {.range = 20, .object = 2, .number = 2}, {.range = 30, .object = 3}};
+  const std::vector<Shot> shots{{.index = 4,
+                                 .tick = {1, 0.5},
+                                 .origin = {0, 0, 100},
+                                 .direction = -axis::up,
+                                 .fate = Fate::returned,
+                                 .first_echo = 0,
+                                 .echoes = 2},
+                                {.index = 5, .direction = -axis::up, .first_echo = 2},
+                                {.index = 6,
+                                 .tick = {2, 0},
+                                 .origin = {1, 0, 0},
+                                 .direction = axis::forward,
+                                 .fate = Fate::returned,
+                                 .first_echo = 2,
+                                 .echoes = 1}};
   Cloud cloud;
   CHECK(cloud.size() == 0);
   const EchoBatch batch{shots, echoes, {}, 0};

@@ -20,11 +20,13 @@ using namespace pulsecast::support;
 // Every concept accepts its least model, and refuses what misses it by one thing.
 namespace {
 
-// ---------------------------------------------------------------------------------------------------------------- motions
+// ----------------------------------------------------------------------------------------------------------------
+// motions
 
 static_assert(Optic<LeastOptic> && Head<LeastHead> && Trajectory<LeastTrajectory>);
 static_assert(Motion<LeastOptic, frame::Beam, frame::Instrument>);
-static_assert(!Head<LeastOptic> && !Trajectory<LeastOptic> && !Optic<LeastHead> && !Optic<LeastTrajectory>, "the frames are others");
+static_assert(!Head<LeastOptic> && !Trajectory<LeastOptic> && !Optic<LeastHead> && !Optic<LeastTrajectory>,
+              "the frames are others");
 static_assert(!Motion<LeastOptic, frame::Instrument, frame::Beam>, "the frames are the wrong way round");
 
 struct MayThrow {
@@ -82,7 +84,8 @@ struct HowOpen : LeastOptic {
 };
 static_assert(!Gated<HowOpen>, "open() returns how far, not whether");
 
-// ----------------------------------------------------------------------------------------------------------------- ground
+// -----------------------------------------------------------------------------------------------------------------
+// ground
 
 struct Level {
   double operator()(Vec2) const { return 0; }
@@ -99,7 +102,8 @@ struct LevelOfPoint {
 };
 static_assert(!Ground<LevelOfPoint>, "it wants to know the height");
 
-// ------------------------------------------------------------------------------------------------------------ echo widths
+// ------------------------------------------------------------------------------------------------------------ echo
+// widths
 
 struct AlwaysWide {
   double width(std::span<const double>, double) const noexcept { return 1; }
@@ -111,11 +115,13 @@ struct WidthMayThrow {
 };
 static_assert(!EchoWidth<WidthMayThrow>, "width() is not noexcept");
 
-// ---------------------------------------------------------------------------------------------------------- pulse sources
+// ---------------------------------------------------------------------------------------------------------- pulse
+// sources
 
 static_assert(BeamSource<LeastSource<frame::Beam>> && InstrumentSource<LeastSource<frame::Instrument>>);
 static_assert(WorldSource<LeastSource<frame::World>>);
-static_assert(!InstrumentSource<LeastSource<frame::Beam>> && !WorldSource<LeastSource<frame::Instrument>>, "the frame is another");
+static_assert(!InstrumentSource<LeastSource<frame::Beam>> && !WorldSource<LeastSource<frame::Instrument>>,
+              "the frame is another");
 static_assert(!BeamSource<LeastSource<frame::World>> && !WorldSource<LeastSource<frame::Body>>, "the frame is another");
 
 struct Sizeless : LeastSource<frame::Beam> {
@@ -173,7 +179,8 @@ struct LasersAlone : LeastSource<frame::Beam> {
 };
 static_assert(!BeamSource<LasersAlone>, "a list of lasers is no table of emitters");
 
-// -------------------------------------------------------------------------------------------------------------- the scene
+// -------------------------------------------------------------------------------------------------------------- the
+// scene
 
 static_assert(Accelerator<LeastAccelerator>);
 
@@ -284,7 +291,8 @@ struct AlwaysHits {
 };
 static_assert(!Target<AlwaysHits>, "closest_hit() cannot say that nothing was met");
 
-// ----------------------------------------------------------------------------------------------------------- the detector
+// ----------------------------------------------------------------------------------------------------------- the
+// detector
 
 static_assert(Footprint<LeastFootprint>);
 

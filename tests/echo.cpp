@@ -29,9 +29,10 @@ TEST_CASE("an echo stands on the axis of its shot") {
 TEST_CASE("a batch hands out the echoes and samples of each shot") {
   const std::vector<Echo> echoes{{.range = 1}, {.range = 2}, {.range = 3}};
   const std::vector<float> samples{0.5F, 0.25F};
-  const std::vector<Shot> shots{{.fate = Fate::returned, .first_echo = 0, .echoes = 1},
-                                {.fate = Fate::missed, .first_echo = 1},
-                                {.fate = Fate::returned, .first_echo = 1, .echoes = 2, .first_sample = 0, .samples = 2}};
+  const std::vector<Shot> shots{
+      {.fate = Fate::returned, .first_echo = 0, .echoes = 1},
+      {.fate = Fate::missed, .first_echo = 1},
+      {.fate = Fate::returned, .first_echo = 1, .echoes = 2, .first_sample = 0, .samples = 2}};
   const EchoBatch batch{shots, echoes, samples, 1e-9};
   CHECK(batch.subrays_of(1).empty());
   REQUIRE(batch.echoes_of(shots[0]).size() == 1);
@@ -56,7 +57,8 @@ TEST_CASE("a batch hands out the subrays of each shot, as many for each") {
 }
 
 TEST_CASE("ledgers are added and scaled term by term") {
-  const EnergyLedger one{.sent = 10, .missed = 1, .out_of_range = 2, .absorbed = 1.5, .scattered = 4, .cut = 1.5, .received = 0.5};
+  const EnergyLedger one{
+      .sent = 10, .missed = 1, .out_of_range = 2, .absorbed = 1.5, .scattered = 4, .cut = 1.5, .received = 0.5};
   EnergyLedger sum = one;
   sum.add(one.times(3));
   CHECK(sum == one.times(4));

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 //
-// Mistakes of unit, which a compiler cannot see: the first message says what to do. tests/compile_fail/mistakes.cpp has those that it sees.
+// Mistakes of unit, which a compiler cannot see: the first message says what to do. tests/compile_fail/mistakes.cpp has
+// those that it sees.
 #include <functional>
 #include <limits>
 #include <string>
@@ -91,8 +92,10 @@ TEST_CASE("all angles of the core are asked for degrees beyond a turn") {
          BlockFlight{.area = {{0, 0, 0}, {1, 1, 1}}, .heading = a}.validate();
        },
        turn},
-      {"MulticopterSettings::departure_heading", [](double a) { MulticopterSettings{.departure_heading = a}.validate(); }, turn},
-      {"MulticopterSettings::arrival_heading", [](double a) { MulticopterSettings{.arrival_heading = a}.validate(); }, turn},
+      {"MulticopterSettings::departure_heading",
+       [](double a) { MulticopterSettings{.departure_heading = a}.validate(); }, turn},
+      {"MulticopterSettings::arrival_heading", [](double a) { MulticopterSettings{.arrival_heading = a}.validate(); },
+       turn},
       {"MulticopterSettings::bank_max", [](double a) { MulticopterSettings{.bank_max = a}.validate(); }, 1.5},
       {"PoseErrors::attitude_noise", [](double a) { PoseErrors{.attitude_noise = a}.validate(); }, turn},
       {"PoseErrors::attitude_drift", [](double a) { PoseErrors{.attitude_drift = a}.validate(); }, turn},

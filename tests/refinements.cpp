@@ -105,7 +105,8 @@ MISSPELT(DrawsByLeg, set_leg, void set_leg(std::uint32_t));
 MISSPELT(DrawsByLeg, nothing, void draw_for_leg());
 MISSPELT(PrefetchesPrimitives, soon, void soon(std::span<const PrimitiveIndex>) const noexcept);
 MISSPELT(PrefetchesPrimitives, pre_fetch, void pre_fetch(std::span<const PrimitiveIndex>) const noexcept);
-MISSPELT(PrefetchesPrimitives, prefetch_primitives, void prefetch_primitives(std::span<const PrimitiveIndex>) const noexcept);
+MISSPELT(PrefetchesPrimitives, prefetch_primitives,
+         void prefetch_primitives(std::span<const PrimitiveIndex>) const noexcept);
 MISSPELT(PrefetchesPrimitives, announce, void announce(std::span<const PrimitiveIndex>) const noexcept);
 MISSPELT(PrefetchesPrimitives, index, void prefetch(const PrimitiveIndex*) const noexcept);
 MISSPELT(FlatConstant, is_flat, static constexpr bool is_flat = true);
@@ -145,10 +146,13 @@ MISSPELT(VelocityConstant, reads_velocities, static constexpr bool reads_velocit
 MISSPELT(VelocityConstant, uses_velocity, static constexpr bool uses_velocity = true);
 MISSPELT(VelocityConstant, with_velocity, static constexpr bool with_velocity = true);
 MISSPELT(VelocityConstant, variable, bool reads_velocity = true);
-MISSPELT(MeasuresBeam, measured_beam, Pose<frame::Beam, frame::Instrument> measured_beam(PulseIndex, Tick) const noexcept);
-MISSPELT(MeasuresBeam, measured_pose, Pose<frame::Beam, frame::Instrument> measured_pose(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, measured_beam,
+         Pose<frame::Beam, frame::Instrument> measured_beam(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, measured_pose,
+         Pose<frame::Beam, frame::Instrument> measured_pose(PulseIndex, Tick) const noexcept);
 MISSPELT(MeasuresBeam, reported, Pose<frame::Beam, frame::Instrument> reported(PulseIndex, Tick) const noexcept);
-MISSPELT(MeasuresBeam, reported_beam, Pose<frame::Beam, frame::Instrument> reported_beam(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, reported_beam,
+         Pose<frame::Beam, frame::Instrument> reported_beam(PulseIndex, Tick) const noexcept);
 MISSPELT(MeasuresBeam, always, Pose<frame::Beam, frame::Instrument> measured(PulseIndex, Tick) const noexcept);
 MISSPELT(MomentWidthMeasure, moment_width, double moment_width(const WaveformMoments&) const noexcept);
 MISSPELT(MomentWidthMeasure, width_by_moments, double width_by_moments(const WaveformMoments&) const noexcept);
@@ -188,12 +192,16 @@ struct Memory {};
 using NextSlot = PulseIndex (&)(const Outcome&);
 MISSPELT(SimulatesInOrder, simulates_in_order, Memory workspace() const;
          void simulates_in_order(PulseIndex, PulseIndex, Memory&, NextSlot) const);
-MISSPELT(SimulatesInOrder, simulate_slots, Memory workspace() const; void simulate_slots(PulseIndex, PulseIndex, Memory&, NextSlot) const);
-MISSPELT(SimulatesInOrder, simulate_all, Memory workspace() const; void simulate_all(PulseIndex, PulseIndex, Memory&, NextSlot) const);
+MISSPELT(SimulatesInOrder, simulate_slots, Memory workspace() const;
+         void simulate_slots(PulseIndex, PulseIndex, Memory&, NextSlot) const);
+MISSPELT(SimulatesInOrder, simulate_all, Memory workspace() const;
+         void simulate_all(PulseIndex, PulseIndex, Memory&, NextSlot) const);
 MISSPELT(SimulatesInOrder, outcomes_in_order, Memory workspace() const;
          void outcomes_in_order(PulseIndex, PulseIndex, Memory&, NextSlot) const);
-MISSPELT(SimulatesInOrder, changing, Memory workspace() const; void simulate_in_order(PulseIndex, PulseIndex, Memory&, NextSlot));
-MISSPELT(SimulatesInOrder, result, Memory workspace() const; bool simulate_in_order(PulseIndex, PulseIndex, Memory&, NextSlot) const);
+MISSPELT(SimulatesInOrder, changing, Memory workspace() const;
+         void simulate_in_order(PulseIndex, PulseIndex, Memory&, NextSlot));
+MISSPELT(SimulatesInOrder, result, Memory workspace() const;
+         bool simulate_in_order(PulseIndex, PulseIndex, Memory&, NextSlot) const);
 MISSPELT(IdentifiedSurvey, get_identity, std::shared_ptr<const void> get_identity() const noexcept);
 MISSPELT(IdentifiedSurvey, identify, std::shared_ptr<const void> identify() const noexcept);
 MISSPELT(IdentifiedSurvey, identifier, std::uint64_t identifier() const noexcept);
@@ -225,8 +233,10 @@ TEST_CASE("every stage passes over blocked slots, and over no other") {
     Generator any(seed);
     const auto deflected = [&] {
       const double low = any.uniform(-pi / 3, pi / 3);
-      return Deflector{RotatingHead{}, Deflector{PolygonMirror{.sweep = pi / 3, .angle_min = low, .angle_max = any.uniform(low, pi / 2)},
-                                                 Scanner{.pulses = 20'000}}};
+      return Deflector{
+          RotatingHead{},
+          Deflector{PolygonMirror{.sweep = pi / 3, .angle_min = low, .angle_max = any.uniform(low, pi / 2)},
+                    Scanner{.pulses = 20'000}}};
     };
     using Mirror = decltype(deflected());
     using Fixed = Deflector<FixedBeam, Scanner>;
@@ -247,7 +257,9 @@ TEST_CASE("every stage passes over blocked slots, and over no other") {
       if (!open && i < legs.size()) i = legs.next_pulse(i);
     }
     CHECK(found == pulses);
-    CHECK(visits < 2 * pulses + legs.size() / 50);  // of channels that open at different times, a blocked slot may follow each pulse
+    CHECK(visits <
+          2 * pulses +
+              legs.size() / 50);  // of channels that open at different times, a blocked slot may follow each pulse
   }
 }
 

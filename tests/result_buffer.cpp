@@ -44,7 +44,8 @@ TEST_CASE("results of slots are kept in order, and counted by fate") {
 }
 
 TEST_CASE("totals of two runs add up") {
-  RunSummary a{.slots = 3, .echoes = 2, .rays = 5, .seconds = 1}, b{.slots = 4, .echoes = 1, .rays = 6, .seconds = 2, .complete = false};
+  RunSummary a{.slots = 3, .echoes = 2, .rays = 5, .seconds = 1},
+      b{.slots = 4, .echoes = 1, .rays = 6, .seconds = 2, .complete = false};
   a.fates[static_cast<std::size_t>(Fate::blocked)] = 1;
   b.fates[static_cast<std::size_t>(Fate::blocked)] = 2;
   a.add(b);

@@ -51,7 +51,8 @@ struct Steps {
       const double x = ray.origin.x + range * ray.direction.x;
       if (height > 0 && x > 0) continue;
       const double cosine = std::fabs(ray.direction.z);
-      if (!nearest || range < nearest->range) nearest = Hit{range, cosine, 0.5 * cosine, static_cast<ObjectId>(height), 2};
+      if (!nearest || range < nearest->range)
+        nearest = Hit{range, cosine, 0.5 * cosine, static_cast<ObjectId>(height), 2};
     }
     return nearest;
   }
@@ -62,9 +63,10 @@ constexpr PulseIndex pulses_per_leg = 7000;
 /// Two set-ups whose mirrors look up half of the time, and are closed for a part of it.
 auto two_legs() {
   const auto leg = [](double x, double heading) {
-    return Platform{Tripod{.position = {x, 0, 10}, .heading = heading}, Mount{},
-                    Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 170_deg, .angle_min = -160_deg, .angle_max = 80_deg},
-                              Scanner{.pulse_rate = 10_kHz, .pulses = pulses_per_leg, .laser = {.divergence = 3_mrad}}}};
+    return Platform{
+        Tripod{.position = {x, 0, 10}, .heading = heading}, Mount{},
+        Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 170_deg, .angle_min = -160_deg, .angle_max = 80_deg},
+                  Scanner{.pulse_rate = 10_kHz, .pulses = pulses_per_leg, .laser = {.divergence = 3_mrad}}}};
   };
   return Legs(std::vector{leg(-20, 90_deg), leg(20, -80_deg)});
 }
@@ -120,11 +122,14 @@ TEST_CASE("a run gives the same to the last bit on 1, 2, 3 and 7 threads, in pul
   }
 }
 
-TEST_CASE("a run with every error switched on gives the same to the last bit on 1, 2 and 7 threads, and with an other seed not") {
+TEST_CASE(
+    "a run with every error switched on gives the same to the last bit on 1, 2 and 7 threads, and with an other seed "
+    "not") {
   const auto survey = [](std::uint64_t seed) {
-    const Platform flight{
-        StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60}, Mount{.boresight = rotation_about(axis::right, -90_deg)},
-        Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 40_deg}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}}};
+    const Platform flight{StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60},
+                          Mount{.boresight = rotation_about(axis::right, -90_deg)},
+                          Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 40_deg},
+                                    Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}}};
     const PoseErrors errors{.position_noise = 2_cm,
                             .attitude_noise = 0.1_mrad,
                             .position_drift = 5_cm,
@@ -134,7 +139,8 @@ TEST_CASE("a run with every error switched on gives the same to the last bit on 
                             .lever_arm_error = {0.01, 0, 0},
                             .boresight_error = rotation_about(axis::up, 0.3_mrad),
                             .seed = seed};
-    const Receiver receiver{.range_errors = {.bias = 1_cm, .deviation = 5_mm, .deviation_per_metre = 1e-5, .grows_with_incidence = true}};
+    const Receiver receiver{
+        .range_errors = {.bias = 1_cm, .deviation = 5_mm, .deviation_per_metre = 1e-5, .grows_with_incidence = true}};
     return Survey{Legs{std::vector{WithPoseErrors{flight, errors}}}, RingFootprint{}, steps, receiver, waveforms, seed};
   };
   std::string first;
@@ -201,7 +207,8 @@ static_assert(WorldSource<Drips> && SkipsBlocked<Drips>);
 TEST_CASE("a run counts the blocked slots that a survey passes over, and visits few of them") {
   std::atomic<PulseIndex> visits = 0;
   const Survey survey{Drips{{.pulses = 1'000'500}, &visits}, SingleRay{}, steps, Receiver{}, FirstHit{}};
-  for (const RunOptions& options : {RunOptions{}, RunOptions{.first = 777, .end = 900'001, .stride = 7}, RunOptions{.stride = 5000}}) {
+  for (const RunOptions& options :
+       {RunOptions{}, RunOptions{.first = 777, .end = 900'001, .stride = 7}, RunOptions{.stride = 5000}}) {
     CAPTURE(options.stride);
     visits = 0;
     PulseIndex shots = 0;
@@ -289,8 +296,9 @@ TEST_CASE("a run hands on the subrays of a footprint that is recorded, in batche
 
 TEST_CASE("a run of nothing is complete") {
   const auto survey = small_survey();
-  for (const RunOptions& options : {RunOptions{.threads = 2, .first = 5, .end = 5}, RunOptions{.threads = 2, .first = survey.size()},
-                                    RunOptions{.threads = 2, .first = 10, .end = 5}}) {
+  for (const RunOptions& options :
+       {RunOptions{.threads = 2, .first = 5, .end = 5}, RunOptions{.threads = 2, .first = survey.size()},
+        RunOptions{.threads = 2, .first = 10, .end = 5}}) {
     support::LawfulSink sink;
     const RunSummary summary = run(survey, options, sink);
     CHECK(summary.complete);
@@ -347,7 +355,8 @@ TEST_CASE("no more threads are started than there are chunks of work") {
   const auto survey = rain();
   for (const PulseIndex pulses : {0U, 1U, 256U}) {
     CAPTURE(pulses);
-    CHECK(allocations_of(survey, {.threads = 64, .end = pulses}) == allocations_of(survey, {.threads = 1, .end = pulses}));
+    CHECK(allocations_of(survey, {.threads = 64, .end = pulses}) ==
+          allocations_of(survey, {.threads = 1, .end = pulses}));
   }
   CHECK(allocations_of(survey, {.threads = max_threads, .end = 257}) < 100);
 }
@@ -383,7 +392,8 @@ TEST_CASE("a loop of short runs on a pool allocates nothing after the first, whi
 
 namespace {
 
-/// Executor that keeps memory, whose second worker comes when it is let in, into what the first one does; else when all work is done.
+/// Executor that keeps memory, whose second worker comes when it is let in, into what the first one does; else when all
+/// work is done.
 struct LateWorker {
   ScratchMemory kept{};
   const IndexTask* late = nullptr;
@@ -417,7 +427,9 @@ TEST_CASE("a worker that had no work in the first runs allocates nothing when it
   CHECK(allocated == 0);
 }
 
-TEST_CASE("several surveys in turn on one pool allocate nothing after their first runs, and a survey that is gone leaves no workspace") {
+TEST_CASE(
+    "several surveys in turn on one pool allocate nothing after their first runs, and a survey that is gone leaves no "
+    "workspace") {
   ThreadPool pool(2);
   const std::vector surveys{rain(), rain(), rain()};
   std::size_t allocated = 0;
@@ -444,8 +456,10 @@ TEST_CASE("surveys of one type that follow each other on a pool do not see each 
   for (int round = 0; round < 2; ++round)
     for (const std::size_t rings : {2U, 7U, 3U}) {
       CAPTURE(rings);
-      std::optional<Survey<decltype(two_legs()), RingFootprint, Steps, std::remove_const_t<decltype(waveforms)>>> survey;
-      survey.emplace(two_legs(), RingFootprint{rings}, steps, Receiver{.efficiency = 0.1 * static_cast<double>(rings)}, waveforms);
+      std::optional<Survey<decltype(two_legs()), RingFootprint, Steps, std::remove_const_t<decltype(waveforms)>>>
+          survey;
+      survey.emplace(two_legs(), RingFootprint{rings}, steps, Receiver{.efficiency = 0.1 * static_cast<double>(rings)},
+                     waveforms);
       CHECK(checksum_of(*survey, {.executor = pool}) == checksum_of(*survey, {.threads = 1}));
     }
 }
@@ -456,7 +470,8 @@ TEST_CASE("a run gives the same bytes on any executor") {
   ThreadPool one(1), seven(7);
   Reverse reverse;
   const ThreadPerTask thread_per_task;
-  for (const ExecutorRef executor : {ExecutorRef(one), ExecutorRef(seven), ExecutorRef(reverse), ExecutorRef(thread_per_task)})
+  for (const ExecutorRef executor :
+       {ExecutorRef(one), ExecutorRef(seven), ExecutorRef(reverse), ExecutorRef(thread_per_task)})
     for (const unsigned threads : {0U, 2U, 3U, 64U}) {
       CAPTURE(threads);
       CHECK(checksum_of(survey, {.threads = threads, .executor = executor}) == expected);
@@ -518,7 +533,8 @@ TEST_CASE("a pool goes on after a sink that throws and after a stop") {
 }
 
 TEST_CASE("more threads than a machine can have are refused, by name") {
-  CHECK_THROWS_WITH_AS(run(rain(), {.threads = max_threads + 1}), "RunOptions::threads is 1025, but must be from 0 to 1024", SettingError);
+  CHECK_THROWS_WITH_AS(run(rain(), {.threads = max_threads + 1}),
+                       "RunOptions::threads is 1025, but must be from 0 to 1024", SettingError);
   CHECK(run(rain(1), {.threads = max_threads}).complete);
 }
 
@@ -552,10 +568,11 @@ TEST_CASE("a run that is asked to stop ends early, with whole batches in order")
     CAPTURE(threads);
     std::stop_source source;
     support::LawfulSink sink;
-    const RunSummary summary = run(rain(200000), {.threads = threads, .stop = source.get_token()}, [&](const EchoBatch& batch) {
-      sink(batch);
-      if (sink.batches() == 3) source.request_stop();
-    });
+    const RunSummary summary =
+        run(rain(200000), {.threads = threads, .stop = source.get_token()}, [&](const EchoBatch& batch) {
+          sink(batch);
+          if (sink.batches() == 3) source.request_stop();
+        });
     CHECK(sink.broken() == "");
     CHECK_FALSE(summary.complete);
     CHECK(sink.first() == 0);
@@ -635,7 +652,8 @@ Ahead ahead_of_a_slow_sink(const Survey& survey, unsigned threads, const std::at
     farthest = std::max(farthest, asked - delivered);
     delivered += batch.shots.size();
     largest = std::max<PulseIndex>(largest, batch.shots.size());
-    ahead.batch_bytes = std::max(ahead.batch_bytes, batch.shots.size_bytes() + batch.echoes.size_bytes() + batch.subrays.size_bytes());
+    ahead.batch_bytes =
+        std::max(ahead.batch_bytes, batch.shots.size_bytes() + batch.echoes.size_bytes() + batch.subrays.size_bytes());
   });
   CHECK(delivered == survey.size());
   ahead.batches = static_cast<double>(farthest) / static_cast<double>(largest);
@@ -723,10 +741,12 @@ std::string message_of(const S& survey, PulseIndex bad) {
 TEST_CASE("a pose of a user's own type that is not finite ends a run at its pulse, on any number of threads") {
   const Deflector still{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulse_rate = 65536, .pulses = 65536}};
   const support::LeastRayTarget plane;
-  const char* const message = "pulse 32768 at 0.5 s has a pose that is not finite: check the trajectory, optic or pose errors";
-  for (const Lost& lost :
-       {Lost{.position = not_a_number}, Lost{.position = std::numeric_limits<double>::infinity()}, Lost{.rotation = not_a_number}})
-    CHECK(message_of(Survey{Platform{lost, Mount{}, still}, SingleRay{}, plane, Receiver{}, FirstHit{}}, 32768) == message);
+  const char* const message =
+      "pulse 32768 at 0.5 s has a pose that is not finite: check the trajectory, optic or pose errors";
+  for (const Lost& lost : {Lost{.position = not_a_number}, Lost{.position = std::numeric_limits<double>::infinity()},
+                           Lost{.rotation = not_a_number}})
+    CHECK(message_of(Survey{Platform{lost, Mount{}, still}, SingleRay{}, plane, Receiver{}, FirstHit{}}, 32768) ==
+          message);
   CHECK(message_of(Survey{Misreported{}, SingleRay{}, plane, Receiver{}, FirstHit{}}, 3000) ==
         "pulse 3000 at 0.03 s has a pose that is not finite: check the trajectory, optic or pose errors");
 }
@@ -769,7 +789,8 @@ TEST_CASE("shots without an echo are left out of a run whose sinks do not read t
   const auto survey = small_survey();
   ShotsOf all{true}, beside{false}, few{false};
   Cloud cloud, expected;
-  const RunSummary with = run(survey, {.threads = 2}, beside, all, expected), without = run(survey, {.threads = 2}, few, cloud);
+  const RunSummary with = run(survey, {.threads = 2}, beside, all, expected),
+                   without = run(survey, {.threads = 2}, few, cloud);
   CHECK(all.shots.size() == with.pulses());
   CHECK(beside.shots.size() == with.pulses());  // another sink of the run reads them
   CHECK(few.shots.size() < all.shots.size());

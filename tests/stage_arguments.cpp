@@ -29,7 +29,8 @@ static_assert(!detail::Deflectable<LeastHead, Beams> && !detail::Deflectable<Lea
 static_assert(detail::Surveyable<Carried, LeastFootprint, LeastRayTarget&, LeastDetector>);
 static_assert(detail::Surveyable<Carried, LeastFootprint, const LeastBundleTarget&, LeastDetector>);
 static_assert(!detail::Surveyable<Carried, LeastFootprint, LeastRayTarget, LeastDetector>, "the map is a temporary");
-static_assert(!detail::Surveyable<Carried, LeastFootprint, const LeastRayTarget, LeastDetector>, "the map is a temporary");
+static_assert(!detail::Surveyable<Carried, LeastFootprint, const LeastRayTarget, LeastDetector>,
+              "the map is a temporary");
 static_assert(!detail::Surveyable<Device, LeastFootprint, LeastRayTarget&, LeastDetector>);
 static_assert(!detail::Surveyable<Carried, Device, LeastRayTarget&, LeastDetector>);
 static_assert(!detail::Surveyable<Carried, LeastFootprint, LeastGeometry&, LeastDetector>);
@@ -48,7 +49,8 @@ static_assert(detail::PosedConst<Beams> && detail::PosedNoexcept<Beams>, "withou
 
 using OwnSurvey = Survey<Carried, LeastFootprint, LeastRayTarget, LeastDetector>;
 using Units = std::vector<ReceiverUnit<LeastFootprint, LeastDetector>>;
-static_assert(std::constructible_from<OwnSurvey, Carried, LeastFootprint, const LeastRayTarget&, Receiver, LeastDetector>);
+static_assert(
+    std::constructible_from<OwnSurvey, Carried, LeastFootprint, const LeastRayTarget&, Receiver, LeastDetector>);
 static_assert(!std::constructible_from<OwnSurvey, Carried, LeastFootprint, LeastRayTarget, Receiver, LeastDetector>);
 static_assert(std::constructible_from<OwnSurvey, Carried, Units, LeastRayTarget&>);
 static_assert(!std::constructible_from<OwnSurvey, Carried, Units, LeastRayTarget>);

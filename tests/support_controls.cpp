@@ -30,7 +30,8 @@ bool names(const std::string& law, const char* what) { return law.find(what) != 
 
 const std::array<Tick, 4> ticks{Tick{0, 0}, Tick{0, 0.5}, Tick{3, 0.25}, Tick{1000000, 0.75}};
 
-// ------------------------------------------------------------------------------------------------------------ bad surveys
+// ------------------------------------------------------------------------------------------------------------ bad
+// surveys
 
 /// What a survey remembers in its workspace.
 enum class Memo { nothing, slot, neighbours };
@@ -51,7 +52,8 @@ struct Placed {
   const std::shared_ptr<const void>& identity() const noexcept { return self; }
   Workspace workspace() const { return {}; }
   Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
-    if (memo == Memo::nothing || i < w.first || i >= w.first + w.count) w = {i, memo == Memo::neighbours ? PulseIndex{4} : 1, *place};
+    if (memo == Memo::nothing || i < w.first || i >= w.first + w.count)
+      w = {i, memo == Memo::neighbours ? PulseIndex{4} : 1, *place};
     Outcome out;
     out.shot.index = i;
     out.shot.fate = Fate::missed;
@@ -61,7 +63,8 @@ struct Placed {
   }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad motions
+// ------------------------------------------------------------------------------------------------------------ bad
+// motions
 
 using BeamPose = Pose<frame::Beam, frame::Instrument>;
 
@@ -139,7 +142,8 @@ struct FlickeringGate : LeastOptic {
   bool open(Tick) const noexcept { return state = !state; }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad sources
+// ------------------------------------------------------------------------------------------------------------ bad
+// sources
 
 using BeamPulse = std::optional<Pulse<frame::Beam>>;
 
@@ -175,7 +179,8 @@ struct Longer : LeastSource<frame::Beam> {
   PulseIndex size() const noexcept { return 11; }
 };
 
-// --------------------------------------------------------------------------------------------------------- bad footprints
+// --------------------------------------------------------------------------------------------------------- bad
+// footprints
 
 struct Two {
   double first = 0.5, second = 0.5;
@@ -185,7 +190,8 @@ struct Two {
   double share(std::size_t j) const noexcept { return j == 0 ? first : second; }
 };
 
-// ---------------------------------------------------------------------------------------------------------- bad detectors
+// ---------------------------------------------------------------------------------------------------------- bad
+// detectors
 
 /// One echo per reflection, after which something goes wrong.
 template <class Flaw>
@@ -198,7 +204,8 @@ struct Flawed {
   Workspace workspace(std::size_t subrays) const { return {std::vector<Echo>(subrays + 1), 0}; }
   Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const std::span<Reflection> reflections = heard.reflections;
-    std::sort(reflections.begin(), reflections.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
+    std::sort(reflections.begin(), reflections.end(),
+              [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
     std::size_t n = 0;
     for (const Reflection& r : reflections) {
       w.echoes[n] = Echo{};
@@ -221,7 +228,8 @@ std::string flaw_found(Flaw flaw) {
   return detector_laws(Flawed{flaw}, Laser{}, cases);
 }
 
-// --------------------------------------------------------------------------------------------------------- bad transports
+// --------------------------------------------------------------------------------------------------------- bad
+// transports
 
 /// Direct light, in whose results something goes wrong.
 template <class Flaw>
@@ -234,7 +242,8 @@ struct FlawedTransport {
   std::size_t reflections(std::size_t subrays) const noexcept { return subrays; }
   Workspace workspace(std::size_t) const { return {}; }
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {
+  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+                        std::span<Reflection> reflections) const noexcept {
     TransportResult r = DirectLight{}.trace(map, light, w.inside, reflections);
     flaw(r, reflections, light.record, w.uses++);
     return r;
@@ -252,7 +261,8 @@ std::string transport_flaw_found(Flaw flaw) {
   return transport_laws(FlawedTransport{flaw}, LeastRayTarget{}, downwards, {.range_min = 1, .range_max = 100});
 }
 
-// ---------------------------------------------------------------------------------------------------------------- bad maps
+// ---------------------------------------------------------------------------------------------------------------- bad
+// maps
 
 /// A plane that every cone is said to miss.
 struct UnseenPlane : LeastBundleTarget {
@@ -263,7 +273,8 @@ struct SeenPlane : LeastBundleTarget {
   bool misses_cone(const RayCone& cone) const noexcept { return cone.origin.z > 0 && cone.direction.z > cone.spread; }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad callers
+// ------------------------------------------------------------------------------------------------------------ bad
+// callers
 
 /// Two shots with three echoes, kept alive for as long as a batch is needed.
 struct Sample {
@@ -273,7 +284,8 @@ struct Sample {
   double interval = 0;
   explicit Sample(PulseIndex first) {
     shots.push_back({.index = first, .direction = axis::forward, .fate = Fate::returned, .first_echo = 0, .echoes = 2});
-    shots.push_back({.index = first + 1, .direction = axis::forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1});
+    shots.push_back(
+        {.index = first + 1, .direction = axis::forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1});
   }
   EchoBatch batch() const { return {shots, echoes, samples, interval}; }
 };
@@ -393,16 +405,19 @@ TEST_CASE("motions that keep the law pass, and those that break it do not") {
 TEST_CASE("sources that keep the law pass, and those that break it do not") {
   CHECK(source_laws(LeastSource<frame::Beam>{}) == "");
   CHECK(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })) == "");
-  CHECK(names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->emitter = i == 7; })), "pulse 7 is of emitter 1"));
+  CHECK(names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->emitter = i == 7; })),
+              "pulse 7 is of emitter 1"));
   CHECK(names(source_laws(Unlisted{}), "emitter 0, which is not listed"));
   CHECK(names(source_laws(Crowded{}), "65536 emitters"));
   CHECK(names(source_laws(Retuned{}), "emitters"));
-  CHECK(
-      names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->tick.second = i == 6 ? 4 : p->tick.second; })), "decreases"));
+  CHECK(names(
+      source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->tick.second = i == 6 ? 4 : p->tick.second; })),
+      "decreases"));
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1; })), "not normal"));
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.rotation.x = 0.1; })), "not rigid"));
   static int asked = 0;
-  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.position.x = 1e-9 * ++asked; })), "differs"));
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.position.x = 1e-9 * ++asked; })),
+              "differs"));
   CHECK(names(source_laws(Hurried{}), "duration"));
   CHECK(names(source_laws(MakesOthers{}), "differs in lanes"));
   CHECK(names(source_laws(MakesNone{}), "0 are made"));
@@ -413,12 +428,16 @@ TEST_CASE("sources that keep the law pass, and those that break it do not") {
 TEST_CASE("wrappers that keep the law pass, and those that break it do not") {
   const LeastSource<frame::Beam> inner;
   CHECK(wrapped_source_laws(inner, inner) == "");
-  CHECK(wrapped_source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { i % 2 ? p.reset() : void(); }), inner) == "");
-  CHECK(names(wrapped_source_laws(inner, Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })), "blocked inside"));
+  CHECK(wrapped_source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { i % 2 ? p.reset() : void(); }), inner) ==
+        "");
+  CHECK(names(wrapped_source_laws(inner, Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })),
+              "blocked inside"));
   CHECK(names(wrapped_source_laws(Longer{}, inner), "size"));
   CHECK(names(wrapped_source_laws(Hurried{}, inner), "duration"));
-  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1e-12; }), inner), "tick"));
-  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->emitter = 1; }), inner), "emitter of pulse"));
+  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1e-12; }), inner),
+              "tick"));
+  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->emitter = 1; }), inner),
+              "emitter of pulse"));
   CHECK(names(wrapped_source_laws(Unlisted{}, inner), "emitters differ"));
 }
 
@@ -448,11 +467,14 @@ TEST_CASE("transports that keep the law pass, and those that break it do not") {
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.scattered *= 1 - 1e-5; }), "sum to"));
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.cut += 1e-5 * r.energy.sent; }), "sum to"));
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.missed = -1e-9; }), "a term of"));
-  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received = 2 * r.energy.sent; }), "more is received"));
-  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received *= 1.001; }), "the reflections are"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received = 2 * r.energy.sent; }),
+              "more is received"));
+  CHECK(
+      names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received *= 1.001; }), "the reflections are"));
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { --r.reflections; }), "the reflections are"));
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.reflections = 100; }), "no room"));
-  CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found.data()[found.size()].power = 1; }), "no room"));
+  CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found.data()[found.size()].power = 1; }),
+              "no room"));
   CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found[3].power = 0; }), "a reflection of 0 W"));
   CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found[3].range = 0.5; }), "outside the gate"));
   CHECK(names(transport_flaw_found([](R&, Found, Record record, int) {
@@ -463,7 +485,8 @@ TEST_CASE("transports that keep the law pass, and those that break it do not") {
                 r = {.energy = {.sent = r.energy.sent, .missed = r.energy.sent}, .fate = Fate::returned};
               }),
               "a fate"));
-  CHECK(names(transport_flaw_found([](R&, Found found, Record, int uses) { found[0].range += uses; }), "another answer"));
+  CHECK(
+      names(transport_flaw_found([](R&, Found found, Record, int uses) { found[0].range += uses; }), "another answer"));
 }
 
 TEST_CASE("surveys that keep the law of changes pass, and those that remember do not") {

@@ -183,7 +183,9 @@ TEST_CASE("pulses may be asked in any order, with a workspace of any history") {
   CHECK(checksum_of(copy, order) == forwards);
 }
 
-TEST_CASE("the amplitude of an extended plate met squarely is that of the radar equation, and falls with the square of the range") {
+TEST_CASE(
+    "the amplitude of an extended plate met squarely is that of the radar equation, and falls with the square of the "
+    "range") {
   for (const double range : {10.0, 20.0, 40.0, 80.0}) {
     CAPTURE(range);
     const Plane plane{{0, range, 0}, axis::forward, 0.4};
@@ -207,8 +209,11 @@ TEST_CASE("the amplitude of an extended plate met squarely is that of the radar 
   }
 }
 
-TEST_CASE("a wire across the beam brings back power that falls with the cube of the range, and a small target with the fourth power") {
-  // A strip or a disc smaller than the footprint: what it covers of the footprint shrinks with the range, once or twice.
+TEST_CASE(
+    "a wire across the beam brings back power that falls with the cube of the range, and a small target with the "
+    "fourth power") {
+  // A strip or a disc smaller than the footprint: what it covers of the footprint shrinks with the range, once or
+  // twice.
   struct Small {
     double range, half_width, half_height;
     std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
@@ -223,7 +228,8 @@ TEST_CASE("a wire across the beam brings back power that falls with the cube of 
     auto workspace = survey.workspace();
     return survey(0, workspace).echoes[0].amplitude;
   };
-  // the footprint has a radius of 0.4 m at 200 m, and twice that at 400 m; the Gaussian is flat to some percent over the small target
+  // the footprint has a radius of 0.4 m at 200 m, and twice that at 400 m; the Gaussian is flat to some percent over
+  // the small target
   CHECK(power({200, 0.02, 10}) / power({400, 0.02, 10}) == support::relative(8, 0.05));
   CHECK(power({200, 0.06, 0.06}) / power({400, 0.06, 0.06}) == support::relative(16, 0.05));
 }
@@ -300,13 +306,15 @@ TEST_CASE("the energy of a pulse is spent to the last bit, each subray's by what
   const Quarters map;
   const Laser laser{.peak_power = 8, .pulse_length = 5e-9};
   const auto outcome = [&](double threshold) {
-    const Survey survey{still({}, no_rotation, 1, laser), SunflowerFootprint{4000}, map, Receiver{.range_min = 2}, FirstHit{threshold}};
+    const Survey survey{still({}, no_rotation, 1, laser), SunflowerFootprint{4000}, map, Receiver{.range_min = 2},
+                        FirstHit{threshold}};
     auto workspace = survey.workspace();
     return survey(0, workspace);
   };
   const Outcome bright = outcome(0), faint = outcome(1);
   CHECK(bright.energy.sent == support::relative(40e-9, 1e-15));
-  for (const auto term : {&EnergyLedger::missed, &EnergyLedger::out_of_range, &EnergyLedger::absorbed, &EnergyLedger::scattered})
+  for (const auto term :
+       {&EnergyLedger::missed, &EnergyLedger::out_of_range, &EnergyLedger::absorbed, &EnergyLedger::scattered})
     CHECK(bright.energy.share(term) == support::relative(0.25, 0.01));
   CHECK(bright.energy.cut == 0);
   CHECK(bright.shot.fate == Fate::returned);
@@ -352,7 +360,9 @@ TEST_CASE("subrays that are recorded lie where they met the plane, with the powe
   }
 }
 
-TEST_CASE("a beam with a waist is traced subray by subray, each with a name of its own, and lights what its hyperbola covers") {
+TEST_CASE(
+    "a beam with a waist is traced subray by subray, each with a name of its own, and lights what its hyperbola "
+    "covers") {
   struct Curious {
     double half_width = 0, range = 0;
     mutable std::vector<std::uint32_t> seen;
@@ -413,7 +423,8 @@ TEST_CASE("a map is told the names of the random numbers that it may draw") {
     }
   };
   const Curious map;
-  const Survey survey{still({}, no_rotation, 6, Laser{.wavelength = 532_nm}), SunflowerFootprint{150}, map, clear_air, FirstHit{}, 77};
+  const Survey survey{
+      still({}, no_rotation, 6, Laser{.wavelength = 532_nm}), SunflowerFootprint{150}, map, clear_air, FirstHit{}, 77};
   auto workspace = survey.workspace();
   CHECK(survey(5, workspace).shot.fate == Fate::missed);
   REQUIRE(map.seen.size() == 150);
@@ -539,7 +550,8 @@ TEST_CASE("echoes stand in order of the ranges that are reported, each with its 
       if (e > 0) CHECK(echoes[e - 1].range <= echo.range);
       CHECK(echo.number == e + 1);
       CHECK(same.number == echo.object);
-      CHECK(echo.range == same.range + noise.at(Echo{.range = same.range}, normal({5, i, same.number, Purpose::range_noise})));
+      CHECK(echo.range ==
+            same.range + noise.at(Echo{.range = same.range}, normal({5, i, same.number, Purpose::range_noise})));
       CHECK(echo.amplitude == same.amplitude);
       CHECK(echo.reflectance == same.reflectance);
     }
@@ -599,7 +611,8 @@ TEST_CASE("echoes whose errors lead out of the gate are not reported, and the ot
 
 TEST_CASE("a scanner whose noise exceeds the distance of a wall reports nothing behind itself") {
   const Plane wall{.point = {0, 0.4, 0}, .normal = {0, -1, 0}};
-  const Survey near{still({}, no_rotation, 2000), SingleRay{}, wall, Receiver{.range_errors = {.deviation = 0.5}}, FirstHit{}, 5};
+  const Survey near{
+      still({}, no_rotation, 2000), SingleRay{}, wall, Receiver{.range_errors = {.deviation = 0.5}}, FirstHit{}, 5};
   auto w = near.workspace();
   std::size_t reported = 0;
   for (PulseIndex i = 0; i < near.size(); ++i)
@@ -607,13 +620,15 @@ TEST_CASE("a scanner whose noise exceeds the distance of a wall reports nothing 
       CHECK(echo.range >= 0);
       ++reported;
     }
-  CHECK(std::fabs(static_cast<double>(reported) - 2000 * 0.7881) < 4 * std::sqrt(2000 * 0.7881 * 0.2119));  // of the normal distribution
+  CHECK(std::fabs(static_cast<double>(reported) - 2000 * 0.7881) <
+        4 * std::sqrt(2000 * 0.7881 * 0.2119));  // of the normal distribution
 }
 
 TEST_CASE("a range that a detector folds to before the gate is not reported") {
   const Plane far{.point = {0, 1800, 0}, .normal = {0, -1, 0}};
   const auto folding = [&](double gate) {
-    return Survey{still({}, no_rotation, 1), SingleRay{}, far, Receiver{.range_min = gate}, MultiplePulsesInAir{100_kHz, FirstHit{}}};
+    return Survey{still({}, no_rotation, 1), SingleRay{}, far, Receiver{.range_min = gate},
+                  MultiplePulsesInAir{100_kHz, FirstHit{}}};
   };
   const auto all_folded = folding(0), early = folding(400);
   auto a = all_folded.workspace(), b = early.workspace();
@@ -681,13 +696,18 @@ void check_equal(const Outcome& a, const Outcome& b) {
 }  // namespace
 
 TEST_CASE("two emitters of different beams and receivers in one survey give what each gives in a survey of its own") {
-  const Laser narrow{.peak_power = 5, .divergence = 0.2_mrad}, wide{.wavelength = 532_nm, .pulse_length = 6_ns, .divergence = 3_mrad};
+  const Laser narrow{.peak_power = 5, .divergence = 0.2_mrad},
+      wide{.wavelength = 532_nm, .pulse_length = 6_ns, .divergence = 3_mrad};
   const std::vector<Unit> units{
-      {SunflowerFootprint{19}, {.range_errors = {.deviation = 0.1}}, FullWaveform{WaveformSettings{.record_length = 60_ns}}},
+      {SunflowerFootprint{19},
+       {.range_errors = {.deviation = 0.1}},
+       FullWaveform{WaveformSettings{.record_length = 60_ns}}},
       {SunflowerFootprint{40}, {.diameter = 0.3, .range_max = 102}, FullWaveform{WaveformSettings{.returns_max = 1}}}};
-  const auto device = [](const Laser& first, std::uint16_t first_receiver, const Laser& second, std::uint16_t second_receiver) {
-    std::vector<Scanner> lasers{{.pulse_rate = 10, .pulses = 200, .laser = first, .receiver = first_receiver},
-                                {.pulse_rate = 10, .pulses = 200, .delay = 0.05, .laser = second, .receiver = second_receiver}};
+  const auto device = [](const Laser& first, std::uint16_t first_receiver, const Laser& second,
+                         std::uint16_t second_receiver) {
+    std::vector<Scanner> lasers{
+        {.pulse_rate = 10, .pulses = 200, .laser = first, .receiver = first_receiver},
+        {.pulse_rate = 10, .pulses = 200, .delay = 0.05, .laser = second, .receiver = second_receiver}};
     return Platform{Tripod{}, Mount{}, Deflector{RotatingHead{.rate = 0.01_deg}, Deflector{Fixed{}, Channels{lasers}}}};
   };
   const TwoPlates plates;
@@ -755,7 +775,8 @@ TEST_CASE("twice the footprint is twice the divergence, to the bit") {
     CAPTURE(seed);
     support::Generator any(seed);
     const double across = any.log_uniform(1e-4, 1e-2), up = across * any.uniform(0.5, 2);
-    const Emitter scaled{.laser = {.divergence = {across, up}}, .footprint_scale = 2}, wide{.laser = {.divergence = {2 * across, 2 * up}}};
+    const Emitter scaled{.laser = {.divergence = {across, up}}, .footprint_scale = 2},
+        wide{.laser = {.divergence = {2 * across, 2 * up}}};
     const Survey a{Listed{{scaled}}, SunflowerFootprint{50}, plates, clear_air, FullWaveform{}};
     const Survey b{Listed{{wide}}, SunflowerFootprint{50}, plates, clear_air, FullWaveform{}};
     auto v = a.workspace();
@@ -772,11 +793,11 @@ TEST_CASE("the last of many emitters is refused as the first is") {
   const double nan = std::nan("");
   CHECK(survey(std::vector<Emitter>(3000)) == 19);
   for (const std::size_t k : {0U, 1U, 1500U, 2999U})
-    for (const Emitter& bad :
-         {Emitter{.laser = {.pulse_length = 1e-15}},  // too short for the samples of the detector
-          Emitter{.laser = {.wavelength = 1}}, Emitter{.laser = {.peak_power = nan}}, Emitter{.laser = {.divergence = {1_mrad, 0}}},
-          Emitter{.laser = {.waist_range = nan}}, Emitter{.footprint_scale = -1}, Emitter{.footprint_scale = 1001},
-          Emitter{.footprint_scale = nan}, Emitter{.receiver = 1}}) {
+    for (const Emitter& bad : {Emitter{.laser = {.pulse_length = 1e-15}},  // too short for the samples of the detector
+                               Emitter{.laser = {.wavelength = 1}}, Emitter{.laser = {.peak_power = nan}},
+                               Emitter{.laser = {.divergence = {1_mrad, 0}}}, Emitter{.laser = {.waist_range = nan}},
+                               Emitter{.footprint_scale = -1}, Emitter{.footprint_scale = 1001},
+                               Emitter{.footprint_scale = nan}, Emitter{.receiver = 1}}) {
       CAPTURE(k);
       std::vector<Emitter> table(3000);
       table[k] = bad;
@@ -788,7 +809,8 @@ TEST_CASE("the last of many emitters is refused as the first is") {
 
 TEST_CASE("a device of more than 256 channels tells each of them") {
   const TwoPlates plates;
-  const Platform source{Tripod{}, Mount{}, Deflector{Fixed{}, Channels{std::vector<Scanner>(1000, Scanner{.pulses = 3})}}};
+  const Platform source{Tripod{}, Mount{},
+                        Deflector{Fixed{}, Channels{std::vector<Scanner>(1000, Scanner{.pulses = 3})}}};
   const Survey survey{source, SingleRay{}, plates, Receiver{}, FirstHit{}};
   auto w = survey.workspace();
   for (PulseIndex i = 0; i < survey.size(); ++i) REQUIRE(survey(i, w).shot.channel == i % 1000);
@@ -847,7 +869,8 @@ struct AllAround : support::LeastSource<frame::World> {
 
 }  // namespace
 
-TEST_CASE("a detector that listens always is asked for every pulse sent, also towards the sky; others are asked for light") {
+TEST_CASE(
+    "a detector that listens always is asked for every pulse sent, also towards the sky; others are asked for light") {
   const Plane ground;
   const Receiver receiver{.range_min = 2, .range_max = 8};
   std::vector<Heard> asked, asked_of_light;

@@ -22,9 +22,10 @@ using DrawnErrors = std::array<double, 3>;
 
 /// Sums over pulses, from which the errors come.
 struct Sums {
-  double range_squares = 0, matched = 0;        ///< over pairs of echoes [m^2]
-  double wrong = 0, echoes = 0;                 ///< echoes missed and invented, and those of the reference
-  double intensity_sizes = 0, intensities = 0;  ///< over pairs of echoes: size of the difference, and reflectance of the reference
+  double range_squares = 0, matched = 0;  ///< over pairs of echoes [m^2]
+  double wrong = 0, echoes = 0;           ///< echoes missed and invented, and those of the reference
+  double intensity_sizes = 0,
+         intensities = 0;  ///< over pairs of echoes: size of the difference, and reflectance of the reference
 
   void add(const Sums& other, double times) noexcept {
     range_squares += times * other.range_squares;
@@ -47,15 +48,16 @@ struct Interval {
 };
 using Intervals = std::array<Interval, 3>;
 
-/// Bootstrap by blocks: pulses that follow each other meet the same things, so that blocks of them are drawn with replacement, not pulses.
-/// All settings get the same draws, so that two of them are compared pulse by pulse. Intervals hold 95 % of the draws.
-/// Source: Efron & Tibshirani 1993, sec. 8.6 and 13.3; Kuensch 1989 for blocks.
+/// Bootstrap by blocks: pulses that follow each other meet the same things, so that blocks of them are drawn with
+/// replacement, not pulses. All settings get the same draws, so that two of them are compared pulse by pulse. Intervals
+/// hold 95 % of the draws. Source: Efron & Tibshirani 1993, sec. 8.6 and 13.3; Kuensch 1989 for blocks.
 class Bootstrap {
  public:
   explicit Bootstrap(std::size_t blocks) : times_(draws, std::vector<double>(blocks)) {
     for (std::size_t draw = 0; draw < draws; ++draw)
       for (std::size_t k = 0; k < blocks; ++k) {
-        const double u = uniform({.seed = 41, .pulse = draw, .subray = static_cast<std::uint32_t>(k), .purpose = Purpose{128}});
+        const double u =
+            uniform({.seed = 41, .pulse = draw, .subray = static_cast<std::uint32_t>(k), .purpose = Purpose{128}});
         times_[draw][static_cast<std::size_t>(u * static_cast<double>(blocks))] += 1;
       }
   }
@@ -64,7 +66,8 @@ class Bootstrap {
     return intervals([&](const auto& times) { return sum(blocks, times).errors(); });
   }
 
-  /// Of the errors of a setting by those of another one: 1 in draws in which neither has any, infinite where the other has none.
+  /// Of the errors of a setting by those of another one: 1 in draws in which neither has any, infinite where the other
+  /// has none.
   [[nodiscard]] Intervals of_ratio(const Blocks& blocks, const Blocks& other) const {
     return intervals([&](const auto& times) {
       DrawnErrors ratio = sum(blocks, times).errors();
@@ -92,7 +95,8 @@ class Bootstrap {
     }
     Intervals result;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (std::any_of(found[k].begin(), found[k].end(), [](double x) { return std::isnan(x); })) continue;  // nothing to compare
+      if (std::any_of(found[k].begin(), found[k].end(), [](double x) { return std::isnan(x); }))
+        continue;  // nothing to compare
       std::sort(found[k].begin(), found[k].end());
       result[k] = {found[k][draws / 40], found[k][draws - 1 - draws / 40]};
     }

@@ -33,7 +33,8 @@ struct Results {
   }
 };
 
-/// Whether a class is of plants: what ASPRS LAS 1.4 R15, table 17, calls low, medium and high vegetation, and 64, here of wood.
+/// Whether a class is of plants: what ASPRS LAS 1.4 R15, table 17, calls low, medium and high vegetation, and 64, here
+/// of wood.
 [[nodiscard]] inline bool is_plant(std::uint16_t classification) noexcept {
   return (classification >= 3 && classification <= 5) || classification == 64;
 }
@@ -57,20 +58,22 @@ template <class AnySurvey>
 
 /// How far the echoes of a setting are from those of the reference. Not a number where there is nothing to compare.
 struct Errors {
-  double echoes = unknown;                                               ///< their number, less that of the reference [%]
-  double missed = unknown, invented = unknown;                           ///< echoes, of those of the reference [%]
-  double range_bias = unknown, range_spread = unknown;                   ///< mean and standard deviation [m]
-  double range_rms = unknown, range_95 = unknown;                        ///< root of the mean square, 95th percentile of the size [m]
-  double intensity_bias = unknown, intensity = unknown;                  ///< mean, and mean size, of the mean of the reference [%]
-  double width_bias = unknown, width = unknown;                          ///< mean, and root of the mean square [s]
-  double gap_fraction = unknown;                                         ///< difference [%]
-  double height_50 = unknown, height_95 = unknown, height_99 = unknown;  ///< percentiles of what stands on the ground, difference [m]
-  Blocks blocks{};                                                       ///< what each run of pulses adds to the errors that are drawn
+  double echoes = unknown;                               ///< their number, less that of the reference [%]
+  double missed = unknown, invented = unknown;           ///< echoes, of those of the reference [%]
+  double range_bias = unknown, range_spread = unknown;   ///< mean and standard deviation [m]
+  double range_rms = unknown, range_95 = unknown;        ///< root of the mean square, 95th percentile of the size [m]
+  double intensity_bias = unknown, intensity = unknown;  ///< mean, and mean size, of the mean of the reference [%]
+  double width_bias = unknown, width = unknown;          ///< mean, and root of the mean square [s]
+  double gap_fraction = unknown;                         ///< difference [%]
+  double height_50 = unknown, height_95 = unknown,
+         height_99 = unknown;  ///< percentiles of what stands on the ground, difference [m]
+  Blocks blocks{};             ///< what each run of pulses adds to the errors that are drawn
 
   [[nodiscard]] DrawnErrors drawn() const noexcept { return {range_rms, missed + invented, intensity}; }
 };
 
-/// Echoes of one pulse that are taken for the same: those nearest to each other first, each once, none farther apart than the gate [m].
+/// Echoes of one pulse that are taken for the same: those nearest to each other first, each once, none farther apart
+/// than the gate [m].
 inline void match(std::span<const Echo> reference, std::span<const Echo> echoes, double gate,
                   std::vector<std::pair<std::size_t, std::size_t>>& pairs) {
   struct Pair {
@@ -81,7 +84,8 @@ inline void match(std::span<const Echo> reference, std::span<const Echo> echoes,
   std::vector<Pair> near;
   for (std::size_t r = 0; r < reference.size(); ++r)
     for (std::size_t e = 0; e < echoes.size(); ++e)
-      if (const double apart = std::fabs(reference[r].range - echoes[e].range); apart <= gate) near.push_back({apart, r, e});
+      if (const double apart = std::fabs(reference[r].range - echoes[e].range); apart <= gate)
+        near.push_back({apart, r, e});
   std::stable_sort(near.begin(), near.end(), [](const Pair& a, const Pair& b) { return a.apart < b.apart; });
   for (const Pair& pair : near) {
     const auto taken = [&](const auto& other) { return other.first == pair.r || other.second == pair.e; };
@@ -108,7 +112,9 @@ struct Mean {
     ++count;
   }
   [[nodiscard]] double mean() const noexcept { return count == 0 ? unknown : sum / static_cast<double>(count); }
-  [[nodiscard]] double rms() const noexcept { return count == 0 ? unknown : std::sqrt(squares / static_cast<double>(count)); }
+  [[nodiscard]] double rms() const noexcept {
+    return count == 0 ? unknown : std::sqrt(squares / static_cast<double>(count));
+  }
   [[nodiscard]] double size() const noexcept { return count == 0 ? unknown : sizes / static_cast<double>(count); }
   [[nodiscard]] double deviation() const noexcept { return std::sqrt(std::fmax(rms() * rms() - mean() * mean(), 0)); }
 };
@@ -120,8 +126,8 @@ struct Canopy {
 };
 
 /// `height` gives the ground's height of a place, `stride` leaves out pulses.
-[[nodiscard]] inline Canopy canopy(const Results& results, const Pulses& pulses, const std::function<double(const Vec2&)>& height,
-                                   std::size_t stride = 1) {
+[[nodiscard]] inline Canopy canopy(const Results& results, const Pulses& pulses,
+                                   const std::function<double(const Vec2&)>& height, std::size_t stride = 1) {
   Canopy found;
   double gaps = 0;
   std::size_t asked = 0;
@@ -141,7 +147,9 @@ struct Canopy {
 
 inline void compare(const Canopy& reference, const Canopy& found, Errors& errors) {
   errors.gap_fraction = found.gap_fraction - reference.gap_fraction;
-  const auto difference = [&](double share) { return percentile(found.heights, share) - percentile(reference.heights, share); };
+  const auto difference = [&](double share) {
+    return percentile(found.heights, share) - percentile(reference.heights, share);
+  };
   errors.height_50 = difference(0.5);
   errors.height_95 = difference(0.95);
   errors.height_99 = difference(0.99);

@@ -24,12 +24,15 @@ namespace tradeoff {
 [[nodiscard]] inline MeshData ten_kilometres(const Vec3& place) {
   constexpr std::uint32_t cells = 1000;
   constexpr double side = 10e3;
-  Raster raster{
-      .columns = cells + 1, .rows = cells + 1, .first = {place.x - side / 2, place.y + side / 2}, .pixel = {side / cells, side / cells}};
+  Raster raster{.columns = cells + 1,
+                .rows = cells + 1,
+                .first = {place.x - side / 2, place.y + side / 2},
+                .pixel = {side / cells, side / cells}};
   for (std::uint32_t r = 0; r <= cells; ++r)
     for (std::uint32_t c = 0; c <= cells; ++c)
       raster.heights.push_back(static_cast<float>(place.z + 300 * wood::noise(21, c / 160.0, r / 160.0) +
-                                                  20 * wood::noise(22, c / 9.0, r / 9.0) + 2 * wood::noise(23, c / 1.3, r / 1.3)));
+                                                  20 * wood::noise(22, c / 9.0, r / 9.0) +
+                                                  2 * wood::noise(23, c / 1.3, r / 1.3)));
   return raster.mesh();
 }
 
@@ -39,14 +42,17 @@ namespace tradeoff {
   const LatticeFootprint footprint(19);
   bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto anywhere = [&](double z) { return Vec3{dice.between(box.min.x, box.max.x), dice.between(box.min.y, box.max.y), z}; };
+    const auto anywhere = [&](double z) {
+      return Vec3{dice.between(box.min.x, box.max.x), dice.between(box.min.y, box.max.y), z};
+    };
     const Vec3 place = anywhere(box.max.z + 1500), towards = normalize(anywhere(box.centre().z) - place);
     const Rotation rotation =
         rotation_about(axis::up, std::atan2(-towards.x, towards.y)) * rotation_about(axis::right, std::asin(towards.z));
     RayBundle rays;
     rays.origin = place;
     rays.size = footprint.size();
-    for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, rotation * subray_direction(footprint.offset(j), 0.3e-3));
+    for (std::size_t j = 0; j < rays.size; ++j)
+      rays.set_direction(j, rotation * subray_direction(footprint.offset(j), 0.3e-3));
     rays.pad();
     all.add(rays);
   }
@@ -70,15 +76,16 @@ inline void measure_precision(bench::Report& report) {
       others += met != as_well ? 1 : 0;
       if (met && as_well) differences.push_back(1e3 * std::fabs(a[i].range - b[i].range));
     }
-    const auto times = report.by_turns(
-        {[&] { bench::keep(bench::sum_of_ranges(single, beams)); }, [&] { bench::keep(bench::sum_of_ranges(exact, beams)); }});
-    report.row(std::string("precision/") + name, {{"rays", static_cast<double>(a.size())},
-                                                  {"met by one only", static_cast<double>(others)},
-                                                  {"99.99 % of differences within, mm", percentile(differences, 0.9999)},
-                                                  {"largest, mm", percentile(differences, 1)},
-                                                  {"times as fast", bench::speed_ratio(times[0], times[1])},
-                                                  {"MiB, float", static_cast<double>(single.memory()) / (1 << 20)},
-                                                  {"MiB, double", static_cast<double>(exact.memory()) / (1 << 20)}});
+    const auto times = report.by_turns({[&] { bench::keep(bench::sum_of_ranges(single, beams)); },
+                                        [&] { bench::keep(bench::sum_of_ranges(exact, beams)); }});
+    report.row(std::string("precision/") + name,
+               {{"rays", static_cast<double>(a.size())},
+                {"met by one only", static_cast<double>(others)},
+                {"99.99 % of differences within, mm", percentile(differences, 0.9999)},
+                {"largest, mm", percentile(differences, 1)},
+                {"times as fast", bench::speed_ratio(times[0], times[1])},
+                {"MiB, float", static_cast<double>(single.memory()) / (1 << 20)},
+                {"MiB, double", static_cast<double>(exact.memory()) / (1 << 20)}});
   }
 }
 

@@ -16,12 +16,14 @@ namespace tradeoff {
 
 using namespace pulsecast;
 
-/// Pulses that are known beforehand, so that all settings of a scenario get the same ones, and making them is in nobody's time.
+/// Pulses that are known beforehand, so that all settings of a scenario get the same ones, and making them is in
+/// nobody's time.
 class Pulses {
  public:
   Pulses() = default;
   Pulses(std::vector<Pulse<frame::World>> all, std::vector<Emitter> emitters)
-      : all_(std::make_shared<const std::vector<Pulse<frame::World>>>(std::move(all))), emitters_(std::move(emitters)) {}
+      : all_(std::make_shared<const std::vector<Pulse<frame::World>>>(std::move(all))),
+        emitters_(std::move(emitters)) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return all_->size(); }
   [[nodiscard]] Tick duration() const noexcept { return all_->back().tick; }
@@ -29,7 +31,8 @@ class Pulses {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return (*all_)[i]; }
 
  private:
-  std::shared_ptr<const std::vector<Pulse<frame::World>>> all_ = std::make_shared<const std::vector<Pulse<frame::World>>>();
+  std::shared_ptr<const std::vector<Pulse<frame::World>>> all_ =
+      std::make_shared<const std::vector<Pulse<frame::World>>>();
   std::vector<Emitter> emitters_;
 };
 

@@ -13,23 +13,27 @@
 #include "errors.hpp"
 #include "pulses.hpp"
 
-/// How well footprints of so many subrays tell the energy that a Gaussian beam sends past an edge, or onto a wire. No scene, no pulses.
+/// How well footprints of so many subrays tell the energy that a Gaussian beam sends past an edge, or onto a wire. No
+/// scene, no pulses.
 namespace tradeoff {
 
 struct Quadrature {
   double edge, wire;  ///< root of the mean square error, of the energy of the beam [%]
 };
 
-/// Edges pass anywhere out to the beam's 1/e^2 radius, and so do the axes of wires, whose width is a fifth to three fifths of it.
-/// In any direction, or within a degree of upright or level.
+/// Edges pass anywhere out to the beam's 1/e^2 radius, and so do the axes of wires, whose width is a fifth to three
+/// fifths of it. In any direction, or within a degree of upright or level.
 [[nodiscard]] inline Quadrature quadrature(const Pattern& pattern, bool upright) {
   constexpr int lines = 4000;
   wood::Dice dice(31, upright ? 1 : 0);
-  const auto inside = [](double x) { return 0.5 * std::erfc(-std::sqrt(2.0) * x); };  // of a standard deviation of half a radius
+  const auto inside = [](double x) {
+    return 0.5 * std::erfc(-std::sqrt(2.0) * x);
+  };  // of a standard deviation of half a radius
   Mean edge, wire;
   for (int k = 0; k < lines; ++k) {
     const double aslant = dice.between(-1, 1), direction = upright ? (k % 2) * pi / 2 + aslant * pi / 180 : pi * aslant;
-    const double at = dice.between(-1, 1), half = dice.between(0.1, 0.3), x = std::cos(direction), y = std::sin(direction);
+    const double at = dice.between(-1, 1), half = dice.between(0.1, 0.3), x = std::cos(direction),
+                 y = std::sin(direction);
     double past = 0, on = 0;
     for (std::size_t j = 0; j < pattern.size(); ++j) {
       const double across = pattern.offset(j).x * x + pattern.offset(j).y * y;
@@ -47,8 +51,8 @@ inline void write_quadrature(std::FILE* out) {
   std::fprintf(out, "footprint,subrays,upright_edge_percent,upright_wire_percent,any_edge_percent,any_wire_percent\n");
   const auto write = [&](const Pattern& pattern) {
     const Quadrature upright = quadrature(pattern, true), any = quadrature(pattern, false);
-    std::fprintf(out, "%s,%zu,%.4g,%.4g,%.4g,%.4g\n", pattern.kind().c_str(), pattern.size(), upright.edge, upright.wire, any.edge,
-                 any.wire);
+    std::fprintf(out, "%s,%zu,%.4g,%.4g,%.4g,%.4g\n", pattern.kind().c_str(), pattern.size(), upright.edge,
+                 upright.wire, any.edge, any.wire);
   };
   for (std::size_t circles = 1; circles <= 10; ++circles) write(rings(circles));
   for (const auto make : {sunflower, lattice})

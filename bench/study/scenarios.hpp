@@ -28,9 +28,9 @@ namespace tradeoff {
 using namespace pulsecast::literals;
 
 /// A scene of any of the kinds that are compared.
-using Map =
-    std::variant<std::shared_ptr<const Scene<Mesh>>, std::shared_ptr<const Scene<ExactMesh>>, std::shared_ptr<const Scene<HeightField>>,
-                 std::shared_ptr<const Scene<Mesh, Solid>>, std::shared_ptr<const Scene<Mesh, Foliage>>>;
+using Map = std::variant<std::shared_ptr<const Scene<Mesh>>, std::shared_ptr<const Scene<ExactMesh>>,
+                         std::shared_ptr<const Scene<HeightField>>, std::shared_ptr<const Scene<Mesh, Solid>>,
+                         std::shared_ptr<const Scene<Mesh, Foliage>>>;
 
 /// Another form of the scene.
 struct Form {
@@ -43,10 +43,11 @@ struct Scenario {
   Map map{}, exact{};         ///< of meshes, in single and in double precision
   std::vector<Form> forms{};  ///< besides
   Pulses pulses{};
-  double threshold = 0;                         ///< [W]
-  double gate = 0.3;                            ///< how far apart echoes of two settings may be and be the same: half the pulse [m]
-  std::function<double(const Vec2&)> ground{};  ///< height of the ground where plants stand [m]; empty if there are none
-  bool turned = false;                          ///< footprints are tried turned by 30 degrees, too
+  double threshold = 0;  ///< [W]
+  double gate = 0.3;     ///< how far apart echoes of two settings may be and be the same: half the pulse [m]
+  std::function<double(const Vec2&)>
+      ground{};         ///< height of the ground where plants stand [m]; empty if there are none
+  bool turned = false;  ///< footprints are tried turned by 30 degrees, too
 };
 
 template <class S>
@@ -54,7 +55,8 @@ template <class S>
   return std::make_shared<const std::remove_cvref_t<S>>(std::forward<S>(scene));
 }
 
-/// The pulses whose beams meet more than one thing: of the rays out to 1.2 radii some differ in what they meet, or by a hand's breadth.
+/// The pulses whose beams meet more than one thing: of the rays out to 1.2 radii some differ in what they meet, or by a
+/// hand's breadth.
 template <class AnyScene>
 [[nodiscard]] auto meets_an_edge(const AnyScene& scene, const Laser& laser) {
   return [&scene, &laser, footprint = SunflowerFootprint(37),
@@ -67,7 +69,8 @@ template <class AnyScene>
     rays.pad();
     scene.closest(rays, hits);
     for (std::size_t j = 1; j < rays.size; ++j)
-      if (hits[j].met() != hits[0].met() || hits[j].object != hits[0].object || std::fabs(hits[j].range - hits[0].range) > 0.05)
+      if (hits[j].met() != hits[0].met() || hits[j].object != hits[0].object ||
+          std::fabs(hits[j].range - hits[0].range) > 0.05)
         return true;
     return false;
   };
@@ -82,8 +85,9 @@ template <class AnyScene>
   for (std::uint32_t r = 0; r <= cells; ++r)
     for (std::uint32_t c = 0; c <= cells; ++c) {
       const double x = c * pixel, y = r * pixel;
-      raster.heights.push_back(static_cast<float>(25 * wood::noise(11, x / 130, y / 130) + 4 * wood::noise(12, x / 31, y / 31) +
-                                                  0.6 * wood::noise(13, x / 6, y / 6) + 0.15 * wood::noise(14, x / 1.1, y / 1.1)));
+      raster.heights.push_back(
+          static_cast<float>(25 * wood::noise(11, x / 130, y / 130) + 4 * wood::noise(12, x / 31, y / 31) +
+                             0.6 * wood::noise(13, x / 6, y / 6) + 0.15 * wood::noise(14, x / 1.1, y / 1.1)));
     }
   return raster;
 }
@@ -95,7 +99,8 @@ template <class AnyScene>
     return Scene<Mesh>({{.geometry = std::make_shared<const Mesh>(rough_ground(every).mesh()), .materials = soil}});
   };
   const auto field = [&](std::uint32_t every) {
-    return Scene<HeightField>({{.geometry = std::make_shared<const HeightField>(rough_ground(every)), .materials = soil}});
+    return Scene<HeightField>(
+        {{.geometry = std::make_shared<const HeightField>(rough_ground(every)), .materials = soil}});
   };
   const Scene<Mesh> whole = mesh(1);
   s.exact = shared(in_double(whole));
@@ -136,7 +141,9 @@ template <class AnyScene>
   const Platform tripod{
       Tripod{.position = wood::glades(1).front()}, Mount{.lever_arm = {0, 0, 1.7}},
       Deflector{RotatingHead{.rate = 360_deg / scanner.duration().seconds()},
-                Deflector{PolygonMirror{.lines_per_second = 100_kHz * 0.1_deg / 180_deg, .sweep = 90_deg, .angle_min = -70_deg}, scanner}}};
+                Deflector{PolygonMirror{
+                              .lines_per_second = 100_kHz * 0.1_deg / 180_deg, .sweep = 90_deg, .angle_min = -70_deg},
+                          scanner}}};
   s.pulses = sampled(tripod, pulses);
   return s;
 }
@@ -152,7 +159,8 @@ template <class AnyScene, class Plant>
     for (double y = -26; y <= 26; y += 6.5) {
       const Vec2 at{x + dice.between(-1.5, 1.5), y + dice.between(-1.5, 1.5)};
       const std::size_t kind = dice.between(0, 1) < 0.5 ? 0 : 1;
-      const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1), terrain.on(at)};
+      const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1),
+                                 terrain.on(at)};
       for (auto part : plant(kind)) {
         part.materials = material_table(wood::materials());
         part.placement = placement;
@@ -167,9 +175,11 @@ template <class AnyScene, class Plant>
   Scenario s{.name = "wood_drone", .title = "A wood from a drone", .threshold = 1500_nW, .gate = 0.225};
   const std::array kinds{
       wood::broadleaf({}, wood::Dice(1, 1)),
-      wood::broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.42, .spread = 3.8, .steepness = 0.75}, wood::Dice(1, 2))};
+      wood::broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.42, .spread = 3.8, .steepness = 0.75},
+                      wood::Dice(1, 2))};
   const std::array meshes{std::make_shared<const Mesh>(kinds[0]), std::make_shared<const Mesh>(kinds[1])};
-  const auto whole = grove<Scene<Mesh>>([&](std::size_t kind) { return std::vector<Scene<Mesh>::Part>{{.geometry = meshes[kind]}}; });
+  const auto whole =
+      grove<Scene<Mesh>>([&](std::size_t kind) { return std::vector<Scene<Mesh>::Part>{{.geometry = meshes[kind]}}; });
   s.exact = shared(in_double(whole));
   s.map = shared(whole);
   for (const std::size_t one_in : {2U, 4U, 8U})
@@ -183,10 +193,12 @@ template <class AnyScene, class Plant>
     using Leaves = Scene<Mesh, Foliage>;
     const std::array solids{std::make_shared<const Solid>(voxels_of(kinds[0], edge)),
                             std::make_shared<const Solid>(voxels_of(kinds[1], edge))};
-    s.forms.push_back({"voxels of " + std::to_string(cm) + " cm",
-                       shared(grove<Solids>([&](std::size_t kind) { return std::vector<Solids::Part>{{.geometry = solids[kind]}}; }))});
+    s.forms.push_back({"voxels of " + std::to_string(cm) + " cm", shared(grove<Solids>([&](std::size_t kind) {
+                         return std::vector<Solids::Part>{{.geometry = solids[kind]}};
+                       }))});
     const auto foliage = [&](const MeshData& tree) {
-      return std::make_shared<const Foliage>(voxels_of(those_of(tree, is_leaf), edge), TransmissiveVoxels{LeafAngles::spherical()});
+      return std::make_shared<const Foliage>(voxels_of(those_of(tree, is_leaf), edge),
+                                             TransmissiveVoxels{LeafAngles::spherical()});
     };
     const std::array leaves{foliage(kinds[0]), foliage(kinds[1])};
     s.forms.push_back({"leaves by chance of " + std::to_string(cm) + " cm", shared(grove<Leaves>([&](std::size_t kind) {
@@ -227,15 +239,18 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   for (int k = 0; k < pieces; ++k) street::add_tube(mesh, at(k), at(k + 1), radius, radius, 6, street::metal);
 }
 
-/// Two houses of the street, with wires, a railing and a scaffold before them: many edges upright and level, some aslant.
+/// Two houses of the street, with wires, a railing and a scaffold before them: many edges upright and level, some
+/// aslant.
 [[nodiscard]] inline Scenario facade(std::size_t pulses) {
   Scenario s{.name = "facade", .title = "A facade with edges and wires", .threshold = 500_nW, .turned = true};
   MeshData ground, wires;
   street::add_face(ground, {{-40, -45, 0}, {40, -45, 0}, {40, 5, 0}, {-40, 5, 0}}, street::paving);
   for (int k = 0; k < 6; ++k)
-    add_wire(wires, {-14, -1.5 - 0.4 * k, 4.0 + 1.3 * k}, {14, -1.5 - 0.3 * k, 4.2 + 1.3 * k}, k % 2 == 0 ? 0 : 0.3, 0.002 + 0.002 * k);
+    add_wire(wires, {-14, -1.5 - 0.4 * k, 4.0 + 1.3 * k}, {14, -1.5 - 0.3 * k, 4.2 + 1.3 * k}, k % 2 == 0 ? 0 : 0.3,
+             0.002 + 0.002 * k);
   for (int k = 0; k < 5; ++k) add_wire(wires, {-12.0 + 6 * k, -1, 0}, {-9.0 + 6 * k, -0.6, 12}, 0, 0.006);  // guys
-  for (int k = 0; k < 60; ++k) street::add_tube(wires, {-6 + 0.2 * k, -2, 0}, {-6 + 0.2 * k, -2, 1.1}, 0.006, 0.006, 6, street::metal);
+  for (int k = 0; k < 60; ++k)
+    street::add_tube(wires, {-6 + 0.2 * k, -2, 0}, {-6 + 0.2 * k, -2, 1.1}, 0.006, 0.006, 6, street::metal);
   street::add_tube(wires, {-6, -2, 1.1}, {6, -2, 1.1}, 0.02, 0.02, 8, street::metal);
   for (int k = 0; k < 4; ++k) {
     street::add_tube(wires, {-14.0 + 2.5 * k, -1.2, 0}, {-14.0 + 2.5 * k, -1.2, 10}, 0.024, 0.024, 8, street::metal);
@@ -251,17 +266,18 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
                            {model(wires), table, {}, 3}});
   for (const int cm : {5, 10, 20, 50}) {
     const auto solid = [&](const MeshData& data) { return std::make_shared<const Solid>(voxels_of(data, 0.01 * cm)); };
-    s.forms.push_back(
-        {"voxels of " + std::to_string(cm) + " cm", shared(Scene<Mesh, Solid>({{model(ground), table, {}, 0},
-                                                                               {solid(left), table, {.translation = left_place}, 1},
-                                                                               {solid(right), table, {.translation = right_place}, 2},
-                                                                               {solid(wires), table, {}, 3}}))});
+    s.forms.push_back({"voxels of " + std::to_string(cm) + " cm",
+                       shared(Scene<Mesh, Solid>({{model(ground), table, {}, 0},
+                                                  {solid(left), table, {.translation = left_place}, 1},
+                                                  {solid(right), table, {.translation = right_place}, 2},
+                                                  {solid(wires), table, {}, 3}}))});
   }
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.6_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 4'000'000, .laser = laser};
-  const Platform tripod{Tripod{.position = {0, -35, 0}}, Mount{.lever_arm = {0, 0, 1.7}},
-                        Deflector{RotatingHead{.rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
-                                  Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
+  const Platform tripod{
+      Tripod{.position = {0, -35, 0}}, Mount{.lever_arm = {0, 0, 1.7}},
+      Deflector{RotatingHead{.rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
+                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
   s.pulses = sampled(tripod, pulses, meets_an_edge(whole, laser));
   s.exact = shared(in_double(whole));
   s.map = shared(whole);
@@ -276,16 +292,20 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   street::Dice dice(7, 0);
   for (double x = -50; x <= 50; x += 2.5)
     for (double y = -50; y <= 50; y += 2.5) {
-      const double turn = dice.between(0, 90_deg), size = dice.between(0.3, 1.0), height = 0.05 * std::pow(12, dice.between(0, 1));
-      const Vec3 middle{x, y, height}, along = size * Vec3(std::cos(turn), std::sin(turn), 0), across = cross(axis::up, along);
-      const std::array<Vec3, 4> corners{middle - along - across, middle + along - across, middle + along + across, middle - along + across};
+      const double turn = dice.between(0, 90_deg), size = dice.between(0.3, 1.0),
+                   height = 0.05 * std::pow(12, dice.between(0, 1));
+      const Vec3 middle{x, y, height}, along = size * Vec3(std::cos(turn), std::sin(turn), 0),
+                                       across = cross(axis::up, along);
+      const std::array<Vec3, 4> corners{middle - along - across, middle + along - across, middle + along + across,
+                                        middle - along + across};
       street::add_face(mesh, {corners[0], corners[1], corners[2], corners[3]}, street::paving);
       for (std::size_t k = 0; k < 4; ++k) {
         const Vec3 &a = corners[k], &b = corners[(k + 1) % 4];
         street::add_face(mesh, {a, b, b - height * axis::up, a - height * axis::up}, street::paving);
       }
     }
-  const Scene<Mesh> whole({{.geometry = std::make_shared<const Mesh>(mesh), .materials = material_table(street::materials())}});
+  const Scene<Mesh> whole(
+      {{.geometry = std::make_shared<const Mesh>(mesh), .materials = material_table(street::materials())}});
   const Laser laser{.wavelength = 1064_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.5_mrad};
   const Platform airplane{StraightLine{.from = {0, -48, 1000}, .to = {0, 48, 1000}, .speed = 60},
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},

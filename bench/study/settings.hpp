@@ -50,7 +50,8 @@ struct Setting {
 /// Every setting of a scenario that is measured, the default first.
 [[nodiscard]] inline std::vector<Setting> settings_for(const Scenario& scenario) {
   std::vector<Setting> all{{.knob = "default", .value = "", .map = scenario.map, .is_default = true}};
-  all[0].value = all[0].footprint.kind() + " " + std::to_string(all[0].footprint.size()) + " (" + bin_name(all[0].bin) + ")";
+  all[0].value =
+      all[0].footprint.kind() + " " + std::to_string(all[0].footprint.size()) + " (" + bin_name(all[0].bin) + ")";
   const auto add = [&](const std::string& knob, const std::string& value, auto change) {
     Setting setting = all[0];
     setting.knob = knob;
@@ -61,21 +62,23 @@ struct Setting {
   };
   std::vector<Pattern> patterns;
   for (std::size_t circles = 1; circles <= 10; ++circles) patterns.push_back(rings(circles));
-  const std::size_t as_many[]{1, 3, 4, 7, 9, 13, 18, 19, 31, 37, 62, 93, 130, 279};  // as in rings, and half as many as in the first ones
+  const std::size_t as_many[]{1,  3,  4,  7,  9,  13,  18,
+                              19, 31, 37, 62, 93, 130, 279};  // as in rings, and half as many as in the first ones
   for (const std::size_t subrays : as_many)
     for (const Pattern& pattern : {sunflower(subrays), lattice(subrays)}) patterns.push_back(pattern);
   for (const Pattern& pattern : patterns)
     add("subrays", pattern.kind() + " " + std::to_string(pattern.size()), [&](Setting& s) { s.footprint = pattern; });
   if (scenario.turned)
-    for (const Pattern& pattern :
-         {rings(2), rings(3), rings(4), sunflower(9), sunflower(13), sunflower(19), lattice(9), lattice(13), lattice(19)})
+    for (const Pattern& pattern : {rings(2), rings(3), rings(4), sunflower(9), sunflower(13), sunflower(19), lattice(9),
+                                   lattice(13), lattice(19)})
       add("turned", pattern.kind() + " " + std::to_string(pattern.size()), [&](Setting& s) {
         s.footprint = pattern.turned(30_deg);
         s.comparable = false;
       });
 
   add("precision", "double", [&](Setting& s) { s.map = scenario.exact; });
-  for (const double bin : {0.05e-9, 0.1e-9, 0.5e-9, 1e-9, 2e-9, 0.0}) add("bins", bin_name(bin), [&](Setting& s) { s.bin = bin; });
+  for (const double bin : {0.05e-9, 0.1e-9, 0.5e-9, 1e-9, 2e-9, 0.0})
+    add("bins", bin_name(bin), [&](Setting& s) { s.bin = bin; });
   for (const std::size_t subrays : {1U, 4U, 7U, 37U, 62U})
     for (const double bin : {0.1e-9, 0.5e-9, 1e-9, 0.0})
       add("both", "lattice " + std::to_string(subrays) + " (" + bin_name(bin) + ")", [&](Setting& s) {
@@ -128,13 +131,15 @@ auto with_detector(double bin, Width width, double threshold, Function function)
   return std::visit(
       [&](const auto& map) {
         return with_detector(setting.bin, width, scenario.threshold, [&](const auto& detector) {
-          return results_of(Survey(scenario.pulses, WithSubrayRecord(setting.footprint), *map, Receiver{}, detector, 1), setting.footprint);
+          return results_of(Survey(scenario.pulses, WithSubrayRecord(setting.footprint), *map, Receiver{}, detector, 1),
+                            setting.footprint);
         });
       },
       setting.map);
 }
 
-/// A go of a setting through runs of the pulses of a scenario, fewer where one takes long; and how many pulses that are.
+/// A go of a setting through runs of the pulses of a scenario, fewer where one takes long; and how many pulses that
+/// are.
 struct Work {
   std::function<void()> go;
   std::size_t pulses;

@@ -115,7 +115,8 @@ template <class IsLeaf>
           q = 1 - q;
         }
         const Vec3 at = (t.a + p * ab + q * ac - box.min) / edge;
-        Cell& cell = cells[{static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y), static_cast<std::uint32_t>(at.z)}];
+        Cell& cell = cells[{static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y),
+                            static_cast<std::uint32_t>(at.z)}];
         const Vec3 normal = each * normalize(across);
         cell.normal += dot(cell.normal, normal) < 0 ? -normal : normal;
         cell.area += each;

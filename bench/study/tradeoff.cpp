@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What each setting costs and what it buys: time, memory, and errors against a reference of 2,001 subrays, double precision and the
-// analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins. Rows are named
-// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/study/tradeoff.sh` runs it, draws
-// docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md. Files on the command line: where a CSV file of all settings, and
-// one of footprints on edges and wires, are left.
+// What each setting costs and what it buys: time, memory, and errors against a reference of 2,001 subrays, double
+// precision and the analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and
+// subrays by bins. Rows are named scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses.
+// `bench/study/tradeoff.sh` runs it, draws docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md.
+// Files on the command line: where a CSV file of all settings, and one of footprints on edges and wires, are left.
 
 #include <algorithm>
 #include <array>
@@ -63,7 +63,8 @@ std::vector<Point> measure(const bench::Report& report, const Scenario& scenario
   const Results with_moments = results_of(scenario, reference);
   reference.width = Width::fit;
   const Results with_fit = results_of(scenario, reference);
-  std::fprintf(stderr, "  %zu pulses, %zu echoes in the reference\n", with_moments.pulses(), with_moments.echoes.size());
+  std::fprintf(stderr, "  %zu pulses, %zu echoes in the reference\n", with_moments.pulses(),
+               with_moments.echoes.size());
   const auto canopy_of = [&](const Results& results, std::size_t stride) {
     return scenario.ground ? canopy(results, scenario.pulses, scenario.ground, stride) : Canopy{};
   };
@@ -91,7 +92,8 @@ std::vector<Point> measure(const bench::Report& report, const Scenario& scenario
   }
   std::fprintf(stderr, "  %zu settings compared; timing %zu by turns\n", points.size(), works.size());
   const std::vector<bench::Times> times = report.by_turns(works);
-  for (std::size_t i = 0; i < times.size(); ++i) points[i].seconds = bench::median(times[i]) / static_cast<double>(pulses[i]);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    points[i].seconds = bench::median(times[i]) / static_cast<double>(pulses[i]);
   for (Point& point : points)
     if (point.setting.stride > 1) point.seconds = points[0].seconds / static_cast<double>(point.setting.stride);
   find_fronts(points);
@@ -102,12 +104,13 @@ void write_csv(std::FILE* out, const Scenario& scenario, const std::vector<Point
   for (const Point& p : points) {
     const Setting& s = p.setting;
     const Errors& e = p.errors;
-    std::fprintf(out, "%s,%s,%s,%s,%zu,%s,%d,", scenario.name.c_str(), s.knob.c_str(), s.value.c_str(), s.footprint.kind().c_str(),
-                 s.footprint.size(), bin_name(s.bin).c_str(), s.comparable ? 1 : 0);
-    const double figures[]{1e9 * p.seconds,     1 / p.seconds,  p.memory,   1e3 * e.range_bias,    1e3 * e.range_spread, 1e3 * e.range_rms,
-                           1e3 * e.range_95,    e.missed,       e.invented, e.missed + e.invented, e.intensity_bias,     e.intensity,
-                           1e12 * e.width_bias, 1e12 * e.width, e.echoes,   e.gap_fraction,        e.height_50,          e.height_95,
-                           e.height_99};
+    std::fprintf(out, "%s,%s,%s,%s,%zu,%s,%d,", scenario.name.c_str(), s.knob.c_str(), s.value.c_str(),
+                 s.footprint.kind().c_str(), s.footprint.size(), bin_name(s.bin).c_str(), s.comparable ? 1 : 0);
+    const double figures[]{1e9 * p.seconds,      1 / p.seconds,         p.memory,         1e3 * e.range_bias,
+                           1e3 * e.range_spread, 1e3 * e.range_rms,     1e3 * e.range_95, e.missed,
+                           e.invented,           e.missed + e.invented, e.intensity_bias, e.intensity,
+                           1e12 * e.width_bias,  1e12 * e.width,        e.echoes,         e.gap_fraction,
+                           e.height_50,          e.height_95,           e.height_99};
     for (const double figure : figures) std::fprintf(out, "%.5g,", figure);
     std::fprintf(out, "%d,%d,%d", p.on_front[0] ? 1 : 0, p.on_front[1] ? 1 : 0, p.on_front[2] ? 1 : 0);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -137,9 +140,11 @@ void add_rows(bench::Report& report, const Scenario& scenario, const std::vector
 }
 
 /// Settings by pairs, each with its errors by those of the other. An interval with 1 inside is no ranking.
-void rank(bench::Report& report, const Scenario& scenario, const std::vector<Point>& points, const Bootstrap& bootstrap) {
+void rank(bench::Report& report, const Scenario& scenario, const std::vector<Point>& points,
+          const Bootstrap& bootstrap) {
   const auto named = [&](const std::string& name) {
-    return std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.setting.knob + " " + p.setting.value == name; });
+    return std::find_if(points.begin(), points.end(),
+                        [&](const Point& p) { return p.setting.knob + " " + p.setting.value == name; });
   };
   const std::string standard = "default " + points[0].setting.value;
   const std::pair<std::string, std::string> pairs[]{{standard, "subrays rings 7"},
@@ -191,9 +196,12 @@ int main(int count, char** words) {
   const auto& files = report.files();
   std::FILE* csv = opened(files.empty() ? "/dev/null" : files[0]);
   std::fprintf(csv,
-               "scenario,knob,value,footprint,subrays,detector,comparable,ns_per_pulse,pulses_per_second,scene_mib,range_bias_mm,"
-               "range_spread_mm,range_rms_mm,range_95_mm,missed_percent,invented_percent,echoes_wrong_percent,intensity_bias_percent,"
-               "intensity_percent,width_bias_ps,width_ps,echoes_percent,gap_fraction_percent,height_50_m,height_95_m,height_99_m,"
+               "scenario,knob,value,footprint,subrays,detector,comparable,ns_per_pulse,pulses_per_second,scene_mib,"
+               "range_bias_mm,"
+               "range_spread_mm,range_rms_mm,range_95_mm,missed_percent,invented_percent,echoes_wrong_percent,"
+               "intensity_bias_percent,"
+               "intensity_percent,width_bias_ps,width_ps,echoes_percent,gap_fraction_percent,height_50_m,height_95_m,"
+               "height_99_m,"
                "front_range,front_echoes,front_intensity,range_rms_low_mm,range_rms_high_mm,echoes_wrong_low_percent,"
                "echoes_wrong_high_percent,intensity_low_percent,intensity_high_percent\n");
   if (files.size() > 1) {

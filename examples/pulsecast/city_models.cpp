@@ -12,10 +12,12 @@ using namespace pulsecast;
 
 helios::CityReader city_models() {
   return [](const std::filesystem::path& path, const io::MeshFileSettings& settings, unsigned threads) {
-    return io::read_citygml(
-               path,
-               {.materials = settings.materials, .spectra = settings.spectra, .isolated = settings.isolated, .limits = settings.limits},
-               threads)
+    return io::read_citygml(path,
+                            {.materials = settings.materials,
+                             .spectra = settings.spectra,
+                             .isolated = settings.isolated,
+                             .limits = settings.limits},
+                            threads)
         .file;
   };
 }

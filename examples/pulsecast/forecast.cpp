@@ -33,7 +33,8 @@ constexpr std::size_t kinds = 3;
 
 Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
 
-// ------------------------------------------------------------------------------------------------------------------ slots
+// ------------------------------------------------------------------------------------------------------------------
+// slots
 
 /// Results of single slots, spread over the whole survey.
 struct Census {
@@ -44,8 +45,8 @@ struct Census {
   std::uint64_t sampled = 0;
 };
 
-/// Total over a survey of `size` slots from a sample in order. The variance is from differences of neighbours. Source: Cochran 1977,
-/// sections 5.3 and 5A.12.
+/// Total over a survey of `size` slots from a sample in order. The variance is from differences of neighbours. Source:
+/// Cochran 1977, sections 5.3 and 5A.12.
 Estimate total_of(const std::vector<double>& sample, std::uint64_t size) {
   if (sample.empty()) return {};
   double sum = 0, differences = 0;
@@ -53,16 +54,18 @@ Estimate total_of(const std::vector<double>& sample, std::uint64_t size) {
     sum += sample[i];
     if (i > 0) differences += std::pow(sample[i] - sample[i - 1], 2);
   }
-  const double n = static_cast<double>(sample.size()), all = static_cast<double>(size), each = all / n, value = sum * each;
+  const double n = static_cast<double>(sample.size()), all = static_cast<double>(size), each = all / n,
+               value = sum * each;
   const double deviation = n < 2 ? 0 : each * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
   // Upper limit after n trials without success: 3 in n. Source: Hanley & Lippman-Hand 1983.
   const double none = sample.size() == size ? 0 : 3 * each;
   return {value, std::max(sum, value - 2 * deviation), sum > 0 ? value + 2 * deviation : none};
 }
 
-/// Stratified random sample: one slot from each of many equal strata. Rounds visit the strata, each spread over the whole survey. A small
-/// survey is counted in full.
-Census take_census(const Simulation& simulation, PulseLines counted, std::uint64_t seed, unsigned threads, double workers) {
+/// Stratified random sample: one slot from each of many equal strata. Rounds visit the strata, each spread over the
+/// whole survey. A small survey is counted in full.
+Census take_census(const Simulation& simulation, PulseLines counted, std::uint64_t seed, unsigned threads,
+                   double workers) {
   constexpr std::uint64_t rounds = 64, most = rounds << 12;
   const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, most),
                       each_round = (strata + rounds - 1) / rounds;
@@ -78,7 +81,8 @@ Census take_census(const Simulation& simulation, PulseLines counted, std::uint64
       if (i >= strata) continue;
       const double from = static_cast<double>(size) * static_cast<double>(i) / static_cast<double>(strata);
       const double width = static_cast<double>(size) / static_cast<double>(strata);
-      const double place = strata == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
+      const double place =
+          strata == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
       numbers.push_back(i);
       slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
     }
@@ -102,21 +106,25 @@ Census take_census(const Simulation& simulation, PulseLines counted, std::uint64
   census.points = total_of(echoes, size);
   census.lines = total_of(lines, size);
   for (std::size_t k = 0; k < kinds && census.sampled > 0; ++k)
-    census.slots[k] = static_cast<double>(census.found[k].size()) * static_cast<double>(size) / static_cast<double>(census.sampled);
+    census.slots[k] =
+        static_cast<double>(census.found[k].size()) * static_cast<double>(size) / static_cast<double>(census.sampled);
   return census;
 }
 
-/// Element of a list by golden-section steps: any number of first steps is spread over the whole list. Source: Weyl 1916.
+/// Element of a list by golden-section steps: any number of first steps is spread over the whole list. Source: Weyl
+/// 1916.
 PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number, double start) {
   const double at = start + static_cast<double>(number) * 0.6180339887498949;
-  return list[std::min(list.size() - 1, static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
+  return list[std::min(list.size() - 1,
+                       static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
 }
 
-// ------------------------------------------------------------------------------------------------------------------- time
+// -------------------------------------------------------------------------------------------------------------------
+// time
 
 /// Blocks of consecutive slots, each with a first slot of one kind.
-std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end, PulseIndex before,
-                                   PulseIndex length, std::uint64_t seed, PulseIndex size) {
+std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end,
+                                   PulseIndex before, PulseIndex length, std::uint64_t seed, PulseIndex size) {
   std::vector<SampleBlock> blocks;
   const std::vector<PulseIndex>& all = census.found[kind];
   const double start = uniform({.seed = seed, .pulse = kind, .subray = 3});
@@ -130,14 +138,16 @@ std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_
 /// Number of slots in a block by kind.
 std::array<double, kinds> kinds_in(const Sample& sample) {
   std::array<double, kinds> n{};
-  for (std::size_t f = 0; f < fate_count; ++f) n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.counts.fates[f]);
+  for (std::size_t f = 0; f < fate_count; ++f)
+    n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.counts.fates[f]);
   return n;
 }
 
-/// Cost of a slot of each kind [s], calibrated to the total of all slots: weighted least squares over blocks. A cost may be below zero, as
-/// costs vary within a kind and blocks mix kinds. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the
-/// regression estimator.
-std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times, std::span<const double> weights) {
+/// Cost of a slot of each kind [s], calibrated to the total of all slots: weighted least squares over blocks. A cost
+/// may be below zero, as costs vary within a kind and blocks mix kinds. Source: Sarndal, Swensson & Wretman 1992, Model
+/// Assisted Survey Sampling, chapter 6, the regression estimator.
+std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times,
+                                        std::span<const double> weights) {
   std::array<std::array<double, kinds + 1>, kinds> m{};
   for (std::size_t b = 0; b < kinds_of.size(); ++b) {
     const auto n = kinds_in(kinds_of[b]);
@@ -160,7 +170,8 @@ std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::s
   return cost;
 }
 
-/// Sampling weights: number of blocks of the survey per block of a sample, by the kind of its first slot. Source: Horvitz & Thompson 1952.
+/// Sampling weights: number of blocks of the survey per block of a sample, by the kind of its first slot. Source:
+/// Horvitz & Thompson 1952.
 std::vector<double> weights_of(const Census& census, std::span<const Kind> begin_at) {
   std::array<double, kinds> number{};
   for (const Kind kind : begin_at) ++number[kind];
@@ -175,10 +186,11 @@ double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& 
   return sum;
 }
 
-// ----------------------------------------------------------------------------------------------------------------- errors
+// -----------------------------------------------------------------------------------------------------------------
+// errors
 
-/// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the normal approximation of
-/// the binomial distribution.
+/// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the
+/// normal approximation of the binomial distribution.
 Estimate exceeded_by_few(std::vector<double>& all) {
   if (all.empty()) return {0, 0, std::numeric_limits<double>::infinity()};
   std::sort(all.begin(), all.end());
@@ -211,14 +223,16 @@ struct Differences {
   }
 };
 
-// --------------------------------------------------------------------------------------------------------------- together
+// ---------------------------------------------------------------------------------------------------------------
+// together
 
 /// Round numbers (1, 2, 5, 10 and so on) in an interval.
 std::vector<double> round_numbers(double from, double to) {
   std::vector<double> all;
   for (int power = static_cast<int>(std::floor(std::log10(from))); std::pow(10.0, power) <= to; ++power)
     for (const int digit : {1, 2, 5})
-      if (const double x = power < 0 ? digit / std::pow(10.0, -power) : digit * std::pow(10.0, power); x >= from && x <= to)
+      if (const double x = power < 0 ? digit / std::pow(10.0, -power) : digit * std::pow(10.0, power);
+          x >= from && x <= to)
         all.push_back(x);
   return all;
 }
@@ -227,7 +241,8 @@ std::size_t subrays_of(int rings) { return RingFootprint(static_cast<std::size_t
 
 class Forecaster {
  public:
-  Forecaster(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed, double loading)
+  Forecaster(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed,
+             double loading)
       : simulation_(simulation),
         survey_(survey),
         compiled_(simulation.compiled()),
@@ -309,7 +324,8 @@ class Forecaster {
       results.insert(results.end(), census_.found[missed].begin(), census_.found[missed].end());
     if (results.empty()) results = census_.found[blocked];
     std::sort(results.begin(), results.end());
-    for (std::uint64_t k = 0; k < 24; ++k) starts.push_back(spread_over(results, k, uniform({.seed = seed_, .subray = 4})));
+    for (std::uint64_t k = 0; k < 24; ++k)
+      starts.push_back(spread_over(results, k, uniform({.seed = seed_, .subray = 4})));
     writing_ = writing_costs(simulation_, options_, channels_, lines_, starts);
     if (trial_.complete) writing_.bytes.meet(trial_.bytes, trial_.points, trial_.lines);
   }
@@ -357,7 +373,8 @@ class Forecaster {
     if (other) {
       simulation_.receive(how);
       const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
-      if (own_cost_ > 0) computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
+      if (own_cost_ > 0)
+        computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
       add_points(samples, f.points);
     }
     entire(f, computing);
@@ -402,7 +419,8 @@ class Forecaster {
     const auto seconds = [&](double points, double unsure) {
       const double writing = writing_.seconds.growing(points, census_.lines.value);
       // One thread writes at a time, while the others compute.
-      return repetitions * (loading_ + unsure * (writing_.seconds.fixed + std::max(writing, (computing + writing) / workers_)));
+      return repetitions *
+             (loading_ + unsure * (writing_.seconds.fixed + std::max(writing, (computing + writing) / workers_)));
     };
     const double unsure = std::hypot(0.1, unsure_);  // sampling misses some effects: 10 % uncertainty
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
@@ -412,7 +430,8 @@ class Forecaster {
       return std::sqrt(std::pow(bytes.unsure * growing, 2) + std::pow(bytes.point * (points - f.points.value), 2) +
                        std::pow(bytes.line * (lines - census_.lines.value), 2));
     };
-    f.bytes = {repetitions * value, repetitions * std::max(bytes.fixed, value - margin(f.points.low, census_.lines.low)),
+    f.bytes = {repetitions * value,
+               repetitions * std::max(bytes.fixed, value - margin(f.points.low, census_.lines.low)),
                repetitions * (value + margin(f.points.high, census_.lines.high))};
     f.memory = trial_.memory(f.points.high, options_);
     for (double* end : {&f.points.value, &f.points.low, &f.points.high}) *end *= repetitions;
@@ -423,7 +442,8 @@ class Forecaster {
     const double reach = 0.25 * speed_of_light * pulse_length_;  // half a pulse length, two-way
     for (std::size_t b = 0; b < samples.size(); ++b)
       for (std::size_t k = 0; k < samples[b].shots.size(); ++k)
-        all.add(finer_[b].batch().echoes_of(finer_[b].shots[k]), samples[b].batch().echoes_of(samples[b].shots[k]), reach);
+        all.add(finer_[b].batch().echoes_of(finer_[b].shots[k]), samples[b].batch().echoes_of(samples[b].shots[k]),
+                reach);
     const double of_both = static_cast<double>(all.range.size());
     f.range_error = exceeded_by_few(all.range);
     f.intensity_error = exceeded_by_few(all.intensity);
@@ -460,6 +480,7 @@ class Forecaster {
 
 }  // namespace
 
-Forecasts forecasts_of(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed, double loading) {
+Forecasts forecasts_of(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed,
+                       double loading) {
   return Forecaster(simulation, survey, options, seed, loading).all();
 }

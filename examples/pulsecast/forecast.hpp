@@ -34,6 +34,7 @@ struct Forecasts {
   std::vector<Forecast> all{};  ///< the first has the survey's own settings
 };
 
-/// Simulates samples of a survey at several settings. The simulation must be new; `loading` is the time of making it [s].
-Forecasts forecasts_of(pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey, const Options& options,
-                       std::uint64_t seed, double loading);
+/// Simulates samples of a survey at several settings. The simulation must be new; `loading` is the time of making it
+/// [s].
+Forecasts forecasts_of(pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
+                       const Options& options, std::uint64_t seed, double loading);

@@ -25,7 +25,8 @@ namespace {
 /// Three significant digits, without an exponent.
 std::string digits(double x, double (*rounded)(double) = std::nearbyint) {
   if (!std::isfinite(x)) return "unknown";
-  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1, after = std::clamp(3 - before, 0, 9);
+  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1,
+            after = std::clamp(3 - before, 0, 9);
   const double unit = std::pow(10.0, after);
   std::ostringstream out;
   out << std::fixed << std::setprecision(after) << rounded(x * unit) / unit;
@@ -53,8 +54,8 @@ constexpr Unit one{1, ""}, percent{1e-2, "%"};
 /// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
 std::string told(const Estimate& e, const Unit& unit) {
   if (!std::isfinite(e.high)) return "unknown";
-  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" + digits(e.low / unit.size, std::floor) + " to " +
-         digits(e.high / unit.size, std::ceil) + ')';
+  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" +
+         digits(e.low / unit.size, std::floor) + " to " + digits(e.high / unit.size, std::ceil) + ')';
 }
 
 /// Chooses settings, with reasons.
@@ -90,20 +91,23 @@ class SettingsChooser {
                              [&](const Forecast& a, const Forecast& b) { return worst(a) < worst(b); });
   }
 
-  [[nodiscard]] int rings(const Forecast& f) const { return f.how.rings.value_or(survey_.scanner.channels.front().waveform.rings); }
+  [[nodiscard]] int rings(const Forecast& f) const {
+    return f.how.rings.value_or(survey_.scanner.channels.front().waveform.rings);
+  }
   [[nodiscard]] double bin_size(const Forecast& f) const {
     return f.how.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
   }
 
   [[nodiscard]] std::string settings(const Forecast& f) const {
-    return "beamSampleQuality " + std::to_string(rings(f)) + " (" + std::to_string(f.subrays) + (f.subrays == 1 ? " subray" : " subrays") +
-           "), binSize_ns " + digits(bin_size(f) * 1e9);
+    return "beamSampleQuality " + std::to_string(rings(f)) + " (" + std::to_string(f.subrays) +
+           (f.subrays == 1 ? " subray" : " subrays") + "), binSize_ns " + digits(bin_size(f) * 1e9);
   }
 
   [[nodiscard]] std::string demands() const {
     std::string all;
     const auto add = [&](const char* name, const std::optional<double>& asked, const Unit& unit) {
-      if (asked) all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + digits(*asked / unit.size) + ' ' + unit.name;
+      if (asked)
+        all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + digits(*asked / unit.size) + ' ' + unit.name;
     };
     add("a range error of", asked_.range_error, length_unit(asked_.range_error.value_or(1)));
     add("an intensity error of", asked_.intensity_error, percent);
@@ -114,13 +118,13 @@ class SettingsChooser {
 
   void print() const {
     const Forecast& as_is = found_.all.front();
-    std::cout << "survey   " << survey_.name << ": " << found_.slots << " pulses, " << pulsecast::thread_count(options_.threads)
-              << " threads, points as " << options_.format << "\nsample   " << found_.sampled << " pulses; the scene took "
-              << digits(found_.loading) << " s to load\n\n";
+    std::cout << "survey   " << survey_.name << ": " << found_.slots << " pulses, "
+              << pulsecast::thread_count(options_.threads) << " threads, points as " << options_.format << "\nsample   "
+              << found_.sampled << " pulses; the scene took " << digits(found_.loading) << " s to load\n\n";
     print("current settings: ", as_is);
-    std::cout
-        << "\n"
-           "  beamSampleQuality  subrays  binSize_ns    time [s]      points  range error [mm]  intensity error [%]  lost [%]  false [%]\n";
+    std::cout << "\n"
+                 "  beamSampleQuality  subrays  binSize_ns    time [s]      points  range error [mm]  intensity error "
+                 "[%]  lost [%]  false [%]\n";
     for (const Forecast* f : table()) {
       const auto column = [](int width, const std::string& text) { std::cout << std::setw(width) << text; };
       std::cout << (f == &as_is ? "  *" : "   ");
@@ -175,7 +179,8 @@ class SettingsChooser {
       });
       if (!dominated || options_.verbose || &f == &found_.all.front()) rows.push_back(&f);
     }
-    std::sort(rows.begin(), rows.end(), [](const Forecast* a, const Forecast* b) { return a->seconds.value < b->seconds.value; });
+    std::sort(rows.begin(), rows.end(),
+              [](const Forecast* a, const Forecast* b) { return a->seconds.value < b->seconds.value; });
     return rows;
   }
 
@@ -204,7 +209,8 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)
-    std::cout << "forecast in " << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
+    std::cout << "forecast in "
+              << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
               << " s\n";
   if (!options.forecast.asks()) return true;
 

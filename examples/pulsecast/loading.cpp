@@ -44,8 +44,8 @@ SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run)
     for (const helios::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
   }
   std::ostringstream all;
-  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence " << how.settings.fixed_incidence
-      << " library_physics " << how.settings.library_physics;
+  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence "
+      << how.settings.fixed_incidence << " library_physics " << how.settings.library_physics;
   if (random) all << " seed " << how.settings.seed;
   if (moves) all << " rate " << helios::first_pulse_rate(survey);
   for (const auto& channel : survey.scanner.channels) all << ' ' << channel.wavelength;
@@ -67,8 +67,8 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& ho
   if (!known.inputs) known.inputs = std::make_shared<SurveyInputs>(survey, how.settings.assets);
   const auto parts = [survey, known, &notes](int run, const std::function<helios::BuiltParts()>& build) {
     const SceneInputs inputs = inputs_of(survey, known, run);
-    KeptParts kept =
-        known.sharing ? shared_parts(*known.sharing, known.store, inputs, build, notes) : stored_parts(known.store, inputs, build, notes);
+    KeptParts kept = known.sharing ? shared_parts(*known.sharing, known.store, inputs, build, notes)
+                                   : stored_parts(known.store, inputs, build, notes);
     known.inputs->add(kept.built.files);
     return std::move(kept.built);
   };

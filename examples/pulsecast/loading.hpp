@@ -30,7 +30,8 @@ struct Loading {
 std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey,
                                                     const pulsecast::helios::Simulation::Settings& settings);
 
-/// Overload with a scene kept between runs and shared by processes. Adds notes on that to `notes`, which must outlive the simulation.
+/// Overload with a scene kept between runs and shared by processes. Adds notes on that to `notes`, which must outlive
+/// the simulation.
 std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey, const Loading& how,
                                                     std::vector<std::string>& notes);
 

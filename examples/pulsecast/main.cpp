@@ -81,13 +81,16 @@ std::int64_t unix_time_of(const std::string& text) {
   if (text.empty()) return std::time(nullptr);
   std::tm t{};
   std::istringstream in(text);
-  if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16) return *pulsecast::text::number_in<std::int64_t>(text);
+  if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16)
+    return *pulsecast::text::number_in<std::int64_t>(text);
   in >> std::get_time(&t, "%Y-%m-%d %H:%M:%S");
   const std::tm given = t;
   const std::int64_t moment = timegm(&t);  // it turns the 30th of February into the 2nd of March
-  const bool is_date = t.tm_mday == given.tm_mday && t.tm_hour == given.tm_hour && t.tm_sec == given.tm_sec && moment >= 0;
+  const bool is_date =
+      t.tm_mday == given.tm_mday && t.tm_hour == given.tm_hour && t.tm_sec == given.tm_sec && moment >= 0;
   if (!in || in.peek() != std::istringstream::traits_type::eof() || !is_date)
-    throw std::invalid_argument("--gpsStartTime '" + text + "': expected YYYY-MM-DD hh:mm:ss in UTC, or whole seconds since 1970");
+    throw std::invalid_argument("--gpsStartTime '" + text +
+                                "': expected YYYY-MM-DD hh:mm:ss in UTC, or whole seconds since 1970");
   return moment;
 }
 
@@ -121,14 +124,16 @@ class Session {
         pages_(options, file.survey),
         log_{.seed = seed},
         notes_(notes) {
-    if (options_.page && options_.resume) notes_.say("--page shows only the legs simulated now, not those of the earlier run");
+    if (options_.page && options_.resume)
+      notes_.say("--page shows only the legs simulated now, not those of the earlier run");
   }
 
   int run() {
     const fs::path parent = options_.output / survey_.name;
     const auto [again, is_complete] = options_.resume ? run_to_resume(parent) : RunToResume{};
     if (is_complete) return success;
-    const double start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
+    const double start_time =
+        gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
     const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
     log_.how = how();
     if (again)
@@ -150,7 +155,8 @@ class Session {
       notes_.say(std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
                  " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
-      notes_.odd("no points from leg " + empty_legs_ + ": a leg without pulses, as the last of a platform that moves, may be inactive");
+      notes_.odd("no points from leg " + empty_legs_ +
+                 ": a leg without pulses, as the last of a platform that moves, may be inactive");
     if (all.count(Fate::blocked) > all.slots / 20 * 19)
       notes_.say("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
     const std::string traffic = ranks_.traffic();
@@ -190,21 +196,25 @@ class Session {
   void require_run(const fs::path& folder, int runs) const {
     if (log_.run >= runs)
       throw FileError((folder / RunLog::name).string(), "line 3",
-                      "'run " + std::to_string(log_.run) + "': expected less than the number of repetitions, " + std::to_string(runs));
+                      "'run " + std::to_string(log_.run) + "': expected less than the number of repetitions, " +
+                          std::to_string(runs));
   }
 
   /// Start time: that of a trajectory takes precedence over the option; a resumed run keeps its own.
   void settle_start_time(const Simulation& simulation, const std::optional<fs::path>& again, double asked) {
     const std::optional<double> clock = simulation.compiled().clock_start;
-    if (again && !clock && !options_.gps_start_time.empty()) require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
+    if (again && !clock && !options_.gps_start_time.empty())
+      require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
     if (!again && clock) log_.start_time = *clock;
     settle_clock(simulation);
   }
 
-  /// Clock of LAS files: that of a GPS week, unless a trajectory begins beyond one. Source: LAS 1.4 R15, Global Encoding, GPS Time Type.
+  /// Clock of LAS files: that of a GPS week, unless a trajectory begins beyond one. Source: LAS 1.4 R15, Global
+  /// Encoding, GPS Time Type.
   void settle_clock(const Simulation& simulation) {
     constexpr double week = 604'800;
-    const double begin = log_.start_time, end = begin + simulation.runs() * simulation.compiled().source.duration().seconds();
+    const double begin = log_.start_time,
+                 end = begin + simulation.runs() * simulation.compiled().source.duration().seconds();
     options_.adjusted_time = simulation.compiled().clock_start && !(begin >= 0 && begin <= week);
     if (!options_.format.starts_with("las") && !options_.format.ends_with("laz")) return;
     std::ostringstream text;
@@ -212,11 +222,13 @@ class Session {
     if (options_.adjusted_time && std::fabs(begin) <= 1e9) {  // up to 2043
       using namespace std::chrono;
       const year_month_day day = floor<days>(sys_days{January / 6 / 1980} + seconds(std::llround(1e9 + begin)));
-      text << "are no seconds of a GPS week: LAS says that they are adjusted standard GPS time, which begins here at " << int{day.year()}
-           << '-' << std::setfill('0') << std::setw(2) << unsigned{day.month()} << '-' << std::setw(2) << unsigned{day.day()};
+      text << "are no seconds of a GPS week: LAS says that they are adjusted standard GPS time, which begins here at "
+           << int{day.year()} << '-' << std::setfill('0') << std::setw(2) << unsigned{day.month()} << '-'
+           << std::setw(2) << unsigned{day.day()};
       notes_.say(text.str());
     } else if (options_.adjusted_time) {
-      text << "are neither seconds of a GPS week nor adjusted standard GPS time, of which LAS says that they are: expected one of these "
+      text << "are neither seconds of a GPS week nor adjusted standard GPS time, of which LAS says that they are: "
+              "expected one of these "
               "clocks";
       notes_.odd(text.str());
     } else if (end > week) {
@@ -233,7 +245,8 @@ class Session {
   }
 
   /// Simulates all remaining repetitions, each into its own folder.
-  RunSummary play_all(Simulation& simulation, SurveyInputs& inputs, const fs::path& parent, std::optional<fs::path> again) {
+  RunSummary play_all(Simulation& simulation, SurveyInputs& inputs, const fs::path& parent,
+                      std::optional<fs::path> again) {
     RunSummary all;
     fs::path folder = again ? *again : new_folder(parent);
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
@@ -262,7 +275,8 @@ class Session {
     if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
     const auto fate = [&](const char* name, Fate f) {
       if (all.count(f) > 0)
-        std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << " pulses\n";
+        std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f)
+                  << " pulses\n";
     };
     fate("with echoes", Fate::returned);
     fate("blocked", Fate::blocked);
@@ -290,10 +304,14 @@ class Session {
   void tell_of_nothing(const Simulation& simulation) {
     const Simulation::Scene scene = simulation.scene();
     const CompiledSurvey& compiled = simulation.compiled();
-    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(), [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
-    if (scene.empty || leg == compiled.legs.end()) return notes_.odd("no points: the scene is empty, or no leg has pulses");
+    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
+                                  [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
+    if (scene.empty || leg == compiled.legs.end())
+      return notes_.odd("no points: the scene is empty, or no leg has pulses");
     std::ostringstream text;
-    const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
+    const auto put = [&](const char* words, const Vec3& v) {
+      text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')';
+    };
     text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
     put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
     put(" m, and the scene extends from ", scene.least);
@@ -306,11 +324,13 @@ class Session {
     io::Digest survey;
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
-    out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
-        << " scale=" << pulsecast::detail::to_text(options_.las_scale) << " epsg=" << options_.epsg.value_or(0)
-        << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
+    out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec
+        << " format=" << options_.format << " scale=" << pulsecast::detail::to_text(options_.las_scale)
+        << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
+        << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
         << options_.waveform_noise << options_.fixed_incidence << options_.library_physics << options_.light_paths
-        << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses << options_.geojson;
+        << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses
+        << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
     if (options_.misses_at) out << " misses=" << pulsecast::detail::to_text(*options_.misses_at);
     return out.str();
@@ -318,8 +338,8 @@ class Session {
 
   static void require_same(const fs::path& folder, const std::string& then, const std::string& now) {
     if (then != now)
-      throw std::invalid_argument(folder.string() + ": was started with another survey or other options, '" + then + "'; now they are '" +
-                                  now + "'");
+      throw std::invalid_argument(folder.string() + ": was started with another survey or other options, '" + then +
+                                  "'; now they are '" + now + "'");
   }
 
   static std::string second_of_week(double time) {
@@ -332,7 +352,8 @@ class Session {
   bool note_inputs(SurveyInputs& inputs) {
     const std::size_t before = log_.inputs.size();
     if (ranks_.first())
-      for (const auto& [path, fingerprint] : inputs.fingerprints()) log_.inputs.emplace(written_name(path), fingerprint);
+      for (const auto& [path, fingerprint] : inputs.fingerprints())
+        log_.inputs.emplace(written_name(path), fingerprint);
     return log_.inputs.size() > before;
   }
 
@@ -342,7 +363,10 @@ class Session {
     for (const auto& [path, before] : then.inputs) {
       const std::string now = hex(inputs.fingerprint(name_written(path)));
       if (now != before)
-        changed += (changed.empty() ? "" : ", ") + path + (before == missing ? " is new" : now == missing ? " is gone" : " has changed");
+        changed += (changed.empty() ? "" : ", ") + path +
+                   (before == missing ? " is new"
+                    : now == missing  ? " is gone"
+                                      : " has changed");
     }
     if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since its start, " + changed);
   }
@@ -352,7 +376,8 @@ class Session {
     RunLog log = RunLog::parse(text, (folder / RunLog::name).string());
     require_same(folder, log.how, log_.how);
     if (ranks_.first()) require_same_inputs(folder, log, inputs);
-    if (options_.seed) require_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
+    if (options_.seed)
+      require_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
     log_ = std::move(log);
   }
 
@@ -415,7 +440,8 @@ class Session {
       };
       if (signals > 0) stopping.request_stop();
       const RunSummary part = files.run(simulation, run);
-      if (part.complete && part.echoes == 0) empty_legs_ += (empty_legs_.empty() ? "" : ", ") + std::to_string(leg.number);
+      if (part.complete && part.echoes == 0)
+        empty_legs_ += (empty_legs_.empty() ? "" : ", ") + std::to_string(leg.number);
       all.add(part);
       before += leg.end - leg.first;
       if (!all.complete) break;
@@ -452,23 +478,26 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, No
   notes.require_none();
   const CompiledSurvey& compiled = simulation.compiled();
   const Simulation::Scene scene = simulation.scene();
-  std::cout << std::fixed << std::setprecision(3) << "survey   " << survey.name << "\nscanner  " << survey.scanner.id << ", "
-            << survey.scanner.channels.size() << (survey.scanner.channels.size() == 1 ? " channel" : " channels") << "\nplatform "
-            << survey.platform.id << "\nscene    " << scene.parts << " parts, " << scene.moving << " of them move; " << scene.triangles
+  std::cout << std::fixed << std::setprecision(3) << "survey   " << survey.name << "\nscanner  " << survey.scanner.id
+            << ", " << survey.scanner.channels.size()
+            << (survey.scanner.channels.size() == 1 ? " channel" : " channels") << "\nplatform " << survey.platform.id
+            << "\nscene    " << scene.parts << " parts, " << scene.moving << " of them move; " << scene.triangles
             << " triangles; " << static_cast<double>(scene.memory) / (1 << 20) << " MiB\n";
   if (!scene.empty) {
     const Vec3 a = scene.least, b = scene.most;
-    std::cout << "extent   x " << a.x << " to " << b.x << " m, y " << a.y << " to " << b.y << " m, z " << a.z << " to " << b.z << " m\n";
+    std::cout << "extent   x " << a.x << " to " << b.x << " m, y " << a.y << " to " << b.y << " m, z " << a.z << " to "
+              << b.z << " m\n";
   }
   if (simulation.runs() > 1) std::cout << "runs     " << simulation.runs() << '\n';
   std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]        pulses\n";
   for (const auto& leg : compiled.legs) {
     const std::string name = leg.active ? prefix_of(leg) : "(inactive)";
-    std::cout << "  " << std::left << std::setw(10) << name << std::right << std::setw(12) << leg.start.seconds() << std::setw(12)
-              << leg.duration.seconds() << std::setw(13) << leg.pulse_rate / 1e3 << std::setw(14) << leg.end - leg.first << '\n';
+    std::cout << "  " << std::left << std::setw(10) << name << std::right << std::setw(12) << leg.start.seconds()
+              << std::setw(12) << leg.duration.seconds() << std::setw(13) << leg.pulse_rate / 1e3 << std::setw(14)
+              << leg.end - leg.first << '\n';
   }
-  std::cout << "  in all    " << std::setw(12) << "" << std::setw(12) << compiled.source.duration().seconds() << std::setw(13) << ""
-            << std::setw(14) << compiled.source.size() << '\n';
+  std::cout << "  in all    " << std::setw(12) << "" << std::setw(12) << compiled.source.duration().seconds()
+            << std::setw(13) << "" << std::setw(14) << compiled.source.size() << '\n';
 }
 
 void preview(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
@@ -479,18 +508,21 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   notes.require_none();
   std::error_code error;
   fs::create_directories(options.output, error);
-  if (error) throw FileError(options.output.string(), "", "the output folder cannot be created (" + error.message() + ")");
+  if (error)
+    throw FileError(options.output.string(), "", "the output folder cannot be created (" + error.message() + ")");
   const fs::path path = options.output / (file.survey.name + "_preview.png");
   constexpr PulseIndex enough = 400'000;
   const PulseIndex slots = simulation.compiled().source.size();
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
   if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
   Picture picture(path);
-  for_each_raster(file.survey, [&](const Raster& raster, const Similarity& placement) { picture.add_ground(raster, placement); });
+  for_each_raster(file.survey,
+                  [&](const Raster& raster, const Similarity& placement) { picture.add_ground(raster, placement); });
   const RunSummary summary = simulation.run({.threads = options.threads, .stride = stride}, picture);
   picture.close();
   if (!options.quiet)
-    std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';
+    std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string()
+              << '\n';
 }
 
 /// Options of a run, with what the survey adds to them.
@@ -532,7 +564,8 @@ int work(const Options& options, Ranks& ranks) {
     Options settled = settled_by(file, options);
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
-      if (ranks.first()) notes.say("--page and --live have no effect under mpirun: they need all points in one process");
+      if (ranks.first())
+        notes.say("--page and --live have no effect under mpirun: they need all points in one process");
     }
     if (ranks.count() > 1 && options.format == "copc.laz") {
       settled.format = "laz";
@@ -562,14 +595,16 @@ int pulsecast_main(int argc, char** argv) {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     std::signal(SIGXFSZ, SIG_IGN);  // makes exceeding the file size limit an error with a message
-    return naming(options->survey.string(), [&] { return work(*options, *ranks); });  // names the survey in errors of its settings
+    return naming(options->survey.string(),
+                  [&] { return work(*options, *ranks); });  // names the survey in errors of its settings
   } catch (const std::exception& error) {
     const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
     if (ranks) ranks->complain();
     std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: ";
     if (no_memory && options)
-      std::cerr << options->survey.string()
-                << ": takes more memory than there is: expected fewer --threads, a smaller scene, or more free memory\n";
+      std::cerr
+          << options->survey.string()
+          << ": takes more memory than there is: expected fewer --threads, a smaller scene, or more free memory\n";
     else
       std::cerr << error.what() << '\n';
     if (ranks) ranks->abort(bad_input);

@@ -38,7 +38,8 @@ class Notes {
 
   /// Throws if a note is an error.
   void require_none() const {
-    if (errors_ > 0) throw std::invalid_argument("--strict treats notes as errors: " + std::to_string(errors_) + " of them");
+    if (errors_ > 0)
+      throw std::invalid_argument("--strict treats notes as errors: " + std::to_string(errors_) + " of them");
   }
 
  private:

@@ -106,7 +106,8 @@ class CommandLine {
  public:
   CommandLine() {
     app_.get_formatter()->column_width(46);
-    app_.set_version_flag("--version", std::string("pulsecast ") + PULSECAST_VERSION + ", instructions: " QUOTED(PULSECAST_INSTRUCTIONS));
+    app_.set_version_flag(
+        "--version", std::string("pulsecast ") + PULSECAST_VERSION + ", instructions: " QUOTED(PULSECAST_INSTRUCTIONS));
     app_.option_defaults()->ignore_case();
     add_inputs();
     add_las();
@@ -155,8 +156,9 @@ class CommandLine {
     app_.add_option("--seed", seed_, "Seed of all random numbers; default: the survey's own, or a new one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
-          return text == "AUTO" || text::number_in<std::uint64_t>(text) ? std::string()
-                                                                        : "'" + text + "': expected a whole number from 0, or AUTO";
+          return text == "AUTO" || text::number_in<std::uint64_t>(text)
+                     ? std::string()
+                     : "'" + text + "': expected a whole number from 0, or AUTO";
         });
     app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "Number of threads; 0: all of the machine")
         ->type_name("N")
@@ -171,11 +173,14 @@ class CommandLine {
     app_.add_flag("--las10", o_.las_1_0, "Points as LAS 1.0, for old readers");
     app_.add_option(both("lasScale"), o_.las_scale, "Step of the coordinates in LAS [m]")
         ->type_name("M")
-        ->check(number_check<double>([](double step) { return step >= 1e-9 && step <= 1e3; }, "length from 1e-9 to 1000 m"));
-    app_.add_option("--epsg", epsg_, "EPSG code of the coordinates in LAS, 0 for none; default: that of the scene's GeoTIFF")
+        ->check(number_check<double>([](double step) { return step >= 1e-9 && step <= 1e3; },
+                                     "length from 1e-9 to 1000 m"));
+    app_.add_option("--epsg", epsg_,
+                    "EPSG code of the coordinates in LAS, 0 for none; default: that of the scene's GeoTIFF")
         ->type_name("CODE")
-        ->check(number_check<std::uint16_t>([](std::uint16_t code) { return code == 0 || (code >= 1024 && code <= 32766); },
-                                            "code from 1024 to 32766, or 0"));
+        ->check(
+            number_check<std::uint16_t>([](std::uint16_t code) { return code == 0 || (code >= 1024 && code <= 32766); },
+                                        "code from 1024 to 32766, or 0"));
     app_.add_flag(both("zipOutput"), zip_, "Points compressed: --format xyz.gz; with --lasOutput, --format laz");
   }
 
@@ -218,31 +223,36 @@ class CommandLine {
   }
 
   void add_forecast() {
-    const auto demand = [&](const std::string& name, std::string& text, const QuantityKind& kind, const char* help, const char* type) {
-      of_forecast_.push_back(app_.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
-        return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
-      }));
+    const auto demand = [&](const std::string& name, std::string& text, const QuantityKind& kind, const char* help,
+                            const char* type) {
+      of_forecast_.push_back(
+          app_.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
+            return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
+          }));
     };
     demand("--range-error", range_error_, a_length, "forecast: maximum range error, as in 5mm", "LENGTH");
     demand("--intensity-error", intensity_error_, a_share, "forecast: maximum intensity error, as in 2%", "SHARE");
     demand("--time", time_, a_duration, "forecast: maximum run time, as in 10min", "DURATION");
     demand("--memory", memory_, a_size, "forecast: maximum memory, as in 4GB", "SIZE");
-    of_forecast_.push_back(app_.add_option("--apply", apply_to_, "forecast: write the best settings to the survey, or a copy to FILE")
-                               ->type_name("[FILE]")
-                               ->expected(0, 1));
+    of_forecast_.push_back(
+        app_.add_option("--apply", apply_to_, "forecast: write the best settings to the survey, or a copy to FILE")
+            ->type_name("[FILE]")
+            ->expected(0, 1));
   }
 
   void add_unused() {
     const std::string help = "No effect here";
     for (const Unused& unused : unused_options) {
-      auto* option = unused.value ? app_.add_option(both(unused.name), swallowed_, help) : app_.add_flag(both(unused.name), help);
+      auto* option =
+          unused.value ? app_.add_option(both(unused.name), swallowed_, help) : app_.add_flag(both(unused.name), help);
       unused_.push_back(option->group(""));
     }
   }
 
   /// Takes the command from the words, also in the notation of HELIOS++.
   void take_command(std::vector<std::string>& words) {
-    const auto known = words.empty() ? std::end(all_commands) : std::find(std::begin(all_commands), std::end(all_commands), words.front());
+    const auto known = words.empty() ? std::end(all_commands)
+                                     : std::find(std::begin(all_commands), std::end(all_commands), words.front());
     if (known != std::end(all_commands)) {
       o_.command = *known;
       words.erase(words.begin());
@@ -265,7 +275,8 @@ class CommandLine {
     const bool is_catalogue = o_.command == "catalogue";
     if (!extras.empty() && o_.survey.extension() != ".xml")
       return "unknown command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
-    if (is_catalogue && !o_.survey.empty()) return "unexpected argument '" + o_.survey.string() + "': catalogue takes no document";
+    if (is_catalogue && !o_.survey.empty())
+      return "unexpected argument '" + o_.survey.string() + "': catalogue takes no document";
     if (!extras.empty()) return "unexpected argument '" + extras.front() + "': expected one document";
     if (!is_catalogue && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
     return "";
@@ -286,7 +297,8 @@ class CommandLine {
     return knows_why ? "" : "--apply needs a limit: expected --range-error, --intensity-error, --time or --memory";
   }
 
-  /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is none.
+  /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is
+  /// none.
   [[nodiscard]] std::string settle() {
     for (std::size_t i = 0; i < std::size(unused_options); ++i)
       if (unused_[i]->count() > 0)
@@ -297,15 +309,20 @@ class CommandLine {
       o_.format = asked_by_flags;
     else if ((las_ || zip_) && o_.format != asked_by_flags)
       o_.notes.push_back("--format " + o_.format + " has precedence over " + (las_ ? "--lasOutput" : "--zipOutput"));
-    if (o_.las_1_0 && o_.format.ends_with("laz")) return "--las10 and --format " + o_.format + ": only LAS 1.4 is compressed";
-    if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
+    if (o_.las_1_0 && o_.format.ends_with("laz"))
+      return "--las10 and --format " + o_.format + ": only LAS 1.4 is compressed";
+    if (o_.las_1_0 && zip_ && o_.format == "las")
+      o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     o_.colours = o_.colours || o_.near_infrared;
     const bool is_las_file = o_.format == "las" || o_.format.ends_with("laz");
-    if (o_.colours && (!is_las_file || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
-    if (o_.colours && o_.format == "las" && o_.write_waveform) return "--colours and --writeWaveform: LAS has no points of both here";
+    if (o_.colours && (!is_las_file || o_.las_1_0))
+      return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
+    if (o_.colours && o_.format == "las" && o_.write_waveform)
+      return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
     if (!misses_at_.empty()) o_.misses_at = text::number_in<double>(misses_at_);
-    const double farthest = o_.las_scale * (1 << 30);  // so that two points on opposite sides fit 32 bits. Source: LAS 1.4 R15, table 7
+    const double farthest =
+        o_.las_scale * (1 << 30);  // so that two points on opposite sides fit 32 bits. Source: LAS 1.4 R15, table 7
     if (o_.misses_at.value_or(0) > farthest && is_las_file)
       return "--missesAt: '" + misses_at_ + "': expected at most " + std::to_string(std::llround(farthest)) +
              " m, as LAS has 32 bits for a coordinate; a greater --lasScale reaches farther";
@@ -325,12 +342,14 @@ class CommandLine {
       "  pulsecast check SURVEY.xml      checks it and lists all errors\n"
       "  pulsecast info SURVEY.xml       describes its legs and its scene\n"
       "  pulsecast preview SURVEY.xml    draws a preview of its points\n"
-      "  pulsecast forecast SURVEY.xml   predicts time, memory and errors, and finds the cheapest settings within limits\n"
+      "  pulsecast forecast SURVEY.xml   predicts time, memory and errors, and finds the cheapest settings within "
+      "limits\n"
       "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
   std::string seed_, epsg_, misses_at_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;
-  bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false, no_scene_writing_ = false;
+  bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false,
+       no_scene_writing_ = false;
   std::vector<CLI::Option*> of_forecast_, unused_;
 };
 

@@ -47,18 +47,19 @@ struct Options {
        library_physics = false, light_paths = false;
   bool colours = false, near_infrared = false;  ///< columns of points in LAS
   bool write_misses = false;                    ///< write a table of the pulses without echoes
-  std::optional<double> misses_at{};            ///< range of points for pulses without echoes; default: no such points [m]
-  bool geojson = false;                         ///< write trajectories and footprints
-  bool page = false, live = false;              ///< page of the points: as a file, and live
+  std::optional<double> misses_at{};  ///< range of points for pulses without echoes; default: no such points [m]
+  bool geojson = false;               ///< write trajectories and footprints
+  bool page = false, live = false;    ///< page of the points: as a file, and live
   std::size_t page_points = 1'000'000;
-  bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
+  bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false,
+       verbose = false;
   bool strict = false;  ///< treat notes about the survey and its files as errors
   SceneStore store{};
   ForecastOptions forecast{};
   std::vector<std::string> notes{};  ///< accepted options without effect
 
-  bool adjusted_time = false;                                       ///< times are adjusted standard GPS time; else seconds of a GPS week
-  pulsecast::PointColours point_colours{};                          ///< of the scene, once it is loaded; empty unless `colours`
+  bool adjusted_time = false;               ///< times are adjusted standard GPS time; else seconds of a GPS week
+  pulsecast::PointColours point_colours{};  ///< of the scene, once it is loaded; empty unless `colours`
   std::shared_ptr<const pulsecast::ObjectAttributes> attributes{};  ///< of the scene, once it is loaded; null without
 };
 

@@ -29,11 +29,14 @@ namespace {
 using PointWriter = std::variant<io::XyzWriter, io::LasWriter, io::LazWriter, io::CopcWriter>;
 
 PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
-  if (o.format == "copc.laz") return PointWriter(std::in_place_type<io::CopcWriter>, path, las_settings(o, start_time), o.threads);
-  if (o.format == "laz") return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
+  if (o.format == "copc.laz")
+    return PointWriter(std::in_place_type<io::CopcWriter>, path, las_settings(o, start_time), o.threads);
+  if (o.format == "laz")
+    return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return PointWriter(std::in_place_type<io::LasWriter>, path, las_settings(o, start_time));
   if (o.format == "xyz.gz")
-    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path), io::TextFileSettings{.start_time = start_time});
+    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path),
+                       io::TextFileSettings{.start_time = start_time});
   return PointWriter(std::in_place_type<io::XyzWriter>, path, io::TextFileSettings{.start_time = start_time});
 }
 
@@ -48,7 +51,8 @@ void take_columns(Options& o, const helios::Simulation& simulation) {
 std::vector<std::string> file_channels(const Options& o, const helios::SurveySettings& survey) {
   std::vector<std::string> ids;
   if (o.split_by_channel && survey.scanner.channels.size() > 1)
-    for (const auto& channel : survey.scanner.channels) ids.push_back(channel.id.empty() ? std::to_string(ids.size()) : channel.id);
+    for (const auto& channel : survey.scanner.channels)
+      ids.push_back(channel.id.empty() ? std::to_string(ids.size()) : channel.id);
   return ids;
 }
 
@@ -62,7 +66,8 @@ std::vector<fs::path> point_files(const fs::path& folder, const std::string& pre
                                   const std::vector<std::string>& channels) {
   if (channels.empty()) return {folder / (prefix + "_points." + o.format)};
   std::vector<fs::path> all;
-  for (const std::string& channel : channels) all.push_back(folder / (prefix + "_points_dev" + channel + '.' + o.format));
+  for (const std::string& channel : channels)
+    all.push_back(folder / (prefix + "_points_dev" + channel + '.' + o.format));
   return all;
 }
 
@@ -82,8 +87,9 @@ std::vector<fs::path> leg_files(const fs::path& folder, const std::string& prefi
 }
 
 io::LasSettings las_settings(const Options& o, double start_time) {
-  io::LasSettings settings{
-      .scale = o.las_scale, .gps_time = o.adjusted_time ? io::GpsTime::adjusted_standard : io::GpsTime::week, .start_time = start_time};
+  io::LasSettings settings{.scale = o.las_scale,
+                           .gps_time = o.adjusted_time ? io::GpsTime::adjusted_standard : io::GpsTime::week,
+                           .start_time = start_time};
   settings.epsg = o.epsg.value_or(0);
   settings.light_kinds = o.light_paths;
   settings.colours = o.point_colours;
@@ -107,14 +113,23 @@ struct LegFiles::Inside {
 
 LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                    const std::vector<std::string>& channels)
-    : inside_(
-          new Inside{{}, io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}, {}, {}, {}}) {
-  for (const fs::path& path : point_files(folder, prefix, o, channels)) inside_->points.push_back(point_writer(path, o, start_time));
-  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::TextFileSettings{start_time});
+    : inside_(new Inside{{},
+                         io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}),
+                         {},
+                         {},
+                         {},
+                         {},
+                         {},
+                         {}}) {
+  for (const fs::path& path : point_files(folder, prefix, o, channels))
+    inside_->points.push_back(point_writer(path, o, start_time));
+  if (o.write_waveform)
+    inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::TextFileSettings{start_time});
   if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
   if (o.write_misses) inside_->misses.emplace(folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time});
   if (o.misses_at) inside_->miss_points.emplace(io::MissSettings{.range = *o.misses_at});
-  if (o.geojson) inside_->map.emplace(folder / (prefix + "_map.geojson"), io::GeoJsonSettings{.epsg = o.epsg.value_or(0)});
+  if (o.geojson)
+    inside_->map.emplace(folder / (prefix + "_map.geojson"), io::GeoJsonSettings{.epsg = o.epsg.value_or(0)});
 }
 LegFiles::~LegFiles() = default;
 
@@ -136,7 +151,9 @@ void LegFiles::operator()(const EchoBatch& batch) {
   if (inside_->map) (*inside_->map)(batch);
 }
 
-bool LegFiles::reads_empty_shots() const noexcept { return inside_->pulses || inside_->misses || inside_->miss_points || inside_->map; }
+bool LegFiles::reads_empty_shots() const noexcept {
+  return inside_->pulses || inside_->misses || inside_->miss_points || inside_->map;
+}
 
 void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
   if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.recorded(), interval);

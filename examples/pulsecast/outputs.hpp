@@ -25,12 +25,12 @@ std::vector<std::string> file_channels(const Options& options, const pulsecast::
 std::string prefix_of(const pulsecast::helios::CompiledSurvey::Leg& leg);
 
 /// Names of the point files of a prefix: one, or one per channel.
-std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
-                                               const std::vector<std::string>& channels);
+std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix,
+                                               const Options& options, const std::vector<std::string>& channels);
 
 /// Names of all files of a prefix.
-std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
-                                             const std::vector<std::string>& channels);
+std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder, const std::string& prefix,
+                                             const Options& options, const std::vector<std::string>& channels);
 
 /// Settings for LAS, LAZ and COPC files.
 pulsecast::io::LasSettings las_settings(const Options& options, double start_time);

@@ -32,7 +32,8 @@ Pages::~Pages() = default;
 
 std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
 
-void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled, const PointColours& colours) {
+void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled,
+                  const PointColours& colours) {
   if (!inside_->file && !inside_->server) return;
   inside_->settings.colours = colours;
   page::PageSurvey survey = inside_->survey;

@@ -24,8 +24,8 @@ struct QuantityKind {
 inline constexpr QuantityKind::Unit length_units[] = {{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
 inline constexpr QuantityKind::Unit share_units[] = {{"%", 1e-2}, {"", 1}};
 inline constexpr QuantityKind::Unit duration_units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
-inline constexpr QuantityKind::Unit size_units[] = {{"kB", 1e3},     {"MB", 1e6},        {"GB", 1e9},          {"TB", 1e12},
-                                                    {"KiB", 1024.0}, {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
+inline constexpr QuantityKind::Unit size_units[] = {
+    {"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}, {"KiB", 1024.0}, {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
 inline constexpr QuantityKind a_length{length_units, "a length, as in 5mm, 2cm or 0.01m"};
 inline constexpr QuantityKind a_share{share_units, "a share, as in 2% or 0.02"};
 inline constexpr QuantityKind a_duration{duration_units, "a duration, as in 90s, 10min or 2h"};

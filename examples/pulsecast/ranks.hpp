@@ -20,14 +20,15 @@ class LegRun {
   virtual ~LegRun() = default;
   std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< receives the shots with echoes; with one process only
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
-  virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation, const pulsecast::RunOptions& options) = 0;
+  virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation,
+                                    const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
   /// Pulses with more returns than LAS numbers, once closed, on the first process.
   [[nodiscard]] virtual std::uint64_t pulses_cut() const = 0;
 };
 
-/// Processes of a survey: one, or those of `mpirun`. All do the same. The first one alone does unique tasks, such as naming a folder, and
-/// sends the result to the others. Only the first prints to the terminal.
+/// Processes of a survey: one, or those of `mpirun`. All do the same. The first one alone does unique tasks, such as
+/// naming a folder, and sends the result to the others. Only the first prints to the terminal.
 class Ranks : public SceneSharing {
  public:
   [[nodiscard]] virtual bool first() const = 0;
@@ -47,6 +48,6 @@ class Ranks : public SceneSharing {
   virtual void abort(int status) = 0;
 };
 
-/// Joins the processes; must be called first. If `mpirun` or a similar launcher started several, the MPI program replaces this one; throws
-/// if it is missing.
+/// Joins the processes; must be called first. If `mpirun` or a similar launcher started several, the MPI program
+/// replaces this one; throws if it is missing.
 std::unique_ptr<Ranks> join_ranks(char** argv);

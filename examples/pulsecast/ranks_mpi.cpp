@@ -34,7 +34,8 @@ std::unique_ptr<MpiOutput> shared_points(MpiGroup& group, const fs::path& path, 
   if (o.format == "laz") return std::make_unique<mpi::MpiLaz>(group, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return std::make_unique<mpi::MpiLas>(group, path, las_settings(o, start_time));
   const io::TextFileSettings settings{.start_time = start_time};
-  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::TextFileSettings>>(group, path, settings);
+  if (o.format == "xyz")
+    return std::make_unique<mpi::MpiRows<io::XyzWriter, io::TextFileSettings>>(group, path, settings);
   const auto file = group.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
   return std::make_unique<mpi::MpiStream<io::XyzWriter>>(
       group, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
@@ -47,21 +48,22 @@ class SharedLegRun final : public LegRun {
   SharedLegRun(MpiGroup& group, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                const std::vector<std::string>& channels)
       : group_(group) {
-    if (group.first()) trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
+    if (group.first())
+      trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
     const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
     for (const fs::path& path : files) {
       MpiOutput* const points = add(shared_points(group, path, o, start_time));
       if (files.size() > 1) points->channel = static_cast<std::uint16_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
-      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_fullwave.txt"),
-                                                                                       io::TextFileSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(
+          group, folder / (prefix + "_fullwave.txt"), io::TextFileSettings{start_time}));
     if (o.write_pulse)
-      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_pulse.txt"),
-                                                                                    io::TextFileSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::TextFileSettings>>(
+          group, folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time}));
     if (o.write_misses)
-      add(std::make_unique<mpi::MpiRows<io::MissTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_misses.txt"),
-                                                                                   io::TextFileSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::MissTextWriter, io::TextFileSettings>>(
+          group, folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time}));
     if (o.misses_at) miss_points_.emplace(io::MissSettings{.range = *o.misses_at});
   }
 
@@ -115,7 +117,9 @@ class ManyRanks final : public Ranks {
 
   [[nodiscard]] bool first() const override { return group_.first(); }
   [[nodiscard]] int count() const override { return group_.size(); }
-  [[nodiscard]] std::string from_first(std::string text) override { return group_.channel().from_first(std::move(text)); }
+  [[nodiscard]] std::string from_first(std::string text) override {
+    return group_.channel().from_first(std::move(text));
+  }
 
   [[nodiscard]] unsigned threads(unsigned asked) override {
     cpu_set_t own;
@@ -125,8 +129,9 @@ class ManyRanks final : public Ranks {
     return asked > 0 ? asked : static_cast<unsigned>(std::max(1L, std::min<long>(bound, share)));
   }
 
-  [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix, const Options& options,
-                                                double start_time, const std::vector<std::string>& channels) override {
+  [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix,
+                                                const Options& options, double start_time,
+                                                const std::vector<std::string>& channels) override {
     return std::make_unique<SharedLegRun>(group_, folder, prefix, options, start_time, channels);
   }
 
@@ -137,8 +142,8 @@ class ManyRanks final : public Ranks {
       sum.bytes += one.bytes;
     }
     std::ostringstream text;
-    text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed << std::setprecision(2)
-         << static_cast<double>(sum.bytes) / (1 << 20) << " MiB";
+    text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed
+         << std::setprecision(2) << static_cast<double>(sum.bytes) / (1 << 20) << " MiB";
     return text.str();
   }
 

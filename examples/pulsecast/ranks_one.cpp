@@ -21,13 +21,19 @@ class OneLegRun final : public LegRun {
   OneLegRun(const fs::path& folder, const std::string& prefix, const Options& options, double start_time,
             const std::vector<std::string>& channels)
       : files_(folder, prefix, options, start_time, channels) {}
-  void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override { files_.add_trajectory(leg, start, interval); }
-  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override { return simulation.run(options, *this); }
+  void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
+    files_.add_trajectory(leg, start, interval);
+  }
+  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
+    return simulation.run(options, *this);
+  }
   void operator()(const EchoBatch& batch) {
     files_(batch);
     if (watch) watch(batch);
   }
-  [[nodiscard]] bool reads_empty_shots() const noexcept { return files_.reads_empty_shots(); }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] bool reads_empty_shots() const noexcept {
+    return files_.reads_empty_shots();
+  }  ///< as the concept ChoosesShots describes
   void close() override { files_.close(); }
   [[nodiscard]] std::uint64_t pulses_cut() const override { return files_.pulses_cut(); }
 
@@ -42,8 +48,9 @@ class OneRank final : public Ranks {
   [[nodiscard]] int count() const override { return 1; }
   [[nodiscard]] std::string from_first(std::string text) override { return text; }
   [[nodiscard]] unsigned threads(unsigned asked) override { return asked; }
-  [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix, const Options& options,
-                                                double start_time, const std::vector<std::string>& channels) override {
+  [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix,
+                                                const Options& options, double start_time,
+                                                const std::vector<std::string>& channels) override {
     return std::make_unique<OneLegRun>(folder, prefix, options, start_time, channels);
   }
   [[nodiscard]] std::string traffic() override { return {}; }
@@ -56,7 +63,8 @@ class OneRank final : public Ranks {
   void barrier() override {}
 };
 
-/// True if a launcher started several processes. Source: environment variables of Open MPI, MPICH and its relatives, and Slurm with PMIx.
+/// True if a launcher started several processes. Source: environment variables of Open MPI, MPICH and its relatives,
+/// and Slurm with PMIx.
 bool one_of_many() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     if (std::getenv(name) != nullptr) return true;
@@ -70,8 +78,9 @@ std::unique_ptr<Ranks> join_ranks(char** argv) {
     std::error_code error;
     const fs::path other = fs::read_symlink("/proc/self/exe", error).parent_path() / "pulsecast-mpi";
     execv(other.c_str(), argv);
-    throw std::runtime_error("started by mpirun, but " + other.string() +
-                             " does not exist: build with MPI (Debian package: libopenmpi-dev), or start one process without mpirun");
+    throw std::runtime_error(
+        "started by mpirun, but " + other.string() +
+        " does not exist: build with MPI (Debian package: libopenmpi-dev), or start one process without mpirun");
   }
   return std::make_unique<OneRank>();
 }

@@ -53,7 +53,8 @@ bool is_run_name(std::string_view text) {
   for (std::size_t i = 0; i < stamp_form.size(); ++i)
     if (stamp_form[i] == '0' ? !is_digit(text[i]) : text[i] != stamp_form[i]) return false;
   text.remove_prefix(stamp_form.size());
-  return text.empty() || (text.size() > 1 && text.size() < 5 && text.front() == '_' && std::all_of(text.begin() + 1, text.end(), is_digit));
+  return text.empty() || (text.size() > 1 && text.size() < 5 && text.front() == '_' &&
+                          std::all_of(text.begin() + 1, text.end(), is_digit));
 }
 
 std::string reason_of(int error) { return std::generic_category().message(error); }
@@ -71,7 +72,8 @@ bool is_later(const fs::path& a, const fs::path& b) {
 
 std::string RunLog::text() const {
   std::ostringstream text;
-  text << "seed " << seed << "\nstart_time " << std::setprecision(17) << start_time << "\nrun " << run << "\nhow " << how << '\n';
+  text << "seed " << seed << "\nstart_time " << std::setprecision(17) << start_time << "\nrun " << run << "\nhow "
+       << how << '\n';
   for (const auto& [path, fingerprint] : inputs) text << "input " << fingerprint << ' ' << path << '\n';
   if (!before.empty()) text << "before " << before << '\n';
   text << "end\n";
@@ -84,7 +86,8 @@ namespace {
 /// Line of a log: a key and its value.
 class LogLine {
  public:
-  LogLine(std::string_view line, std::size_t number, const std::string& path) : line_(line), number_(number), path_(path) {
+  LogLine(std::string_view line, std::size_t number, const std::string& path)
+      : line_(line), number_(number), path_(path) {
     const std::size_t blank = std::min(line.find(' '), line.size());
     key = line.substr(0, blank);
     value = line.substr(std::min(blank + 1, line.size()));
@@ -93,7 +96,8 @@ class LogLine {
   void expect(bool holds) const {
     if (holds) return;
     const std::string shown = written_name(std::string(line_.substr(0, 80))) + (line_.size() > 80 ? "..." : "");
-    throw FileError(path_, "line " + std::to_string(number_), "'" + shown + "': expected a line of a run's log: the run cannot be resumed");
+    throw FileError(path_, "line " + std::to_string(number_),
+                    "'" + shown + "': expected a line of a run's log: the run cannot be resumed");
   }
 
   [[nodiscard]] bool is_end() const { return line_ == "end"; }
@@ -109,7 +113,8 @@ class LogLine {
   [[nodiscard]] std::pair<std::string_view, std::string> split() const {
     const std::size_t at = std::min(value.find(' '), value.size());
     const std::string_view name = value.substr(std::min(at + 1, value.size()));
-    expect(at > 0 && !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }));
+    expect(at > 0 && !name.empty() &&
+           std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }));
     return {value.substr(0, at), std::string(name)};
   }
 
@@ -121,7 +126,8 @@ class LogLine {
   const std::string& path_;
 };
 
-constexpr std::array<std::string_view, 6> log_keys{"seed", "start_time", "run", "how", "input", "before"};  // in the order of the file
+constexpr std::array<std::string_view, 6> log_keys{"seed", "start_time", "run",
+                                                   "how",  "input",      "before"};  // in the order of the file
 
 /// Reads the value of a key by its index.
 void read_value(const LogLine& line, std::size_t key, RunLog& log) {
@@ -169,7 +175,8 @@ RunLog RunLog::parse(std::string_view text, const std::string& path) {
       line.expect(next >= 4);
       complete = true;
     } else {
-      const auto key = static_cast<std::size_t>(std::find(log_keys.begin(), log_keys.end(), line.key) - log_keys.begin());
+      const auto key =
+          static_cast<std::size_t>(std::find(log_keys.begin(), log_keys.end(), line.key) - log_keys.begin());
       line.expect(key < log_keys.size() && (key == next || (next >= 4 && key >= next)));
       next = key == 4 ? 4 : key + 1;
       read_value(line, key, log);
@@ -188,7 +195,8 @@ void RunLog::write(const fs::path& folder) const {
 std::string RunLog::text_in(const fs::path& folder) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 28;  // a million legs [byte]
   io::InputFile file(folder / name, "the log of a run");
-  if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: expected the log of a run");
+  if (file.size() > longest)
+    file.fail("is longer than " + std::to_string(longest) + " bytes: expected the log of a run");
   return file.take_rest();
 }
 
@@ -220,7 +228,8 @@ std::vector<fs::path> RunLog::damaged(const std::vector<fs::path>& results) cons
 }
 
 bool RunLog::names(const std::vector<fs::path>& results) const {
-  return std::all_of(results.begin(), results.end(), [&](const fs::path& path) { return files.contains(path.filename().string()); });
+  return std::all_of(results.begin(), results.end(),
+                     [&](const fs::path& path) { return files.contains(path.filename().string()); });
 }
 
 void RunLog::remove(const fs::path& folder) {

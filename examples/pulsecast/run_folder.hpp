@@ -22,8 +22,8 @@ struct RunLog {
   std::string before{};                           ///< folder of the previous repetition, if its log may still exist
   std::map<std::string, std::uintmax_t> files{};  ///< complete results, with their sizes [byte]
 
-  /// Parses `text()` and the lines of `add_files()` since then; ignores a last line without its end. Throws a `FileError` with `path` and
-  /// the line if the text is not that of a run.
+  /// Parses `text()` and the lines of `add_files()` since then; ignores a last line without its end. Throws a
+  /// `FileError` with `path` and the line if the text is not that of a run.
   static RunLog parse(std::string_view text, const std::string& path);
   [[nodiscard]] std::string text() const;
 
@@ -40,8 +40,8 @@ struct RunLog {
   static void remove(const std::filesystem::path& folder);
 };
 
-/// Exclusive right to write to a run folder: a system lock on a file there. It ends with the process in any case. File systems without
-/// locks give no protection. The destructor removes the file.
+/// Exclusive right to write to a run folder: a system lock on a file there. It ends with the process in any case. File
+/// systems without locks give no protection. The destructor removes the file.
 class RunLock {
  public:
   static constexpr const char* name = ".lock";

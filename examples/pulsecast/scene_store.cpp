@@ -30,8 +30,8 @@ using io::Fingerprint;
 
 namespace {
 
-constexpr std::uintmax_t worth_keeping = std::uintmax_t{16}
-                                         << 20;  ///< least size of the scene's files; smaller scenes build in about a second [byte]
+constexpr std::uintmax_t worth_keeping =
+    std::uintmax_t{16} << 20;  ///< least size of the scene's files; smaller scenes build in about a second [byte]
 constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes except the newest [byte]
 
 /// Identifies this program: another build may make other scenes.
@@ -94,7 +94,8 @@ struct SceneNotes {
   }
 };
 
-/// Replaces a file atomically: `write` makes it under a unique name, so that programs that start at the same time do no harm.
+/// Replaces a file atomically: `write` makes it under a unique name, so that programs that start at the same time do no
+/// harm.
 template <class Write>
 void replace(const fs::path& path, const Write& write) {
   const fs::path own = path.string() + '.' + hex(std::uint64_t{std::random_device{}()} << 32 | std::random_device{}());
@@ -134,9 +135,11 @@ void tidy(const fs::path& folder, const fs::path& newest) {
 
 }  // namespace
 
-KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build, std::vector<std::string>& notes) {
+KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build,
+                       std::vector<std::string>& notes) {
   if (store.folder.empty() || (!store.read && !store.write)) return {.built = build()};
-  const fs::path path = store.folder / (place_of(inputs) + ".scene"), notes_path = fs::path(path).replace_extension(".notes");
+  const fs::path path = store.folder / (place_of(inputs) + ".scene"),
+                 notes_path = fs::path(path).replace_extension(".notes");
   const std::string program = this_program();
   const auto key_of = [&](const std::set<fs::path>& looked_for) {
     std::set<fs::path> all = inputs.files;
@@ -147,12 +150,16 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
   };
   if (store.read) {
     auto known = SceneNotes::read(notes_path, key_of);
-    auto opened = known ? io::open_scene<SurveyScene>(path, known->key, MovingIndexSettings{.to = 1}) : io::OpenedScene<SurveyScene>{};
+    auto opened = known ? io::open_scene<SurveyScene>(path, known->key, MovingIndexSettings{.to = 1})
+                        : io::OpenedScene<SurveyScene>{};
     if (opened.scene) {
       std::error_code ignored;
-      for (const fs::path& used : {path, notes_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
+      for (const fs::path& used : {path, notes_path})
+        fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
       notes.push_back("the scene is read from its cache, " + path.string());
-      return {{{opened.scene->parts().begin(), opened.scene->parts().end()}, std::move(known->warnings), std::move(known->files)},
+      return {{{opened.scene->parts().begin(), opened.scene->parts().end()},
+               std::move(known->warnings),
+               std::move(known->files)},
               path,
               known->key};
     }
@@ -176,7 +183,9 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
     const std::uintmax_t room = fs::space(store.folder, error).available;
     if (scene.memory() > (error ? max_kept : std::min(max_kept, room)) / 2)
       throw FileError(store.folder.string(), "", "the scene is too large for this folder");
-    replace(notes_path, [&](const fs::path& own) { SceneNotes{key, made.built.files, made.built.warnings}.write(own); });
+    replace(notes_path, [&](const fs::path& own) {
+      SceneNotes{key, made.built.files, made.built.warnings}.write(own);
+    });
     replace(path, [&](const fs::path& own) { io::save_scene(own, scene, key); });
     tidy(store.folder, path);
     notes.push_back("the scene is cached for the next run in " + path.string());
@@ -210,8 +219,8 @@ void keep_for_now(KeptParts& kept) {
 
 }  // namespace
 
-KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs, const BuildParts& build,
-                       std::vector<std::string>& notes) {
+KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs,
+                       const BuildParts& build, std::vector<std::string>& notes) {
   KeptParts kept;
   if (sharing.builds()) kept = stored_parts(store, inputs, build, notes);
   if (!sharing.shared()) return kept;

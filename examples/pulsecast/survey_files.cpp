@@ -29,7 +29,8 @@ SurveyFile read_survey_file(const Options& options, Notes& notes) try {
   notes.odd(document.warnings);
   std::string text = helios::xml_text(document.survey),
               scene_text = helios::xml_text(helios::AssetDocument{.scenes = {document.survey.scene}});
-  return {std::move(document.survey), std::move(text), std::move(scene_text), std::move(document.leg_places), std::move(document.place)};
+  return {std::move(document.survey), std::move(text), std::move(scene_text), std::move(document.leg_places),
+          std::move(document.place)};
 } catch (const helios::XmlFaults& faults) {
   notes.odd(faults.warnings());
   throw;
@@ -41,9 +42,11 @@ std::uint16_t reference_system_of(const helios::SceneSettings& scene) {
     const auto* const rasters = std::get_if<helios::GeoTiffSource>(&part.source);
     if (rasters == nullptr || part.transform != helios::TransformSettings{}) continue;
     for (const fs::path& path : rasters->files)
-      codes.insert(io::is_ascii_grid(path) || io::is_png(path) ? std::uint16_t{0} : io::read_geotiff_epsg(path).value_or(0));
+      codes.insert(io::is_ascii_grid(path) || io::is_png(path) ? std::uint16_t{0}
+                                                               : io::read_geotiff_epsg(path).value_or(0));
   }
-  const bool is_one = codes.size() == 1 && *codes.begin() >= 1024 && *codes.begin() <= 32766;  // source: OGC GeoTIFF 1.1, codes of EPSG
+  const bool is_one =
+      codes.size() == 1 && *codes.begin() >= 1024 && *codes.begin() <= 32766;  // source: OGC GeoTIFF 1.1, codes of EPSG
   return is_one ? *codes.begin() : std::uint16_t{0};
 }
 
@@ -84,13 +87,14 @@ void set_attribute(std::string& text, std::size_t tag, const std::string& name, 
 fs::path target_of(fs::path path) {
   constexpr int max_links = 40;  // source: path_resolution(7)
   std::error_code error;
-  for (int links = 0; links < max_links && fs::is_symlink(path, error); ++links) path = path.parent_path() / fs::read_symlink(path, error);
+  for (int links = 0; links < max_links && fs::is_symlink(path, error); ++links)
+    path = path.parent_path() / fs::read_symlink(path, error);
   return path;
 }
 
 /// Throws a `FileError` unless a text, read at `path`, gives the same survey except for the change.
-void require_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::string& text,
-                         const fs::path& path) {
+void require_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change,
+                         const std::string& text, const fs::path& path) {
   struct Trial {
     fs::path path;
     ~Trial() {
@@ -113,11 +117,13 @@ void require_same_survey(const Options& options, const SurveyFile& file, const W
 
 }  // namespace
 
-void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const fs::path& path) {
+void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change,
+                       const fs::path& path) {
   std::ifstream in(options.survey, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
   pugi::xml_document document;
-  if (!in || !document.load_buffer(text.data(), text.size())) throw FileError(options.survey.string(), "", "cannot be read again");
+  if (!in || !document.load_buffer(text.data(), text.size()))
+    throw FileError(options.survey.string(), "", "cannot be read again");
   const pugi::xml_node survey = document.document_element().child("survey"), waveforms = survey.child("FWFSettings");
   auto tag = static_cast<std::size_t>((waveforms ? waveforms : survey).offset_debug());
   if (!waveforms) {  // new element, indented like the next one
@@ -187,10 +193,12 @@ void print_catalogue(const Options& options) {
     if (assets.scanners.empty() && assets.platforms.empty()) continue;
     std::cout << file.string() << '\n';
     for (const auto& s : assets.scanners) {
-      std::cout << "  " << std::left << std::setw(36) << s.id << std::setw(13) << optic_name(s.channels.front().optic) << std::right
-                << std::setw(4) << s.channels.size() << (s.channels.size() == 1 ? " channel   " : " channels  ") << s.name << '\n';
+      std::cout << "  " << std::left << std::setw(36) << s.id << std::setw(13) << optic_name(s.channels.front().optic)
+                << std::right << std::setw(4) << s.channels.size()
+                << (s.channels.size() == 1 ? " channel   " : " channels  ") << s.name << '\n';
     }
     for (const auto& p : assets.platforms)
-      std::cout << "  " << std::left << std::setw(36) << p.id << std::setw(29) << kind_name(p.kind) << std::right << p.name << '\n';
+      std::cout << "  " << std::left << std::setw(36) << p.id << std::setw(29) << kind_name(p.kind) << std::right
+                << p.name << '\n';
   }
 }

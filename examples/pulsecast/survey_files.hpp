@@ -23,7 +23,8 @@ struct SurveyFile {
 /// Reads the survey of the command line. Notes its warnings, also if it throws.
 SurveyFile read_survey_file(const Options& options, Notes& notes);
 
-/// EPSG code that all rasters of the scene share; 0 if there is none, or different ones. Rasters moved by their part do not count.
+/// EPSG code that all rasters of the scene share; 0 if there is none, or different ones. Rasters moved by their part do
+/// not count.
 std::uint16_t reference_system_of(const pulsecast::helios::SceneSettings& scene);
 
 /// Changes by `write_survey_file`, to all channels.
@@ -32,9 +33,10 @@ struct WaveformChange {
   double bin_size = 0;  ///< `binSize_ns` [s]
 };
 
-/// Writes a survey document with other settings and keeps the rest, comments too. Follows symbolic links and keeps the file mode. Throws a
-/// `FileError` and keeps the old file if the new text would give another survey.
-void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::filesystem::path& path);
+/// Writes a survey document with other settings and keeps the rest, comments too. Follows symbolic links and keeps the
+/// file mode. Throws a `FileError` and keeps the old file if the new text would give another survey.
+void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change,
+                       const std::filesystem::path& path);
 
 /// Prints the scanners and platforms in the program's assets.
 void print_catalogue(const Options& options);

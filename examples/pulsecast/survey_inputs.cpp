@@ -29,9 +29,10 @@ Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
   if (::stat(path.c_str(), &status) != 0) status = {};
   Mark mark;
   for (const auto number :
-       {static_cast<std::intmax_t>(status.st_dev), static_cast<std::intmax_t>(status.st_ino), static_cast<std::intmax_t>(status.st_size),
-        static_cast<std::intmax_t>(status.st_mtim.tv_sec), static_cast<std::intmax_t>(status.st_mtim.tv_nsec),
-        static_cast<std::intmax_t>(status.st_ctim.tv_sec), static_cast<std::intmax_t>(status.st_ctim.tv_nsec)})
+       {static_cast<std::intmax_t>(status.st_dev), static_cast<std::intmax_t>(status.st_ino),
+        static_cast<std::intmax_t>(status.st_size), static_cast<std::intmax_t>(status.st_mtim.tv_sec),
+        static_cast<std::intmax_t>(status.st_mtim.tv_nsec), static_cast<std::intmax_t>(status.st_ctim.tv_sec),
+        static_cast<std::intmax_t>(status.st_ctim.tv_nsec)})
     mark.push_back(static_cast<std::uint64_t>(number));
   const bool is_folder = S_ISDIR(status.st_mode) && std::find(spectra_.begin(), spectra_.end(), path) != spectra_.end();
   const auto [known, is_new] = known_.try_emplace(path);
@@ -41,7 +42,8 @@ Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
       now = io::content_fingerprint(path);
     } catch (const FileError&) {  // unreadable: as if it were missing
     }
-  if (!is_new && now != known->second.second) throw FileError(path.string(), "", "has changed since this program looked at it first");
+  if (!is_new && now != known->second.second)
+    throw FileError(path.string(), "", "has changed since this program looked at it first");
   known->second = {std::move(mark), now};
   return now;
 }

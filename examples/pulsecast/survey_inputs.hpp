@@ -18,14 +18,16 @@ class SurveyInputs {
  public:
   SurveyInputs(const pulsecast::helios::SurveySettings& survey, const std::vector<std::filesystem::path>& assets);
 
-  [[nodiscard]] const std::set<std::filesystem::path>& scene() const noexcept { return scene_; }         ///< files in its settings
+  [[nodiscard]] const std::set<std::filesystem::path>& scene() const noexcept {
+    return scene_;
+  }  ///< files in its settings
   [[nodiscard]] const std::vector<std::filesystem::path>& spectra() const noexcept { return spectra_; }  ///< folders
 
   /// Adds the files that a builder of the scene has looked for.
   void add(const std::set<std::filesystem::path>& files) { others_.insert(files.begin(), files.end()); }
 
-  /// Fingerprint of the content of a file, or of a folder of spectra; zero if it cannot be read. Rereads a file only if its size or times
-  /// have changed. Throws a `FileError` if it is not what it was when it was asked for first.
+  /// Fingerprint of the content of a file, or of a folder of spectra; zero if it cannot be read. Rereads a file only if
+  /// its size or times have changed. Throws a `FileError` if it is not what it was when it was asked for first.
   [[nodiscard]] pulsecast::io::Fingerprint fingerprint(const std::filesystem::path& path);
 
   /// Fingerprint of each file and folder of spectra, in hexadecimal digits.

@@ -36,8 +36,8 @@ constexpr double start_time = 302'400;  // half a GPS week, whose seconds have a
 
 /// Temporary folder; the destructor removes it.
 struct TemporaryFolder {
-  fs::path path =
-      fs::temp_directory_path() / ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
+  fs::path path = fs::temp_directory_path() /
+                  ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
   TemporaryFolder() { fs::create_directories(path); }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -80,7 +80,8 @@ struct Written {
 /// Writes parts of a survey, each to files of its own.
 class TrialWriter {
  public:
-  TrialWriter(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted)
+  TrialWriter(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
+              PulseLines counted)
       : simulation_(simulation), options_(options), channels_(channels), counted_(counted) {}
 
   /// Writes what `add` adds.
@@ -125,12 +126,14 @@ class TrialWriter {
 
 /// Quantile of Student's t that 95 % are within. Source: Abramowitz & Stegun 1964, 26.7.5.
 double student_t(double freedom) {
-  const double x = 1.959964, g1 = (std::pow(x, 3) + x) / 4, g2 = (5 * std::pow(x, 5) + 16 * std::pow(x, 3) + 3 * x) / 96;
+  const double x = 1.959964, g1 = (std::pow(x, 3) + x) / 4,
+               g2 = (5 * std::pow(x, 5) + 16 * std::pow(x, 3) + 3 * x) / 96;
   return x + g1 / freedom + g2 / (freedom * freedom);
 }
 
-/// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which meets the sum of the costs. Source:
-/// Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression estimator.
+/// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which meets the sum
+/// of the costs. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression
+/// estimator.
 WritingCost regression(std::span<const Written> all, double Written::*cost, double fixed) {
   double pp = 0, pl = 0, ll = 0, pc = 0, lc = 0;
   for (const Written& w : all) {
@@ -158,7 +161,8 @@ WritingCost regression(std::span<const Written> all, double Written::*cost, doub
   return found;
 }
 
-// ----------------------------------------------------------------------------------------------------------------- memory
+// -----------------------------------------------------------------------------------------------------------------
+// memory
 
 /// Resident memory of this process. Source: proc(5), /proc/PID/status.
 Resident resident_now() {
@@ -177,7 +181,8 @@ std::uint64_t filling_points(const Options& options) {
   return options.format == "copc.laz" ? (std::uint64_t{1} << 19) * (std::min<std::uint64_t>(threads, 12) + 3) : 0;
 }
 
-/// Files of a leg or strip, and sink that writes them as a run does. It stops when more results would take no more memory.
+/// Files of a leg or strip, and sink that writes them as a run does. It stops when more results would take no more
+/// memory.
 struct TrialFiles {
   LegFiles files;
   const Allowance& allowance;
@@ -195,12 +200,14 @@ struct TrialFiles {
     constexpr std::size_t long_text = 100'000'000;
     if ((points >= enough && bytes >= ahead) || waveforms >= long_text || !allowance.left()) stop.request_stop();
   }
-  [[nodiscard]] bool reads_empty_shots() const noexcept { return files.reads_empty_shots(); }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] bool reads_empty_shots() const noexcept {
+    return files.reads_empty_shots();
+  }  ///< as the concept ChoosesShots describes
 };
 
 /// Simulates and writes as much of each leg as matters.
-void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted,
-          const fs::path& folder, TrialRun& trial) {
+void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
+          PulseLines counted, const fs::path& folder, TrialRun& trial) {
   const CompiledSurvey& compiled = simulation.compiled();
   const Allowance allowance(3, std::min(thread_count(options.threads), thread_count(0)));
   // Compressors take more memory when they fill their buffers again, by what the heap leaves between.
@@ -215,8 +222,8 @@ void play(const Simulation& simulation, const Options& options, const std::vecto
     auto& files = open[prefix];
     if (!files) files.reset(new TrialFiles{LegFiles(folder, prefix, options, start_time, channels), allowance, enough});
     files->files.add_trajectory(compiled.source.legs()[k], leg.start, leg.trajectory_interval);
-    const RunSummary run =
-        simulation.run({.threads = options.threads, .first = leg.first, .end = leg.end, .stop = files->stop.get_token()}, *files);
+    const RunSummary run = simulation.run(
+        {.threads = options.threads, .first = leg.first, .end = leg.end, .stop = files->stop.get_token()}, *files);
     trial.points += static_cast<double>(run.echoes);
     trial.lines += lines(run, counted);
     trial.complete = trial.complete && run.complete;
@@ -248,8 +255,9 @@ PulseLines pulse_lines(const Options& options, const std::vector<std::string>& c
   return options.write_pulse ? PulseLines::all : PulseLines::empty;
 }
 
-WritingCosts writing_costs(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
-                           PulseLines counted, std::span<const PulseIndex> starts) {
+WritingCosts writing_costs(const Simulation& simulation, const Options& options,
+                           const std::vector<std::string>& channels, PulseLines counted,
+                           std::span<const PulseIndex> starts) {
   const CompiledSurvey& compiled = simulation.compiled();
   const TrialWriter writer(simulation, options, channels, counted);
   const auto nothing = [](LegFiles&, Written&) {};
@@ -264,24 +272,30 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   const Allowance allowance(1, std::min(thread_count(options.threads), thread_count(0)));
   for (const PulseIndex from : starts) {
     if (all.size() >= least && !allowance.left()) break;
-    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(), [&](const auto& l) { return l.active && from < l.end; });
-    all.push_back(
-        writer.write([&](LegFiles& files, Written& some) { writer.add(files, some, from, std::min(leg->end, from + longest), stretch); }));
+    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
+                                  [&](const auto& l) { return l.active && from < l.end; });
+    all.push_back(writer.write([&](LegFiles& files, Written& some) {
+      writer.add(files, some, from, std::min(leg->end, from + longest), stretch);
+    }));
   }
-  WritingCosts costs{regression(all, &Written::bytes, without.bytes), regression(all, &Written::seconds, without.seconds)};
-  // Stretches differ from the whole by what their compressors know, and by their octree. Source: 37 surveys, bench/forecast.sh.
+  WritingCosts costs{regression(all, &Written::bytes, without.bytes),
+                     regression(all, &Written::seconds, without.seconds)};
+  // Stretches differ from the whole by what their compressors know, and by their octree. Source: 37 surveys,
+  // bench/forecast.sh.
   const double model = !options.format.ends_with("laz") ? 0.005 : options.format == "laz" ? 0.015 : 0.08;
   costs.bytes.unsure = std::hypot(costs.bytes.unsure, model);
 
   double records = 0;
   for (const auto& leg : compiled.legs)
-    if (leg.active && leg.trajectory_interval > 0) records += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
+    if (leg.active && leg.trajectory_interval > 0)
+      records += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
   const double step = std::max(1.0, records / 20'000);
   const Written paths = writer.write([&](LegFiles& files, Written& some) {
     const double before = processor_time();
     for (const auto& [prefix, legs] : legs_of)
       for (const std::size_t k : legs)
-        files.add_trajectory(compiled.source.legs()[k], compiled.legs[k].start, step * compiled.legs[k].trajectory_interval);
+        files.add_trajectory(compiled.source.legs()[k], compiled.legs[k].start,
+                             step * compiled.legs[k].trajectory_interval);
     some.seconds += processor_time() - before;
   });
   const double sets = static_cast<double>(legs_of.size());
@@ -290,7 +304,8 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   return costs;
 }
 
-TrialRun trial_run(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted) {
+TrialRun trial_run(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
+                   PulseLines counted) {
   const TemporaryFolder folder;
   std::array<int, 2> pipe_ends{};
   TrialRun trial{.filling = filling_points(options), .before = resident_now()};
@@ -316,10 +331,11 @@ Estimate TrialRun::memory(double of_run, const Options& options) const {
   if (!(after.most > 0)) return {before.most, before.most, std::numeric_limits<double>::infinity()};
   const double growth = after.most - after.file - before.own, base = before.own + before.file;
   // With buffers that are not full yet, memory grows at most as the points do.
-  const double more = !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
-  // Runs differ in the pages of libraries in use, the order of work of their threads and what the heap of each thread keeps, which grows
-  // with longer runs. Source of the figures: 37 surveys of 200 to 6 million points by bench/forecast.sh, in LAS, LAZ, COPC and text, on 1
-  // to 8 threads.
+  const double more =
+      !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
+  // Runs differ in the pages of libraries in use, the order of work of their threads and what the heap of each thread
+  // keeps, which grows with longer runs. Source of the figures: 37 surveys of 200 to 6 million points by
+  // bench/forecast.sh, in LAS, LAZ, COPC and text, on 1 to 8 threads.
   const bool alone = thread_count(options.threads) == 1;
   const double later = alone || options.format == "copc.laz" ? 1 : complete ? 1.05 : 1.2;
   const auto memory = [&](double all, double grown, double pages) {

@@ -48,16 +48,19 @@ struct WritingCosts {
 enum class PulseLines { none, empty, all };
 PulseLines pulse_lines(const Options& options, const std::vector<std::string>& channels);
 
-/// Writes stretches of a survey by the writers of a run: those that begin at `starts`, until their number and processor time suffice.
+/// Writes stretches of a survey by the writers of a run: those that begin at `starts`, until their number and processor
+/// time suffice.
 WritingCosts writing_costs(const pulsecast::helios::Simulation& simulation, const Options& options,
-                           const std::vector<std::string>& channels, PulseLines counted, std::span<const pulsecast::PulseIndex> starts);
+                           const std::vector<std::string>& channels, PulseLines counted,
+                           std::span<const pulsecast::PulseIndex> starts);
 
 /// Resident memory of a process [byte].
 struct Resident {
   double own = 0, file = 0, most = 0;  ///< anonymous memory; pages of files; greatest resident memory so far
 };
 
-/// Trial of a run: each leg was simulated and written until more points would take no more memory, or processor time ran out.
+/// Trial of a run: each leg was simulated and written until more points would take no more memory, or processor time
+/// ran out.
 struct TrialRun {
   std::uint64_t filling = 0;     ///< points that fill the buffers of the writers
   Resident before{}, after{};    ///< memory before the trial, and after it in the process of its own that it had
@@ -71,5 +74,5 @@ struct TrialRun {
 };
 
 /// Tries a run in a child process. The simulation must be new, as in a run.
-TrialRun trial_run(const pulsecast::helios::Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
-                   PulseLines counted);
+TrialRun trial_run(const pulsecast::helios::Simulation& simulation, const Options& options,
+                   const std::vector<std::string>& channels, PulseLines counted);

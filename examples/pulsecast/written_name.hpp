@@ -25,8 +25,8 @@
   std::string name;
   for (; !text.empty(); text.remove_prefix(1)) {
     unsigned c = 0;
-    const bool is_escape =
-        text.starts_with("\\x") && text.size() >= 4 && std::from_chars(text.data() + 2, text.data() + 4, c, 16).ptr == text.data() + 4;
+    const bool is_escape = text.starts_with("\\x") && text.size() >= 4 &&
+                           std::from_chars(text.data() + 2, text.data() + 4, c, 16).ptr == text.data() + 4;
     name += is_escape ? static_cast<char>(c) : text.front();
     if (is_escape) text.remove_prefix(3);
   }

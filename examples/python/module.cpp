@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of one's own are for
-// `bind_survey`; see `own_scanner.cpp`.
+// The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of
+// one's own are for `bind_survey`; see `own_scanner.cpp`.
 
 #include <algorithm>
 #include <array>
@@ -70,8 +70,11 @@ struct MeshLooks {
 /// Picture of an array of shape (rows, columns) or (rows, columns, channels), from the top.
 std::shared_ptr<const Image> picture_of(const py::array_t<std::uint8_t, py::array::c_style>& array) {
   if (array.ndim() != 2 && array.ndim() != 3)
-    throw SettingError("Mesh::picture (dimensions)", static_cast<double>(array.ndim()), "", "2 or 3: shape (rows, columns, channels)");
-  const auto size = [](py::ssize_t count) { return static_cast<std::uint32_t>(std::min<py::ssize_t>(count, 1'000'000)); };
+    throw SettingError("Mesh::picture (dimensions)", static_cast<double>(array.ndim()), "",
+                       "2 or 3: shape (rows, columns, channels)");
+  const auto size = [](py::ssize_t count) {
+    return static_cast<std::uint32_t>(std::min<py::ssize_t>(count, 1'000'000));
+  };
   const std::vector<std::uint8_t> samples(array.data(), array.data() + array.size());
   auto picture = std::make_shared<const Image>(
       Image{size(array.shape(1)), size(array.shape(0)), array.ndim() == 2 ? 1 : size(array.shape(2)), samples});
@@ -83,29 +86,35 @@ void set_looks(const MeshLooks& looks, Simulation::Mesh& mesh) {
   if (looks.colour) mesh.material.colour = {(*looks.colour)[0], (*looks.colour)[1], (*looks.colour)[2]};
   if (looks.picture) mesh.material.picture = picture_of(*looks.picture);
   std::vector<Attribute> all;
-  for (const auto& [name, value] : looks.attributes.value_or(std::map<std::string, double>())) all.push_back({name, value});
+  for (const auto& [name, value] : looks.attributes.value_or(std::map<std::string, double>()))
+    all.push_back({name, value});
   if (!all.empty()) mesh.attributes = attributes(std::move(all));
 }
 
 /// Triangles of arrays, with one material.
-Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
-                         ObjectId object, double reflectance, std::uint16_t classification, bool ground,
-                         const std::optional<python::NumberArray>& texture, const std::optional<SmoothInterface>& smooth,
+Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices,
+                         const py::object& triangles_given, ObjectId object, double reflectance,
+                         std::uint16_t classification, bool ground, const std::optional<python::NumberArray>& texture,
+                         const std::optional<SmoothInterface>& smooth,
                          const std::optional<std::array<double, 3>>& colour,
                          std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture,
                          std::optional<std::map<std::string, double>> attributes) {
   const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
-    if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
-    if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
+    if (array.ndim() != 2)
+      throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
+    if (array.shape(1) != 3)
+      throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
   };
   const auto numbers = py::array::ensure(triangles_given);
-  if (!numbers) throw py::type_error("Mesh triangles: expected an array, not " + std::string(py::repr(triangles_given)));
+  if (!numbers)
+    throw py::type_error("Mesh triangles: expected an array, not " + std::string(py::repr(triangles_given)));
   require_rows_of_three(vertices, "Mesh::vertices");
   require_rows_of_three(numbers, "Mesh::triangles");
   if (const char kind = numbers.dtype().kind(); kind != 'i' && kind != 'u')  // else 1.7 would become 1
     throw py::type_error("Mesh triangles: expected whole numbers, not " + std::string(py::str(numbers.dtype())));
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
-  Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
+  Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground},
+                        .object = object};
   if (smooth) mesh.material.smooth = *smooth;
   set_looks({colour, std::move(picture), std::move(attributes)}, mesh);
   mesh.material.validate();
@@ -116,7 +125,8 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
     for (py::ssize_t k = 0; k < 3; ++k) {
       const std::int64_t corner = triangles.at(i, k);
       if (corner < 0 || corner >= vertices.shape(0))
-        throw SettingError("Mesh::triangles", static_cast<double>(corner), "", "the number of a vertex; see triangle " + std::to_string(i));
+        throw SettingError("Mesh::triangles", static_cast<double>(corner), "",
+                           "the number of a vertex; see triangle " + std::to_string(i));
       corners[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(corner);
     }
   }
@@ -125,7 +135,8 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
       throw SettingError("Mesh::texture (dimensions)", static_cast<double>(texture->ndim()), "", "3: shape (m, 3, 2)");
     for (py::ssize_t i = 0; i < texture->shape(0); ++i) {
       std::array<Vec2, 3>& corners = mesh.data.texture.emplace_back();
-      for (py::ssize_t k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = {texture->at(i, k, 0), texture->at(i, k, 1)};
+      for (py::ssize_t k = 0; k < 3; ++k)
+        corners[static_cast<std::size_t>(k)] = {texture->at(i, k, 0), texture->at(i, k, 1)};
     }
   }
   mesh.data.validate();
@@ -147,9 +158,10 @@ std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulatio
 }
 
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
-                                          std::optional<std::uint64_t> seed, bool echo_width, bool waveforms, bool waveform_noise,
-                                          bool fixed_incidence, bool library_physics, bool light_paths, bool platform_noise, bool leg_noise,
-                                          unsigned threads, int run) {
+                                          std::optional<std::uint64_t> seed, bool echo_width, bool waveforms,
+                                          bool waveform_noise, bool fixed_incidence, bool library_physics,
+                                          bool light_paths, bool platform_noise, bool leg_noise, unsigned threads,
+                                          int run) {
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
@@ -216,13 +228,17 @@ void bind_documents(py::module_& m) {
         return to_python(document.survey);
       },
       "path"_a, "assets"_a = Paths{},
-      "Reads the XML document of a survey, with all documents that it refers to, and returns its SurveySettings. Search folders: `assets`, "
+      "Reads the XML document of a survey, with all documents that it refers to, and returns its SurveySettings. "
+      "Search folders: `assets`, "
       "then that of the document. Raises FileError with all errors; other defects are warnings.");
   m.def(
-      "write_survey", [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); }, "path"_a,
-      "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
+      "write_survey",
+      [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); },
+      "path"_a, "survey"_a,
+      "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
   m.def(
-      "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a, "Text that `write_survey` writes.");
+      "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a,
+      "Text that `write_survey` writes.");
   m.def(
       "read_assets",
       [](const std::filesystem::path& path, const Paths& assets) {
@@ -230,7 +246,8 @@ void bind_documents(py::module_& m) {
         warn(document.warnings);
         return to_python(document);
       },
-      "path"_a, "assets"_a = Paths{}, "Reads an XML document of scanners, platforms and scenes: a dict of three lists of settings.");
+      "path"_a, "assets"_a = Paths{},
+      "Reads an XML document of scanners, platforms and scenes: a dict of three lists of settings.");
 }
 
 void bind_light(py::module_& m) {
@@ -241,7 +258,8 @@ void bind_light(py::module_& m) {
              return medium;
            }),
            "index"_a = 1.0, "group_index"_a = 0.0, "absorption"_a = 0.0, "scattering"_a = 0.0, "backscatter"_a = 0.0,
-           "index: refractive index, from 1 to 4; group_index: vacuum speed of light by that of a pulse, 0 for the index; absorption, "
+           "index: refractive index, from 1 to 4; group_index: vacuum speed of light by that of a pulse, 0 for the "
+           "index; absorption, "
            "scattering: coefficients [1/m]; backscatter: at most scattering [1/(m sr)]. Raises SettingError.")
       .def_readonly("index", &Medium::index)
       .def_readonly("group_index", &Medium::group_index)
@@ -258,10 +276,12 @@ void bind_light(py::module_& m) {
             return water(*known, wavelength);
           },
           "type"_a, "wavelength"_a,
-          "Water of a type by Jerlov, from I, the clearest ocean, to III, and from 1C to 9C, coasts, for a laser's wavelength [m]. Raises "
+          "Water of a type by Jerlov, from I, the clearest ocean, to III, and from 1C to 9C, coasts, for a laser's "
+          "wavelength [m]. Raises "
           "ValueError and SettingError.");
   py::class_<SmoothInterface>(m, "SmoothInterface", "Smooth surface that passes light on.")
-      .def_static("mirror", &SmoothInterface::mirror, "reflectance"_a = 0.95, "Mirror that reflects a share of the light.")
+      .def_static("mirror", &SmoothInterface::mirror, "reflectance"_a = 0.95,
+                  "Mirror that reflects a share of the light.")
       .def_static("pane", &SmoothInterface::pane, "thickness"_a = 4e-3, "Pane of clear glass [m].")
       .def_static("glass", &SmoothInterface::glass, "Face of a body of clear glass, drawn as a closed shape.")
       .def_static("water", &SmoothInterface::water, "inside"_a = Medium{.index = 1.33}, "Surface of water.");
@@ -270,60 +290,76 @@ void bind_light(py::module_& m) {
 void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
       .def(
-          py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
-          "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(), "colour"_a = py::none(), "picture"_a = py::none(),
-          "attributes"_a = py::none(),
+          py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5,
+          "classification"_a = 0, "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(),
+          "colour"_a = py::none(), "picture"_a = py::none(), "attributes"_a = py::none(),
           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
-          "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
+          "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry "
+          "platforms; "
           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
-          "smooth: SmoothInterface that passes light on, in a simulation with light_paths; colour: red, green and blue of its points, in "
-          "[0, 1]; picture: array of uint8, shape (rows, columns) or (rows, columns, channels), from the top, by which texture coordinates "
+          "smooth: SmoothInterface that passes light on, in a simulation with light_paths; colour: red, green and blue "
+          "of its points, in "
+          "[0, 1]; picture: array of uint8, shape (rows, columns) or (rows, columns, channels), from the top, by which "
+          "texture coordinates "
           "multiply the colour; attributes: named numbers of its points, as in {'age': 80}.")
       .def_property_readonly(
           "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Number of triangles.")
       .def("__repr__", [](const Simulation::Mesh& mesh) {
-        return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " + std::to_string(mesh.object) + '>';
+        return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " +
+               std::to_string(mesh.object) + '>';
       });
 }
 
 void bind_raycasting_scene(py::module_& m) {
-  py::class_<RaycastingScene> scene(m, "RaycastingScene", "Meshes to be asked by rays, without a survey. Part i is mesh i.");
+  py::class_<RaycastingScene> scene(m, "RaycastingScene",
+                                    "Meshes to be asked by rays, without a survey. Part i is mesh i.");
   scene
       .def(py::init(&raycasting_scene_of), "meshes"_a, py::kw_only(), "threads"_a = 0,
            "meshes: list of Mesh. threads: for building the index; 0: all. Raises SettingError.")
       .def_property_readonly(
           "memory", [](const RaycastingScene& s) { return s.memory(); }, "Memory of the scene [byte].")
-      .def("__repr__", [](const RaycastingScene& s) { return "<RaycastingScene of " + std::to_string(s.parts().size()) + " meshes>"; });
+      .def("__repr__", [](const RaycastingScene& s) {
+        return "<RaycastingScene of " + std::to_string(s.parts().size()) + " meshes>";
+      });
   python::bind_ray_queries(scene);
 }
 
 void bind_simulation(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
   PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
-  py::class_<Simulation> simulation(m, "Simulation", "A survey with its scene loaded and its legs planned, ready to run.");
+  py::class_<Simulation> simulation(m, "Simulation",
+                                    "A survey with its scene loaded and its legs planned, ready to run.");
   simulation
-      .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{}, "meshes"_a = std::vector<Simulation::Mesh>{},
-           "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false,
-           "library_physics"_a = false, "light_paths"_a = false, "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0,
+      .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{},
+           "meshes"_a = std::vector<Simulation::Mesh>{}, "seed"_a = py::none(), "echo_width"_a = false,
+           "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false, "library_physics"_a = false,
+           "light_paths"_a = false, "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0,
            "repetition"_a = 0,
-           "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. seed: by default the "
-           "survey's own, or 0. echo_width: fit echo widths. waveforms: keep the waveforms. waveform_noise: add receiver noise. "
-           "fixed_incidence: scatter as at normal incidence. library_physics: physics of the library in place of HELIOS++'s. "
+           "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. seed: "
+           "by default the "
+           "survey's own, or 0. echo_width: fit echo widths. waveforms: keep the waveforms. waveform_noise: add "
+           "receiver noise. "
+           "fixed_incidence: scatter as at normal incidence. library_physics: physics of the library in place of "
+           "HELIOS++'s. "
            "light_paths: light goes on from mirrors, glass and water. "
            "platform_noise, leg_noise: False removes those of the survey. threads: for "
-           "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises SettingError or FileError.")
+           "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises "
+           "SettingError or FileError.")
       .def(
           "__len__", [](const Simulation& s) { return s.compiled().source.size(); }, "Number of pulse slots.")
       .def("__repr__",
            [](const Simulation& s) {
-             return "<Simulation of " + std::to_string(s.compiled().legs.size()) + " legs, " + std::to_string(s.compiled().source.size()) +
-                    " pulse slots, " + std::to_string(s.scene().triangles) + " triangles>";
+             return "<Simulation of " + std::to_string(s.compiled().legs.size()) + " legs, " +
+                    std::to_string(s.compiled().source.size()) + " pulse slots, " +
+                    std::to_string(s.scene().triangles) + " triangles>";
            })
       .def("trajectory", &trajectory_of, "interval"_a,
-           "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array of time [s], "
+           "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array "
+           "of time [s], "
            "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
-      .def_property_readonly("legs", &legs_of,
-                             "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")
+      .def_property_readonly(
+          "legs", &legs_of,
+          "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")
       .def_property_readonly("repetitions", &Simulation::runs, "Number of repetitions, each with its own scene.")
       .def_property_readonly(
           "bounds",
@@ -339,9 +375,13 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
   const auto runner = [](const Simulation& s) {
-    return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
+    return [&s](const RunOptions& options, const auto& sink) {
+      return s.run(options, [&](const EchoBatch& batch) { sink(batch); });
+    };
   };
-  python::bind_run(simulation, runner, [](const Simulation& s) { return python::PointExtras{s.colours(), s.attributes()}; });
+  python::bind_run(simulation, runner, [](const Simulation& s) {
+    return python::PointExtras{s.colours(), s.attributes()};
+  });
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ py::handle& class_of() {
   return made;
 }
 
-// ------------------------------------------------------------------------------------------------------------- to Python
+// ------------------------------------------------------------------------------------------------------------- to
+// Python
 
 template <class T>
 py::object object_of(const T& value) {
@@ -82,7 +83,8 @@ py::object object_of(const T& value) {
   }
 }
 
-// ----------------------------------------------------------------------------------------------------------- from Python
+// ----------------------------------------------------------------------------------------------------------- from
+// Python
 
 [[noreturn]] void refuse(const std::string& where, const std::string& expected, py::handle found) {
   throw py::type_error(where + ": expected " + expected + ", not " + std::string(py::repr(found)));
@@ -111,7 +113,8 @@ T number_of(py::handle object, const std::string& where) {
     try {
       return whole.cast<T>();
     } catch (const py::cast_error&) {
-      refuse(where, std::is_unsigned_v<T> ? "a whole number that is not negative" : "a whole number of 32 bits", object);
+      refuse(where, std::is_unsigned_v<T> ? "a whole number that is not negative" : "a whole number of 32 bits",
+             object);
     }
   }
 }
@@ -123,7 +126,8 @@ Variant alternative_of(py::handle object, const std::string& where, std::string 
   } else {
     using One = std::variant_alternative_t<I, Variant>;
     if (py::isinstance(object, class_of<One>())) return value_of<One>(object, where);
-    return alternative_of<Variant, I + 1>(object, where, std::move(names) + (I > 0 ? " or " : "") + Described<One>::name);
+    return alternative_of<Variant, I + 1>(object, where,
+                                          std::move(names) + (I > 0 ? " or " : "") + Described<One>::name);
   }
 }
 
@@ -142,7 +146,8 @@ T value_of(py::handle object, const std::string& where) {
     return py::detail::cast_op<bool>(truth);
   } else if constexpr (std::same_as<T, std::string>) {
     py::detail::make_caster<std::string> text;
-    if (!py::isinstance<py::str>(object) || !text.load(object, false)) refuse(where, "a text", object);  // of Unicode: no halves of pairs
+    if (!py::isinstance<py::str>(object) || !text.load(object, false))
+      refuse(where, "a text", object);  // of Unicode: no halves of pairs
     return py::detail::cast_op<std::string>(std::move(text));
   } else if constexpr (std::same_as<T, char>) {
     const auto text = value_of<std::string>(object, where);
@@ -188,7 +193,8 @@ T value_of(py::handle object, const std::string& where) {
   }
 }
 
-// --------------------------------------------------------------------------------------------------------------- classes
+// ---------------------------------------------------------------------------------------------------------------
+// classes
 
 /// `==` of members: an array, a list and a tuple of equal numbers are equal.
 bool equal(py::handle a, py::handle b) {
@@ -210,8 +216,9 @@ py::object equal_settings(const py::object& a, const py::object& b) {
   if (!py::type::of(a).is(py::type::of(b))) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
   bool same = true;
   const Settings described{};
-  Described<Settings>::members(
-      described, [&](const char* name, auto&&...) { same = same && equal(py::object(a.attr(name)), py::object(b.attr(name))); });
+  Described<Settings>::members(described, [&](const char* name, auto&&...) {
+    same = same && equal(py::object(a.attr(name)), py::object(b.attr(name)));
+  });
   return py::bool_(same);
 }
 
@@ -232,7 +239,8 @@ void bind(py::module_& m) {
   space["__module__"] = "pulsecast";
   space["__eq__"] = py::cpp_function(&equal_settings<Settings>, py::is_method(py::none()), py::name("__eq__"));
   const char* name = Described<Settings>::name;
-  py::object made = dataclasses.attr("make_dataclass")(name, members, py::arg("namespace") = space, py::arg("slots") = true);
+  py::object made =
+      dataclasses.attr("make_dataclass")(name, members, py::arg("namespace") = space, py::arg("slots") = true);
   m.attr(name) = made;
   class_of<Settings>() = made.release();
 }
@@ -248,7 +256,9 @@ void bind_settings(py::module_& m) { bind_all(m, static_cast<const AllSettings*>
 
 py::object to_python(const helios::SurveySettings& settings) { return object_of(settings); }
 
-helios::SurveySettings survey_of(py::handle settings) { return value_of<helios::SurveySettings>(settings, "SurveySettings"); }
+helios::SurveySettings survey_of(py::handle settings) {
+  return value_of<helios::SurveySettings>(settings, "SurveySettings");
+}
 
 py::object to_python(const helios::AssetDocument& assets) {
   py::dict all;

@@ -7,8 +7,8 @@
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// Settings of surveys as Python's own dataclasses: they are copied, compared, printed and pickled as any other, and lists in them are
-/// lists.
+/// Settings of surveys as Python's own dataclasses: they are copied, compared, printed and pickled as any other, and
+/// lists in them are lists.
 
 /// Makes the classes.
 void bind_settings(pybind11::module_& m);

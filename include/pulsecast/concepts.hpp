@@ -20,8 +20,9 @@
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/refinements.hpp>
 
-/// Contract: the public concepts. A model is a plain struct, without inheritance or registration. Optional members are refinements, listed
-/// in refinements.hpp. The laws that a compiler cannot check are tested by `tests/support/laws.hpp`.
+/// Contract: the public concepts. A model is a plain struct, without inheritance or registration. Optional members are
+/// refinements, listed in refinements.hpp. The laws that a compiler cannot check are tested by
+/// `tests/support/laws.hpp`.
 // clang-format off
 // version 14 breaks up compound requirements
 namespace PULSECAST_NAMESPACE {

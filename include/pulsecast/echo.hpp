@@ -19,10 +19,12 @@ using ObjectId = std::uint32_t;
 
 /// Hit of one subray: numbers only, so that any map can provide it.
 struct Hit {
-  double range = std::numeric_limits<double>::infinity();  ///< distance from the pulse's origin; infinite for a miss [m]
-  double cos_incidence = 1;                                ///< cosine of the angle between beam and surface normal, in [0, 1]
-  double backscatter = 1;  ///< reflectance times the angular law, cosine included: 1 for a white Lambertian surface at normal incidence
-  ObjectId object = 0;     ///< number of the object hit
+  double range =
+      std::numeric_limits<double>::infinity();  ///< distance from the pulse's origin; infinite for a miss [m]
+  double cos_incidence = 1;                     ///< cosine of the angle between beam and surface normal, in [0, 1]
+  double backscatter =
+      1;  ///< reflectance times the angular law, cosine included: 1 for a white Lambertian surface at normal incidence
+  ObjectId object = 0;               ///< number of the object hit
   std::uint16_t classification = 0;  ///< class of the material hit
 
   /// True for a hit.
@@ -42,22 +44,24 @@ inline constexpr std::size_t reflection_kind_count = 6;  ///< number of kinds
 
 /// One return of a pulse, as the instrument reports it.
 struct Echo {
-  double range = 0;                               ///< distance along the pulse's axis [m]
-  double amplitude = 0;                           ///< received power at the echo's peak [W]
-  double reflectance = 0;                         ///< amplitude relative to a white Lambertian surface at normal incidence and this range
-  double width = 0;                               ///< standard deviation in time; 0 if not measured, NaN if not found [s]
-  double cos_incidence = 1;                       ///< cosine of incidence of the strongest contributor
-  ObjectId object = 0;                            ///< object of the strongest contributor
+  double range = 0;          ///< distance along the pulse's axis [m]
+  double amplitude = 0;      ///< received power at the echo's peak [W]
+  double reflectance = 0;    ///< amplitude relative to a white Lambertian surface at normal incidence and this range
+  double width = 0;          ///< standard deviation in time; 0 if not measured, NaN if not found [s]
+  double cos_incidence = 1;  ///< cosine of incidence of the strongest contributor
+  ObjectId object = 0;       ///< object of the strongest contributor
   std::uint16_t classification = 0;               ///< class of the strongest contributor
   std::uint8_t number = 1;                        ///< return number, from 1 in order of `range`
   ReflectionKind kind = ReflectionKind::surface;  ///< way of the light of the strongest contributor
-  double velocity = std::numeric_limits<double>::quiet_NaN();       ///< radial velocity, positive away; NaN if not measured [m/s]
-  float shape_deviation = std::numeric_limits<float>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
+  double velocity =
+      std::numeric_limits<double>::quiet_NaN();  ///< radial velocity, positive away; NaN if not measured [m/s]
+  float shape_deviation =
+      std::numeric_limits<float>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
   bool ambiguous = false;  ///< true if the instrument cannot exclude another range and velocity: of `Fmcw`
 };
 
-/// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed
-/// on.
+/// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are
+/// counted, not passed on.
 enum class Fate : std::uint8_t {
   returned,         ///< at least one echo
   blocked,          ///< the optic let no pulse out
@@ -68,16 +72,17 @@ enum class Fate : std::uint8_t {
 };
 inline constexpr std::size_t fate_count = 6;  ///< number of fates
 
-/// Energy of a pulse, or of all pulses of a run, by the end of its paths [J]. To rounding, `sent` is the sum of the five terms that follow.
-/// Each term is summed from its own paths; none is the remainder.
+/// Energy of a pulse, or of all pulses of a run, by the end of its paths [J]. To rounding, `sent` is the sum of the
+/// five terms that follow. Each term is summed from its own paths; none is the remainder.
 struct EnergyLedger {
   double sent = 0;          ///< peak power times pulse length; the pulse shape makes some percent of difference
   double missed = 0;        ///< met nothing
   double out_of_range = 0;  ///< met a surface outside the range gate
-  double absorbed = 0;      ///< met a surface inside the gate that sent nothing back: black, edge-on, or too far in the haze
-  double scattered = 0;     ///< met a surface inside the gate that sent light back
-  double cut = 0;           ///< left on paths that the transport follows no further
-  double received = 0;      ///< arrived at the receiver, of `scattered`
+  double absorbed =
+      0;  ///< met a surface inside the gate that sent nothing back: black, edge-on, or too far in the haze
+  double scattered = 0;  ///< met a surface inside the gate that sent light back
+  double cut = 0;        ///< left on paths that the transport follows no further
+  double received = 0;   ///< arrived at the receiver, of `scattered`
 
   /// Adds another ledger.
   void add(const EnergyLedger& other) noexcept {
@@ -92,7 +97,8 @@ struct EnergyLedger {
 
   /// Ledger of `factor` times the energy.
   [[nodiscard]] EnergyLedger times(double factor) const noexcept {
-    return {factor * sent, factor * missed, factor * out_of_range, factor * absorbed, factor * scattered, factor * cut, factor * received};
+    return {factor * sent,      factor * missed, factor * out_of_range, factor * absorbed,
+            factor * scattered, factor * cut,    factor * received};
   }
 
   /// Term by the energy sent, as `share(&EnergyLedger::missed)`; 0 if nothing was sent.
@@ -135,16 +141,21 @@ struct SubrayHit : Hit {
 
 /// Consecutive pulses and their returns, in pulse order. The spans are valid during the call of the sink.
 struct EchoBatch {
-  std::span<const Shot> shots;           ///< pulses emitted, in ascending order of slots; empty ones only if a sink reads them
-  std::span<const Echo> echoes;          ///< contiguous per shot, sorted by reported range
-  std::span<const float> samples;        ///< waveforms: received power [W]
-  double sample_interval = 0;            ///< sample spacing of the waveforms [s]
-  std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
+  std::span<const Shot> shots;   ///< pulses emitted, in ascending order of slots; empty ones only if a sink reads them
+  std::span<const Echo> echoes;  ///< contiguous per shot, sorted by reported range
+  std::span<const float> samples;  ///< waveforms: received power [W]
+  double sample_interval = 0;      ///< sample spacing of the waveforms [s]
+  std::span<const SubrayHit>
+      subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
 
   /// Echoes of a shot of this batch.
-  [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return {echoes.data() + s.first_echo, s.echoes}; }
+  [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept {
+    return {echoes.data() + s.first_echo, s.echoes};
+  }
   /// Waveform of a shot of this batch [W]; empty if not kept.
-  [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return {samples.data() + s.first_sample, s.samples}; }
+  [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept {
+    return {samples.data() + s.first_sample, s.samples};
+  }
 
   /// Subrays of the shot at this index in `shots`.
   [[nodiscard]] std::span<const SubrayHit> subrays_of(std::size_t shot) const noexcept {
@@ -154,7 +165,9 @@ struct EchoBatch {
 };
 
 /// Position of an echo in the world [m].
-[[nodiscard]] inline Vec3 point_of(const Shot& shot, const Echo& echo) noexcept { return shot.origin + shot.direction * echo.range; }
+[[nodiscard]] inline Vec3 point_of(const Shot& shot, const Echo& echo) noexcept {
+  return shot.origin + shot.direction * echo.range;
+}
 
 }  // namespace PULSECAST_NAMESPACE
 

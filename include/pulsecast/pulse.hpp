@@ -36,15 +36,16 @@ struct Divergence {
   friend bool operator==(const Divergence&, const Divergence&) = default;
 };
 
-/// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. The ranges keep received powers,
-/// down to 10^-30 of the power sent, and their squares within a double's range.
+/// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. The ranges keep
+/// received powers, down to 10^-30 of the power sent, and their squares within a double's range.
 struct Laser {
-  double wavelength = 1.064e-6;    ///< wavelength, from 10 nm to 1 cm [m]
-  double peak_power = 4;           ///< peak power of a pulse, from 1e-20 to 1e20 [W]
-  double pulse_length = 4e-9;      ///< full width at half maximum, from 1 fs to 1 s [s]
-  Divergence divergence = 0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]
-  double waist_diameter = 0;       ///< waist at 1/e^2, across; up in proportion to the divergences [m]
-  double waist_range = 0;          ///< distance of the waist from the exit; a focus if positive [m]
+  double wavelength = 1.064e-6;  ///< wavelength, from 10 nm to 1 cm [m]
+  double peak_power = 4;         ///< peak power of a pulse, from 1e-20 to 1e20 [W]
+  double pulse_length = 4e-9;    ///< full width at half maximum, from 1 fs to 1 s [s]
+  Divergence divergence =
+      0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]
+  double waist_diameter = 0;  ///< waist at 1/e^2, across; up in proportion to the divergences [m]
+  double waist_range = 0;     ///< distance of the waist from the exit; a focus if positive [m]
 
   /// Energy of a pulse: peak power times pulse length [J].
   [[nodiscard]] double energy() const noexcept { return peak_power * pulse_length; }
@@ -69,7 +70,8 @@ struct Laser {
   friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// Emitter of a device, and the receiver that hears it. A pulse source lists its emitters once, and each pulse names its own by number.
+/// Emitter of a device, and the receiver that hears it. A pulse source lists its emitters once, and each pulse names
+/// its own by number.
 struct Emitter {
   Laser laser{};               ///< laser of its pulses
   double footprint_scale = 1;  ///< factor of the footprint's offsets, from 0 to 1000; 1: in units of the 1/e^2 radius
@@ -95,8 +97,8 @@ struct PulseOnPlatform {};
 template <>
 struct PulseOnPlatform<frame::World> {
   std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as known to the instrument; empty if exact
-  ScanAngle scan_angle{};                                     ///< angle of the beam from the vertical, to the right, a number [rad]
-  std::uint16_t leg = 0;                                      ///< number of its leg, from 0
+  ScanAngle scan_angle{};  ///< angle of the beam from the vertical, to the right, a number [rad]
+  std::uint16_t leg = 0;   ///< number of its leg, from 0
 };
 
 }  // namespace detail
@@ -140,10 +142,10 @@ struct LanesOnPlatform<frame::World> {
 /// Pulses of consecutive slots, one in each lane of a register, in a frame.
 template <class Frame>
 struct PulseLanes : detail::LanesOnPlatform<Frame> {
-  std::size_t size = 0;                                   ///< number of slots, from the first lane on
-  simd::Mask sent{};                                      ///< lanes with a pulse; the others are blocked, or beyond the slots
-  TickLanes tick{};                                       ///< emission times, since the survey's start
-  PoseLanes<frame::Beam, Frame> pose{};                   ///< poses at the exit
+  std::size_t size = 0;                  ///< number of slots, from the first lane on
+  simd::Mask sent{};                     ///< lanes with a pulse; the others are blocked, or beyond the slots
+  TickLanes tick{};                      ///< emission times, since the survey's start
+  PoseLanes<frame::Beam, Frame> pose{};  ///< poses at the exit
   std::array<std::uint16_t, simd::lane_count> emitter{};  ///< as in `Pulse`
 
   PulseLanes() = default;
@@ -185,7 +187,8 @@ struct PulseLanes : detail::LanesOnPlatform<Frame> {
   }
 
   /// Sets the pose of a lane as known to the instrument.
-  void report(std::size_t lane, const Pose<frame::Beam, frame::World>& p) noexcept requires std::same_as<Frame, frame::World> {
+  void report(std::size_t lane,
+              const Pose<frame::Beam, frame::World>& p) noexcept requires std::same_as<Frame, frame::World> {
     this->reports[lane] = -1;
     this->reported.set(lane, p);
   }

@@ -3,9 +3,9 @@
 #ifndef PULSECAST_PULSECAST_HPP
 #define PULSECAST_PULSECAST_HPP
 
-/// The contract, the pipeline, and the models of most surveys: triangle meshes, mirrors and heads, tripods and straight lines, every
-/// footprint, two detectors, a cloud in memory. Include all else by name: other shapes, accelerators and optics, moving parts, trajectories
-/// by waypoints or by planners, pose errors, the analytic detector.
+/// The contract, the pipeline, and the models of most surveys: triangle meshes, mirrors and heads, tripods and straight
+/// lines, every footprint, two detectors, a cloud in memory. Include all else by name: other shapes, accelerators and
+/// optics, moving parts, trajectories by waypoints or by planners, pose errors, the analytic detector.
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>

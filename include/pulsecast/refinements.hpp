@@ -21,9 +21,9 @@
 #include <pulsecast/geometry/ray_cone.hpp>
 #include <pulsecast/pulse.hpp>
 
-/// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses the member refuses
-/// one of another form, or of a name that is near, by a static assertion. `Validated`, `ValidatesLaser` and `Normalizable`, for settings of
-/// all kinds, are in base/require.hpp.
+/// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses
+/// the member refuses one of another form, or of a name that is near, by a static assertion. `Validated`,
+/// `ValidatesLaser` and `Normalizable`, for settings of all kinds, are in base/require.hpp.
 // clang-format off
 // version 14 breaks up compound requirements
 namespace PULSECAST_NAMESPACE {

@@ -20,10 +20,10 @@ struct RunSummary {
   EnergyLedger energy{};                          ///< energy by the end of its paths [J]
   std::uint64_t echoes = 0;                       ///< echoes found
   std::uint64_t rays = 0;                         ///< subrays traced
-  std::uint64_t spread = 0;                       ///< pulses whose light was spread over a smooth surface: `spread_over_plane`
-  std::uint64_t unresolved = 0;                   ///< of these, pulses that may have false echoes nevertheless
-  double seconds = 0;                             ///< duration [s]
-  bool complete = true;                           ///< false if stopped
+  std::uint64_t spread = 0;      ///< pulses whose light was spread over a smooth surface: `spread_over_plane`
+  std::uint64_t unresolved = 0;  ///< of these, pulses that may have false echoes nevertheless
+  double seconds = 0;            ///< duration [s]
+  bool complete = true;          ///< false if stopped
 
   /// Adds the totals of another run, or of another part of the same run.
   void add(const RunSummary& other) noexcept {
@@ -83,7 +83,8 @@ struct ResultBuffer {
     for (const Echo& echo : outcome.echoes) echoes.push_back(echo);
     if (!outcome.waveform.empty()) {
       samples.resize(samples.size() + outcome.waveform.size());
-      std::copy(outcome.waveform.begin(), outcome.waveform.end(), samples.end() - static_cast<std::ptrdiff_t>(outcome.waveform.size()));
+      std::copy(outcome.waveform.begin(), outcome.waveform.end(),
+                samples.end() - static_cast<std::ptrdiff_t>(outcome.waveform.size()));
     }
     for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();

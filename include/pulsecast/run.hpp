@@ -35,18 +35,20 @@ struct RunSlots {
   [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
 
   /// Number of the first slot of the run that is not before slot `i`, which is not before `first`.
-  [[nodiscard]] PulseIndex number_from(PulseIndex i) const noexcept { return (i - first) / stride + ((i - first) % stride > 0 ? 1 : 0); }
+  [[nodiscard]] PulseIndex number_from(PulseIndex i) const noexcept {
+    return (i - first) / stride + ((i - first) % stride > 0 ? 1 : 0);
+  }
 };
 
 /// Options of a run.
 struct RunOptions {
-  unsigned threads = 0;                                     ///< threads, at most `max_threads`; 0: all of the executor or the hardware
-  ExecutorRef executor{};                                   ///< runs the work, as `ThreadPool` does; empty: threads that live for the call
-  PulseIndex first = 0;                                     ///< first slot
+  unsigned threads = 0;    ///< threads, at most `max_threads`; 0: all of the executor or the hardware
+  ExecutorRef executor{};  ///< runs the work, as `ThreadPool` does; empty: threads that live for the call
+  PulseIndex first = 0;    ///< first slot
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past the last slot, at most the survey's size
   PulseIndex stride = 1;                                    ///< step between slots, greater than 1 for a preview
-  ProgressCallback progress{};                              ///< called after every batch, one call at a time, on any thread
-  std::stop_token stop{};                                   ///< ends the run early; results delivered so far are complete
+  ProgressCallback progress{};  ///< called after every batch, one call at a time, on any thread
+  std::stop_token stop{};       ///< ends the run early; results delivered so far are complete
 
   void validate() const {
     require_within("RunOptions::threads", threads, 0, max_threads, "");
@@ -70,8 +72,9 @@ namespace detail {
 struct ResultChunk : ResultBuffer {
   std::uint64_t number = 0;
   ResultChunk* next_free = nullptr;
-  PulseError error = PulseError::none;  ///< of the slot after the last; ends the run once all slots before it are delivered
-  Shot wrong{};                         ///< that slot
+  PulseError error =
+      PulseError::none;  ///< of the slot after the last; ends the run once all slots before it are delivered
+  Shot wrong{};          ///< that slot
 
   /// Appends the result of a slot, or notes its error.
   void add(const Outcome& outcome, bool empty_shots) {
@@ -101,7 +104,8 @@ struct ResultChunk : ResultBuffer {
  private:
   template <class Count>
   [[nodiscard]] std::size_t bytes_of(const Count& count) const noexcept {
-    return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) + count(subrays) * sizeof(SubrayHit);
+    return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) +
+           count(subrays) * sizeof(SubrayHit);
   }
 };
 
@@ -112,7 +116,9 @@ struct ChunkMemory : ScratchItem {
   std::unique_ptr<ResultChunk*[]> finished;  ///< ring by chunk number; null until finished
 
   explicit ChunkMemory(std::size_t count)
-      : size(count), chunks(std::make_unique<ResultChunk[]>(count)), finished(std::make_unique<ResultChunk*[]>(count)) {}
+      : size(count),
+        chunks(std::make_unique<ResultChunk[]>(count)),
+        finished(std::make_unique<ResultChunk*[]>(count)) {}
   [[nodiscard]] bool fits(std::size_t count) const noexcept { return size >= count; }
   [[nodiscard]] bool outdated(std::size_t) const noexcept { return true; }  ///< a larger one serves all
 };
@@ -140,13 +146,19 @@ struct WorkspaceMemory : ScratchItem {
   }
 };
 
-/// Reorder buffer: hands out chunks to workers, and delivers finished ones in order, one at a time. Workers run ahead, so that none waits
-/// for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few megabytes, or at two chunks per worker if
-/// these are large. The chunk delivered last is reused first, as it is in the cache.
+/// Reorder buffer: hands out chunks to workers, and delivers finished ones in order, one at a time. Workers run ahead,
+/// so that none waits for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few
+/// megabytes, or at two chunks per worker if these are large. The chunk delivered last is reused first, as it is in the
+/// cache.
 class ReorderBuffer {
  public:
-  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers, std::stop_token stop)
-      : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), memory_(kept, max_ahead_), stop_(std::move(stop)) {
+  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers,
+                std::stop_token stop)
+      : chunks_(chunks),
+        always_ahead_(2 * workers + 2),
+        max_ahead_(16 * always_ahead_),
+        memory_(kept, max_ahead_),
+        stop_(std::move(stop)) {
     if (kept) make_room(std::bit_ceil(slots_per_chunk));  // steps of a loop differ by some slots
     for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
     std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
@@ -185,13 +197,14 @@ class ReorderBuffer {
     delivering_ = false;
   }
 
-  /// Makes room for a short run in the chunks that it may need, as much as any had. At the end of a run, the next one over as many results
-  /// then allocates nothing, whichever chunks it takes.
+  /// Makes room for a short run in the chunks that it may need, as much as any had. At the end of a run, the next one
+  /// over as many results then allocates nothing, whichever chunks it takes.
   void make_room(PulseIndex slots = 0) {
     ResultChunk& first = memory_->chunks[0];
     first.reserve(slots);
     for (std::size_t i = 1; i < max_ahead_; ++i) first.reserve_as(memory_->chunks[i]);
-    const std::uint64_t some = std::min<std::uint64_t>({chunks_, max_ahead_, std::max(always_ahead_, max_bytes / (first.room() + 1))});
+    const std::uint64_t some =
+        std::min<std::uint64_t>({chunks_, max_ahead_, std::max(always_ahead_, max_bytes / (first.room() + 1))});
     for (std::size_t i = 1; i < some; ++i) memory_->chunks[i].reserve_as(first);
   }
 
@@ -205,7 +218,8 @@ class ReorderBuffer {
   [[nodiscard]] std::exception_ptr failure() const noexcept { return failure_; }
 
  private:
-  static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished but not delivered: some milliseconds of fast work
+  static constexpr std::size_t max_bytes = std::size_t{6}
+                                           << 20;  // finished but not delivered: some milliseconds of fast work
 
   [[nodiscard]] bool may_go_ahead() const noexcept {
     const std::uint64_t ahead = handed_out_ - delivered_;
@@ -232,10 +246,11 @@ template <class Sink>
   return true;
 }
 
-/// Simulates the slots of a run from number `n` up to `end` into a chunk, with or without empty shots, or up to the first error.
+/// Simulates the slots of a run from number `n` up to `end` into a chunk, with or without empty shots, or up to the
+/// first error.
 template <class Survey, class Workspace>
-void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace, bool empty_shots,
-              ResultChunk& chunk) {
+void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace,
+              bool empty_shots, ResultChunk& chunk) {
   static_assert(SkipsBlockedCheck<Survey>::passed && SimulatesInOrderCheck<Survey>::passed);
   const auto add = [&](const Outcome& outcome) {  // returns the next slot
     chunk.add(outcome, empty_shots);
@@ -260,20 +275,23 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
   const std::string pulse = joined({"pulse ", std::to_string(shot.index), " at ", to_text(shot.tick.seconds()), " s"});
   if (error == PulseError::map)
     throw std::runtime_error(joined({"the map answered ", pulse, " with NaN: check its ranges and backscatter"}));
-  throw std::runtime_error(joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
+  throw std::runtime_error(
+      joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
 }
 
 }  // namespace detail
 
-/// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches depend neither on
-/// the number of threads nor on the executor. Exceptions of sinks and of the progress callback end the run and are rethrown.
-/// @throws SettingError for options out of range @throws std::runtime_error for the first pulse with a `PulseError`, after the sinks have
-/// got all pulses before it
+/// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches
+/// depend neither on the number of threads nor on the executor. Exceptions of sinks and of the progress callback end
+/// the run and are rethrown.
+/// @throws SettingError for options out of range @throws std::runtime_error for the first pulse with a `PulseError`,
+/// after the sinks have got all pulses before it
 template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
-  const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // fewer in a short run, for all workers
+  const PulseIndex most =
+      std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // fewer in a short run, for all workers
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, most);
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
@@ -285,7 +303,8 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   ScratchMemory* const kept = options.executor.memory();
   if constexpr (IdentifiedSurvey<Survey>)
     if (kept)
-      kept->provide<Memory>(options.workers().count(), survey);  // for all threads, as some may have their first work in a later run
+      kept->provide<Memory>(options.workers().count(),
+                            survey);  // for all threads, as some may have their first work in a later run
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
   detail::ReorderBuffer buffer(kept, chunks, slots_per_chunk, workers, options.stop);
   RunSummary summary;
@@ -320,9 +339,12 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
 
 /// Says of a call of `run` what is wrong with it.
 template <class Survey, class... Sinks>
-requires(!PulseSurvey<Survey> || !(EchoSink<Sinks> && ...)) RunSummary run(const Survey&, const RunOptions&, Sinks&&...) {
-  static_assert(PulseSurvey<Survey>, "run: the first argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
-  static_assert((EchoSink<Sinks> && ...), "run: a sink must be callable with one batch, as is [](const EchoBatch& batch) { ... }");
+requires(!PulseSurvey<Survey> || !(EchoSink<Sinks> && ...)) RunSummary
+    run(const Survey&, const RunOptions&, Sinks&&...) {
+  static_assert(PulseSurvey<Survey>,
+                "run: the first argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
+  static_assert((EchoSink<Sinks> && ...),
+                "run: a sink must be callable with one batch, as is [](const EchoBatch& batch) { ... }");
   return {};
 }
 

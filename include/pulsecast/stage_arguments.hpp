@@ -8,7 +8,8 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-/// Arguments of `Deflector`, `Platform` and `Survey`. Deduction guides that take all others name the mistake, by static assertions.
+/// Arguments of `Deflector`, `Platform` and `Survey`. Deduction guides that take all others name the mistake, by static
+/// assertions.
 // clang-format off
 // version 14 breaks up compound requirements
 namespace PULSECAST_NAMESPACE::detail {

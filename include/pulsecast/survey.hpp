@@ -28,7 +28,8 @@ enum class PulseError : std::uint8_t {
   map,   ///< the map answered with a range or backscatter of NaN
 };
 
-/// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch are not set.
+/// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch
+/// are not set.
 struct Outcome {
   Shot shot;                             ///< pulse as reported
   std::span<const Echo> echoes;          ///< echoes, sorted by reported range
@@ -48,21 +49,25 @@ struct ReceiverUnit {
   Instrument detector;  ///< detector
 };
 
-/// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order and from any number
-/// of threads. Refers to the map, which must outlive it.
+/// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order
+/// and from any number of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument, Transport<Map> Light = DirectLight>
 class Survey {
   static_assert(detail::SkipsBlockedCheck<Source>::passed);
   static_assert(!ReadsVelocity<Instrument> || TracesVelocity<Light, Map>,
-                "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as DirectLight has");
+                "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
+                "DirectLight has");
 
  public:
   /// Survey with one receiver for all emitters.
-  /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the detector refuses
-  Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
+  /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the
+  /// detector refuses
+  Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector,
+         std::uint64_t seed = 0)
       : Survey(std::move(source), std::move(footprint), map, Light{}, std::move(receiver), std::move(detector), seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, Pattern footprint, const Map& map, Light transport, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
+  Survey(Source source, Pattern footprint, const Map& map, Light transport, Receiver receiver, Instrument detector,
+         std::uint64_t seed = 0)
       : source_(validated(std::move(source))),
         map_(&map),
         transport_(validated(std::move(transport))),
@@ -71,12 +76,15 @@ class Survey {
     prepare();
   }
 
-  /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they are recorded.
+  /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they
+  /// are recorded.
   /// @throws SettingError as above, or for an emitter without a receiver
-  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map, std::uint64_t seed = 0)
+  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map,
+         std::uint64_t seed = 0)
       : Survey(std::move(source), std::move(receivers), map, Light{}, seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map, Light transport, std::uint64_t seed = 0)
+  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map, Light transport,
+         std::uint64_t seed = 0)
       : source_(validated(std::move(source))),
         map_(&map),
         transport_(validated(std::move(transport))),
@@ -85,7 +93,8 @@ class Survey {
     prepare();
   }
 
-  Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would dangle
+  Survey(Source, Pattern, const Map&&, Receiver, Instrument,
+         std::uint64_t = 0) = delete;  // a temporary map would dangle
   Survey(Source, Pattern, const Map&&, Light, Receiver, Instrument, std::uint64_t = 0) = delete;
   Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, const Map&&, std::uint64_t = 0) = delete;
   Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, const Map&&, Light, std::uint64_t = 0) = delete;
@@ -109,8 +118,12 @@ class Survey {
   [[nodiscard]] Workspace workspace() const {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
-    Workspace w{transport_.workspace(most), room_for(transport_.reflections(most), most), std::vector<SubrayHit>(recorded_subrays()), {}};
-    for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
+    Workspace w{transport_.workspace(most),
+                room_for(transport_.reflections(most), most),
+                std::vector<SubrayHit>(recorded_subrays()),
+                {}};
+    for (const Unit& unit : receivers_)
+      w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
     return w;
   }
 
@@ -122,7 +135,9 @@ class Survey {
     for (const EmitterConstants& e : emitters_) sum += receivers_[e.emitter.receiver].footprint.size();
     return sum / emitters_.size();
   }
-  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< subrays passed on with each pulse
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept {
+    return recorded ? subrays() : 0;
+  }  ///< subrays passed on with each pulse
   /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
   /// Receivers.
@@ -133,10 +148,14 @@ class Survey {
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
 
   /// As the concept SkipsBlocked requires.
-  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
+    return source_.next_pulse(i);
+  }
 
   /// Simulates pulse i.
-  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept { return outcome(i, source_.pulse(i), w); }
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
+    return outcome(i, source_.pulse(i), w);
+  }
 
   /// As the concept SimulatesInOrder requires: pulses are made by the register, which does not outlive the call.
   template <class Next>
@@ -153,7 +172,8 @@ class Survey {
   using Unit = ReceiverUnit<Pattern, Instrument>;
 
   /// Result of slot i, whose pulse is empty if it is blocked.
-  [[nodiscard]] Outcome outcome(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w) const noexcept {
+  [[nodiscard]] Outcome outcome(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse,
+                                Workspace& w) const noexcept {
     Outcome out;
     out.shot.index = i;
     if (!pulse) {
@@ -198,7 +218,8 @@ class Survey {
     bool all_inside = true;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-      if (constants.errs) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+      if (constants.errs)
+        echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
       all_inside &= heard.gate.contains(echo.range);
     }
     const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(heard.gate, detection.echoes);
@@ -227,15 +248,18 @@ class Survey {
       require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
       sum += share;
     }
-    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // tolerates the rounding of a sum of a million
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6,
+                   "");  // tolerates the rounding of a sum of a million
   }
 
   /// Refuses receivers whose results do not fit in one batch.
   void require_alike() const {
     const double interval = sample_interval(), subrays = static_cast<double>(receivers_.front().footprint.size());
     for (const Unit& unit : receivers_) {
-      if (interval_of(unit) != interval) throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
-      if (recorded) require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
+      if (interval_of(unit) != interval)
+        throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
+      if (recorded)
+        require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
     }
   }
 
@@ -255,7 +279,8 @@ class Survey {
     }
     require_alike();
     const std::vector<Emitter> emitters = source_.emitters();
-    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
+    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0,
+                   max_emitters, "");
     const std::shared_ptr<EmitterConstants[]> constants = std::make_unique<EmitterConstants[]>(emitters.size());
     EmitterConstants* next = constants.get();
     for (const Emitter& emitter : emitters) set(next++, validated(emitter), constants.get());
@@ -263,19 +288,22 @@ class Survey {
     identity_ = constants;
   }
 
-  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no receiver, or if the
-  /// detector refuses its laser.
+  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no
+  /// receiver, or if the detector refuses its laser.
   void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     Unit& unit = receivers_[emitter.receiver];
-    if constexpr (TurnsFootprint<Pattern>) require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
+    if constexpr (TurnsFootprint<Pattern>)
+      require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
     if constexpr (PreparesForLasers<Instrument>) unit.detector.prepare(emitter.laser);
     const EmitterConstants* alike = first;
-    while (alike != constants && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
+    while (alike != constants &&
+           !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
-                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam, !unit.receiver.range_errors.none()};
+                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam,
+                  !unit.receiver.range_errors.none()};
   }
 
   static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
@@ -325,17 +353,19 @@ class Survey {
 
 /// Names the mistake in the arguments.
 template <class Source, class Pattern, class Map, class Instrument>
-requires(!detail::Surveyable<Source, Pattern, Map, Instrument>) Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
+requires(!detail::Surveyable<Source, Pattern, Map, Instrument>)
+    Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
 /// As above.
 template <class Source, class Pattern, class Map, class Light, class Instrument>
 requires(!detail::Surveyable<Source, Pattern, Map, Instrument> || !Transport<Light, std::remove_cvref_t<Map>>)
     Survey(Source, Pattern, Map&&, Light, Receiver, Instrument, std::uint64_t = 0)
-->Survey<typename detail::TransportArguments<Source, Pattern, Map, Light, Instrument>::First, Pattern, std::remove_cvref_t<Map>, Instrument,
-         Light>;
+->Survey<typename detail::TransportArguments<Source, Pattern, Map, Light, Instrument>::First, Pattern,
+         std::remove_cvref_t<Map>, Instrument, Light>;
 /// As above.
 template <class Source, class Pattern, class Map, class Instrument>
-requires(detail::Temporary<Map>) Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
+requires(detail::Temporary<Map>)
+    Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
 
 }  // namespace PULSECAST_NAMESPACE

@@ -34,7 +34,8 @@ bool holds(const BoundingBox<Real>& outer, const BoundingBox<Real>& inner) {
   return true;
 }
 
-/// What becomes of a binary tree as an 8-wide tree: sizes of leaves, and how many nodes do not hold all that is below them.
+/// What becomes of a binary tree as an 8-wide tree: sizes of leaves, and how many nodes do not hold all that is below
+/// them.
 struct Shape {
   std::size_t nodes = 0, primitives = 0, largest_leaf = 0, max_children = 0, torn = 0;
   std::vector<std::uint32_t> leaves{};  ///< where each begins, in the order in which they are met

@@ -20,7 +20,8 @@ static_assert(Accelerator<Bvh<double>>);
 
 static_assert(sizeof(BoundingBox<float>) == 24);
 
-TEST_CASE_TEMPLATE("every primitive stands in exactly one leaf of a Bvh, beside three others at most", Real, float, double) {
+TEST_CASE_TEMPLATE("every primitive stands in exactly one leaf of a Bvh, beside three others at most", Real, float,
+                   double) {
   Generator random(50);
   std::vector<Box> boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(random.box(10, 1e-4, 10));
@@ -52,11 +53,13 @@ TEST_CASE("a Bvh of boxes that crowd at a point is no deeper than 64 levels, and
   CHECK(tree.depth() > 40);  // it came near to the limit: 510 without one
 }
 
-TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes that are made as they are asked for", Real, float, double) {
+TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes that are made as they are asked for", Real,
+                   float, double) {
   Generator random(51);
   std::vector<Box> boxes;
   for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several chunks, and several subtrees
-  std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.min.y < b.min.y; });  // chunks of different bounds
+  std::sort(boxes.begin(), boxes.end(),
+            [](const Box& a, const Box& b) { return a.min.y < b.min.y; });  // chunks of different bounds
   struct Made {
     const std::vector<Box>& all;
     [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
@@ -77,10 +80,13 @@ TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes tha
   }
 }
 
-TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real, float, double) {
+TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real,
+                   float, double) {
   const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}, {{5, 0, 0}, {6, 1, 1}}, {{50, 0, 0}, {51, 1, 1}}};
   const Bvh<Real> tree(boxes, 1, 1);  // one node of three leaves
-  const auto is_sound = [&](std::size_t count, const auto& change) { return with_nodes(tree, count, change).is_consistent(boxes.size()); };
+  const auto is_sound = [&](std::size_t count, const auto& change) {
+    return with_nodes(tree, count, change).is_consistent(boxes.size());
+  };
   const auto chain = [](auto& nodes) {
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       nodes[i].kinds[0] = 0;
@@ -104,7 +110,8 @@ TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or 
   CHECK_FALSE(is_sound(1, [](auto& nodes) { ++nodes[0].primitives; }));
 }
 
-TEST_CASE_TEMPLATE("a cone that misses a Bvh comes near none of its boxes, and one between distant boxes misses it", Real, float, double) {
+TEST_CASE_TEMPLATE("a cone that misses a Bvh comes near none of its boxes, and one between distant boxes misses it",
+                   Real, float, double) {
   std::size_t missed = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);

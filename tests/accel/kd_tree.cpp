@@ -16,7 +16,8 @@ using namespace pulsecast::support;
 
 static_assert(Accelerator<KdTree<double>>);
 
-TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on average at most", Real, float, double) {
+TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on average at most", Real, float,
+                   double) {
   Generator random(50);
   std::vector<Box> boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(random.box(10, 1e-4, 10));
@@ -31,8 +32,9 @@ TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on
   CHECK(tree.memory() >= boxes.size() * sizeof(PrimitiveIndex));
 }
 
-TEST_CASE_TEMPLATE("a KdTree has the same bytes on any number of threads, and of boxes that are made as they are asked for", Real, float,
-                   double) {
+TEST_CASE_TEMPLATE(
+    "a KdTree has the same bytes on any number of threads, and of boxes that are made as they are asked for", Real,
+    float, double) {
   Generator random(51);
   std::vector<Box> boxes;
   for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several chunks, and several subtrees
@@ -97,8 +99,8 @@ TEST_CASE("a KdTree goes into a narrow column of leaves for rays along an axis")
   CHECK(count < 50);
 }
 
-TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it has, and for no fewer", Tree, KdTree<float>,
-                   KdTree<double>) {
+TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it has, and for no fewer", Tree,
+                   KdTree<float>, KdTree<double>) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
@@ -113,10 +115,13 @@ TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it 
   CHECK(Tree(DeserializeTag{}).is_consistent(0));
 }
 
-TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real, float, double) {
+TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real,
+                   float, double) {
   const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}};
   const KdTree<Real> tree(boxes);  // one leaf
-  const auto is_sound = [&](std::size_t count, const auto& change) { return with_nodes(tree, count, change).is_consistent(boxes.size()); };
+  const auto is_sound = [&](std::size_t count, const auto& change) {
+    return with_nodes(tree, count, change).is_consistent(boxes.size());
+  };
   const auto chain = [](auto& nodes) {
     for (std::size_t i = 0; i + 2 < nodes.size(); i += 2) nodes[i].place(i + 1, 0);
   };

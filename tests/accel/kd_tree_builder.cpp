@@ -78,7 +78,8 @@ bool same(const Builder<Real>& a, const Builder<Real>& b) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("leaves hold what reaches them, in depth-first order, the same on any number of threads", Real, float, double) {
+TEST_CASE_TEMPLATE("leaves hold what reaches them, in depth-first order, the same on any number of threads", Real,
+                   float, double) {
   for (const std::size_t count : {1U, 2U, 100U, 4096U, 4097U, 40'000U})
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       CAPTURE(count);
@@ -131,5 +132,6 @@ TEST_CASE_TEMPLATE("many boxes at one point are a leaf beside the others", Real,
   walk.follow(0, 0, {input.primitives.begin(), input.primitives.end()});
   CHECK(walk.wrong == 0);
   const auto nodes = tree.nodes();
-  CHECK(std::count_if(nodes.begin(), nodes.end(), [](const Node<Real>& n) { return n.axis() == 3 && n.count == 20'000; }) == 1);
+  CHECK(std::count_if(nodes.begin(), nodes.end(),
+                      [](const Node<Real>& n) { return n.axis() == 3 && n.count == 20'000; }) == 1);
 }

@@ -85,7 +85,8 @@ TEST_CASE_TEMPLATE("a refitted tree offers every primitive whose box the bundle 
         const double along = dot(to_centre, rays.direction(0));
         const Vec3 apart = from + along * rays.direction(0) - centre;
         const Vec3 half = 0.5 * boxes[i].size();
-        if (std::fabs(apart.x) < half.x && std::fabs(apart.y) < half.y && std::fabs(apart.z) < half.z && along > 0)  // surely met
+        if (std::fabs(apart.x) < half.x && std::fabs(apart.y) < half.y && std::fabs(apart.z) < half.z &&
+            along > 0)  // surely met
           REQUIRE(std::binary_search(found.begin(), found.end(), i));
       }
     }
@@ -97,7 +98,9 @@ TEST_CASE("a tree keeps its order while its boxes move little, and is made anew 
   const std::vector<Box> boxes = boxes_of(any, 2000, 100);
   const Bvh<float> tree(boxes, 1, 1);
   const std::vector<PrimitiveIndex> order(tree.order().begin(), tree.order().end());
-  const auto same_order = [&](const Bvh<float>& other) { return std::equal(order.begin(), order.end(), other.order().begin()); };
+  const auto same_order = [&](const Bvh<float>& other) {
+    return std::equal(order.begin(), order.end(), other.order().begin());
+  };
   BvhRefit<float> first, second, none;
   Bvh<float> near(std::vector<Box>(), 1, 1), anywhere = near;
   first.update(tree, none, shifted(boxes, any, 0.5), near);
@@ -129,16 +132,18 @@ TEST_CASE("many small steps are measured against the last build, not against the
 }
 
 TEST_CASE("boxes out of reach are refused") {
-  const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}}, far{{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {2e18, 0, 0}}};
+  const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}},
+      far{{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {2e18, 0, 0}}};
   const Bvh<float> tree(boxes, 1, 1);
   Bvh<float> to = tree;
   BvhRefit<float> refit, none;
-  CHECK_THROWS_WITH_AS(refit.update(tree, none, far, to), "Accelerator::boxes is 2e+18 m, but must be within 1e18 m of the origin",
-                       SettingError);
+  CHECK_THROWS_WITH_AS(refit.update(tree, none, far, to),
+                       "Accelerator::boxes is 2e+18 m, but must be within 1e18 m of the origin", SettingError);
 }
 
-TEST_CASE_TEMPLATE("a ray along a side of a box meets it, far from the origin, and however small the box is in the world", Real, float,
-                   double) {
+TEST_CASE_TEMPLATE(
+    "a ray along a side of a box meets it, far from the origin, and however small the box is in the world", Real, float,
+    double) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     Generator any(seed);

@@ -33,7 +33,8 @@ pulsecast::detail::Slices<Real> slices_of(Real low, Real high, std::size_t count
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("slices are numbered in order, begin at their edge, and take in what lies outside", Real, float, double) {
+TEST_CASE_TEMPLATE("slices are numbered in order, begin at their edge, and take in what lies outside", Real, float,
+                   double) {
   const auto slices = slices_of<Real>(-4, 4, 16);
   const auto of = [&](Real y) { return slices.of(corner<Real>(7, y, -7))[1]; };
   CHECK(slices.count() == 16);
@@ -56,12 +57,14 @@ TEST_CASE_TEMPLATE("slices are numbered in order, begin at their edge, and take 
   CHECK(different == 0);
 }
 
-TEST_CASE_TEMPLATE("axes are sliced each by itself; one without length, or too short to divide, is not", Real, float, double) {
+TEST_CASE_TEMPLATE("axes are sliced each by itself; one without length, or too short to divide, is not", Real, float,
+                   double) {
   const pulsecast::detail::Slices<Real> slices(corner<Real>(0, 5, -1), corner<Real>(4, 5, 1), 4);
   CHECK(slices.valid(0));
   CHECK_FALSE(slices.valid(1));
   CHECK(slices.valid(2));
-  CHECK(slices.of(corner<Real>(static_cast<Real>(3.5), 5, static_cast<Real>(-0.25))) == std::array<std::uint32_t, 3>{3, 0, 1});
+  CHECK(slices.of(corner<Real>(static_cast<Real>(3.5), 5, static_cast<Real>(-0.25))) ==
+        std::array<std::uint32_t, 3>{3, 0, 1});
   CHECK_FALSE(slices_of<Real>(3, 2, 16).valid(1));
   CHECK_FALSE(slices_of<Real>(0, std::numeric_limits<Real>::denorm_min(), 16).valid(1));
   CHECK(slices_of<Real>(3, 4, 16).valid(1));
@@ -86,7 +89,8 @@ TEST_CASE_TEMPLATE("a box that takes in others holds them", Real, float, double)
   CHECK(growing.half_area() == pulsecast::detail::half_area(box));
 }
 
-TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the centre, never smaller than it is", Real, float, double) {
+TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the centre, never smaller than it is", Real,
+                   float, double) {
   Generator random(41);
   std::vector<Box> boxes;
   const Vec3 utm{4.7e5, 5.4e6, 300};
@@ -117,7 +121,8 @@ TEST_CASE("boxes too far away and too many primitives are refused") {
   CHECK(Input(std::span(&box, 1)).primitives.empty());
   box = {{0, -1.1e18, 0}, {1, 1, 1}};
   CHECK_THROWS_AS(Input(std::span(&box, 1)), SettingError);
-  CHECK_THROWS_AS(Input(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})), SettingError);  // refused before it is looked at
+  CHECK_THROWS_AS(Input(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})),
+                  SettingError);  // refused before it is looked at
 }
 
 TEST_CASE("halving a number of parts takes as many levels as its binary logarithm, rounded up") {

@@ -35,7 +35,8 @@ TEST_CASE_TEMPLATE("a tree leaves out empty boxes among others", Tree, TREES) {
   for (std::size_t i = 0; i < boxes.size(); ++i) CHECK((count[i] > 0) == (i % 3 != 0));
 }
 
-TEST_CASE_TEMPLATE("a tree is not entered by rays that are not numbers, nor by those that pass by or end before", Tree, TREES) {
+TEST_CASE_TEMPLATE("a tree is not entered by rays that are not numbers, nor by those that pass by or end before", Tree,
+                   TREES) {
   Generator random(53);
   std::vector<Box> boxes;
   for (int i = 0; i < 100; ++i) boxes.push_back(random.box(10, 1e-2, 1));

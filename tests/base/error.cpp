@@ -39,12 +39,17 @@ TEST_CASE("a file error about a file as a whole names no place") {
 }
 
 TEST_CASE("a setting error gets the name of what the setting belongs to, once") {
-  const auto refused = [] { return naming("leg 3", []() -> int { throw SettingError("Scanner::pulse_rate", -5, "Hz", "at least 0"); }); };
+  const auto refused = [] {
+    return naming("leg 3", []() -> int { throw SettingError("Scanner::pulse_rate", -5, "Hz", "at least 0"); });
+  };
   CHECK_THROWS_WITH_AS(refused(), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
-  CHECK_THROWS_WITH_AS(naming("leg 3", refused), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
+  CHECK_THROWS_WITH_AS(naming("leg 3", refused), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0",
+                       SettingError);
   const auto told = [] { return naming("leg 3", []() -> int { throw SettingError("tEnd", " is not after tStart"); }); };
   CHECK_THROWS_WITH_AS(naming("a.xml", told), "a.xml: leg 3: tEnd is not after tStart", SettingError);
-  CHECK_THROWS_WITH_AS(naming("a.xml", refused), "a.xml: leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
-  CHECK_THROWS_WITH_AS(naming("a.xml", [] { throw FileError("b.obj", "", "no such file"); }), "b.obj: no such file", FileError);
+  CHECK_THROWS_WITH_AS(naming("a.xml", refused), "a.xml: leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0",
+                       SettingError);
+  CHECK_THROWS_WITH_AS(naming("a.xml", [] { throw FileError("b.obj", "", "no such file"); }), "b.obj: no such file",
+                       FileError);
   CHECK(naming("leg 3", [] { return 7; }) == 7);
 }

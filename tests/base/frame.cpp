@@ -54,7 +54,8 @@ TEST_CASE("composition of random poses is applying one after the other, and is a
     const auto d_from_c = any.pose<C, D>(reach);
     const Vec3 p = any.point(reach);
     CHECK(distance((c_from_b * b_from_a).point(p), c_from_b.point(b_from_a.point(p))) <= 1e-14 * reach);
-    CHECK(distance(((d_from_c * c_from_b) * b_from_a).point(p), (d_from_c * (c_from_b * b_from_a)).point(p)) <= 2e-14 * reach);
+    CHECK(distance(((d_from_c * c_from_b) * b_from_a).point(p), (d_from_c * (c_from_b * b_from_a)).point(p)) <=
+          2e-14 * reach);
   }
 }
 

@@ -30,12 +30,14 @@ void check_apart(const support::AnswerOfFile& own, const support::AnswerOfFile& 
 }  // namespace
 
 TEST_CASE(
-    "files compiled with other settings of GLM and of the standard library have functions and types of their own, and the same bits") {
+    "files compiled with other settings of GLM and of the standard library have functions and types of their own, and "
+    "the same bits") {
   check_apart(support::answer_of_this_file(), support::answer_of_other_settings());
 }
 
 #if defined(PULSECAST_MIXED_INSTRUCTIONS) && !defined(__FMA__)  // there is a file for AVX2, and others contract nothing
-TEST_CASE("files compiled for different instruction sets have functions and types of their own, and give the same bits") {
+TEST_CASE(
+    "files compiled for different instruction sets have functions and types of their own, and give the same bits") {
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
   check_apart(support::answer_of_this_file(), support::answer_of_avx2());
 }

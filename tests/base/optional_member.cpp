@@ -30,8 +30,10 @@ struct BellThatChimes : Bell {
   void chime(int) const {}
 };
 struct FinalBell final : Bell {};
-static_assert(detail::RingsCheck<Silent>::passed && detail::RingsCheck<int>::passed && detail::RingsCheck<void (*)(int)>::passed);
-static_assert(detail::RingsCheck<Bell>::passed && detail::RingsCheck<BellThatChimes>::passed && detail::RingsCheck<FinalBell>::passed);
+static_assert(detail::RingsCheck<Silent>::passed && detail::RingsCheck<int>::passed &&
+              detail::RingsCheck<void (*)(int)>::passed);
+static_assert(detail::RingsCheck<Bell>::passed && detail::RingsCheck<BellThatChimes>::passed &&
+              detail::RingsCheck<FinalBell>::passed);
 
 struct OfAnotherResult {
   double ring(int) const { return 1; }
@@ -59,7 +61,8 @@ struct Chimes {
   int chime(int) const { return 1; }
 };
 struct ChimesFinally final : Chimes {};
-static_assert(!detail::RingsOrAbsent<OfAnotherResult> && !detail::RingsOrAbsent<OfAnotherArgument> && !detail::RingsOrAbsent<NotConst>);
+static_assert(!detail::RingsOrAbsent<OfAnotherResult> && !detail::RingsOrAbsent<OfAnotherArgument> &&
+              !detail::RingsOrAbsent<NotConst>);
 static_assert(!detail::RingsOrAbsent<Overloaded> && !detail::RingsOrAbsent<Generic> && !detail::RingsOrAbsent<Data>);
 static_assert(!detail::RingsOrAbsent<Chimes> && !detail::RingsOrAbsent<ChimesFinally>);
 
@@ -87,7 +90,8 @@ struct Function {
 struct OtherFunction {
   bool noisy() const { return true; }
 };
-static_assert(detail::LoudCheck<IsLoud>::passed && detail::LoudCheck<Silent>::passed && detail::LoudCheck<OtherFunction>::passed);
+static_assert(detail::LoudCheck<IsLoud>::passed && detail::LoudCheck<Silent>::passed &&
+              detail::LoudCheck<OtherFunction>::passed);
 static_assert(!detail::LoudOrAbsent<Number> && !detail::LoudOrAbsent<Noisy> && !detail::LoudOrAbsent<Function>);
 
 }  // namespace

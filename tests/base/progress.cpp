@@ -63,4 +63,5 @@ TEST_CASE("copies of a callback share a function with state, and the last one de
   CHECK(token.use_count() == 1);
 }
 
-static_assert(!std::constructible_from<ProgressCallback, int> && !std::constructible_from<ProgressCallback, void (*)(int)>);
+static_assert(!std::constructible_from<ProgressCallback, int> &&
+              !std::constructible_from<ProgressCallback, void (*)(int)>);

@@ -49,7 +49,8 @@ struct Moments {
 double refined_quantile(double p, double z) {
   const long double x = z;
   const long double cdf = std::erfc(-x / std::numbers::sqrt2_v<long double>) / 2;
-  const long double density = std::exp(-x * x / 2) * std::numbers::inv_sqrtpi_v<long double> / std::numbers::sqrt2_v<long double>;
+  const long double density =
+      std::exp(-x * x / 2) * std::numbers::inv_sqrtpi_v<long double> / std::numbers::sqrt2_v<long double>;
   return static_cast<double>(x - (cdf - static_cast<long double>(p)) / density);
 }
 
@@ -73,11 +74,13 @@ TEST_CASE("keys that differ in one field give different numbers, and equal keys 
     all.push_back(random_words({1 ^ (std::uint64_t{1} << bit), 2, 3, Purpose::range_noise}));
     all.push_back(random_words({1, 2 ^ (std::uint64_t{1} << bit), 3, Purpose::range_noise}));
   }
-  for (int bit = 0; bit < 32; ++bit) all.push_back(random_words({1, 2, 3 ^ (std::uint32_t{1} << bit), Purpose::range_noise}));
+  for (int bit = 0; bit < 32; ++bit)
+    all.push_back(random_words({1, 2, 3 ^ (std::uint32_t{1} << bit), Purpose::range_noise}));
   for (const Purpose other :
        {Purpose::position_noise, Purpose::attitude_noise, Purpose::free_path, Purpose::receiver_noise, Purpose::scene})
     all.push_back(random_words({1, 2, 3, other}));
-  for (int bit = 0; bit < 24; ++bit) all.push_back(random_words({1, 2, 3, Purpose::range_noise, std::uint32_t{1} << bit}));
+  for (int bit = 0; bit < 24; ++bit)
+    all.push_back(random_words({1, 2, 3, Purpose::range_noise, std::uint32_t{1} << bit}));
   std::sort(all.begin(), all.end());
   CHECK(std::adjacent_find(all.begin(), all.end()) == all.end());
 }
@@ -121,8 +124,11 @@ TEST_CASE("normal quantiles have their tabulated values") {
   struct Entry {
     double p, z;
   };
-  const Entry table[] = {
-      {0.975, 1.959963984540054}, {0.75, 0.6744897501960817}, {0.999, 3.090232306167813}, {1e-10, -6.361340902404056}, {0.5, 0}};
+  const Entry table[] = {{0.975, 1.959963984540054},
+                         {0.75, 0.6744897501960817},
+                         {0.999, 3.090232306167813},
+                         {1e-10, -6.361340902404056},
+                         {0.5, 0}};
   for (const Entry& entry : table) {
     CAPTURE(entry.p);
     CHECK(std::fabs(normal_quantile(entry.p) - entry.z) <= 1e-15 * std::fabs(entry.z));

@@ -20,9 +20,12 @@ TEST_CASE("a search finds what std::lower_bound and std::upper_bound find") {
     for (int wanted = -1; wanted < 30; ++wanted) {
       CAPTURE(count);
       CAPTURE(wanted);
-      const auto lower = std::lower_bound(table.begin(), table.end(), wanted), upper = std::upper_bound(table.begin(), table.end(), wanted);
-      CHECK(first_not(count, [&](std::size_t i) { return table[i] < wanted; }) == static_cast<std::size_t>(lower - table.begin()));
-      CHECK(first_not(count, [&](std::size_t i) { return table[i] <= wanted; }) == static_cast<std::size_t>(upper - table.begin()));
+      const auto lower = std::lower_bound(table.begin(), table.end(), wanted),
+                 upper = std::upper_bound(table.begin(), table.end(), wanted);
+      CHECK(first_not(count, [&](std::size_t i) { return table[i] < wanted; }) ==
+            static_cast<std::size_t>(lower - table.begin()));
+      CHECK(first_not(count, [&](std::size_t i) { return table[i] <= wanted; }) ==
+            static_cast<std::size_t>(upper - table.begin()));
     }
   }
 }

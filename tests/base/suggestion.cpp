@@ -29,7 +29,7 @@ TEST_CASE("the nearest name is suggested, or all if none is near") {
   CHECK(suggestion("scanAngle", known) == "; did you mean 'scanAngle_deg'?");
   CHECK(suggestion("q", known) == "; known names: scanFreq_hz, pulseFreq_hz, scanAngle_deg");
   CHECK(suggestion("q", {}).empty());
-  CHECK(suggestion("abcd", std::vector<std::string>{"abxy"}) == "; did you mean 'abxy'?");   // half of its letters
+  CHECK(suggestion("abcd", std::vector<std::string>{"abxy"}) == "; did you mean 'abxy'?");     // half of its letters
   CHECK(suggestion("abcdef", std::vector<std::string>{"abuvwx"}) == "; known names: abuvwx");  // more than half
 }
 

@@ -97,7 +97,8 @@ TEST_CASE("a number is all of its text, and has a point in every locale") {
     CHECK(number_in<double>(c.text) == c.value);
     CHECK(finite_number_in(c.text) == c.value);
   }
-  for (const char* text : {"", "nan", "-nan", "1,5", "1.5x", "0x10", "1e", "1e999", "--1", "+-1", "++1", "+", " 1", "1 ", "e5", "."}) {
+  for (const char* text :
+       {"", "nan", "-nan", "1,5", "1.5x", "0x10", "1e", "1e999", "--1", "+-1", "++1", "+", " 1", "1 ", "e5", "."}) {
     CAPTURE(text);
     CHECK_FALSE(number_in<double>(text));
     CHECK_FALSE(finite_number_in(text));

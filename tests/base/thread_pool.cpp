@@ -72,8 +72,9 @@ TEST_CASE("calls of a pool may be nested, and come from several threads") {
     std::vector<std::jthread> callers;
     for (int k = 0; k < 3; ++k)
       callers.emplace_back([&] {
-        pool.for_each(10,
-                      [&](std::size_t) { pool.for_each(10, [&](std::size_t) { for_each_index(5, pool, [&](std::size_t) { ++done; }); }); });
+        pool.for_each(10, [&](std::size_t) {
+          pool.for_each(10, [&](std::size_t) { for_each_index(5, pool, [&](std::size_t) { ++done; }); });
+        });
       });
   }
   CHECK(done == 3 * 10 * 10 * 5);

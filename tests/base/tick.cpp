@@ -16,7 +16,8 @@ namespace {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/// i * frequency / rate in whole numbers: the turns of a clockwork of a whole frequency [Hz] when slot i of a source begins.
+/// i * frequency / rate in whole numbers: the turns of a clockwork of a whole frequency [Hz] when slot i of a source
+/// begins.
 struct Exact {
   Wide quotient;
   long double rest;  ///< in [0, 1)
@@ -88,7 +89,8 @@ TEST_CASE("a tick of random pulses and rates keeps its fraction in [0, 1) and it
 }
 
 TEST_CASE("a mirror's phase is as exact at pulse 10^12 as at the first pulse") {
-  // The fraction of a second is rounded to 2^-54 and so is the phase, times the frequency; the product and the sums round as well.
+  // The fraction of a second is rounded to 2^-54 and so is the phase, times the frequency; the product and the sums
+  // round as well.
   const double bound = 200 * 0x1p-52;
   for (const double rate : {1e5, 99999.5, 1e6 / 7}) {
     CAPTURE(rate);
@@ -99,7 +101,8 @@ TEST_CASE("a mirror's phase is as exact at pulse 10^12 as at the first pulse") {
 }
 
 TEST_CASE("a phase of a frequency that is not whole loses its turns exactly") {
-  // 0.1 Hz is no double: the clockwork goes at what is nearest, 0.1000000000000000055511151231257827 Hz, and after 10^9 s is that far ahead
+  // 0.1 Hz is no double: the clockwork goes at what is nearest, 0.1000000000000000055511151231257827 Hz, and after 10^9
+  // s is that far ahead
   CHECK(Tick{1000000000, 0}.phase(0.1) == support::relative(5.5511151231257827e-9, 1e-15));
 }
 

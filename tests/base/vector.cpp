@@ -24,8 +24,10 @@ TEST_CASE("right, forward and up are a right-handed set of axes") {
 }
 
 TEST_CASE("the length of a rotation's axis does not matter") {
-  CHECK(distance(rotation_about(axis::up * 1e6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) < 1e-15);
-  CHECK(distance(rotation_about(axis::up * 1e-6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) < 1e-15);
+  CHECK(distance(rotation_about(axis::up * 1e6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) <
+        1e-15);
+  CHECK(distance(rotation_about(axis::up * 1e-6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) <
+        1e-15);
 }
 
 TEST_CASE("no rotation leaves a vector as it is") { CHECK(no_rotation * Vec3{1, -2, 3} == Vec3{1, -2, 3}); }
@@ -55,7 +57,8 @@ TEST_CASE("a rotation about an axis agrees with Rodrigues' formula") {
     const Vec3 axis = any.unit(), v = any.unit();
     const double angle = any.uniform(-7, 7);
     // Source: Rodrigues 1840
-    const Vec3 expected = v * std::cos(angle) + cross(axis, v) * std::sin(angle) + axis * (dot(axis, v) * (1 - std::cos(angle)));
+    const Vec3 expected =
+        v * std::cos(angle) + cross(axis, v) * std::sin(angle) + axis * (dot(axis, v) * (1 - std::cos(angle)));
     CHECK(distance(rotation_about(axis, angle) * v, expected) < 2e-15);
   }
 }

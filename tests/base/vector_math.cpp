@@ -17,7 +17,8 @@ using namespace pulsecast;
 #pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register: all that return some are inlined
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity(), not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity(),
+                 not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double least = std::numeric_limits<double>::denorm_min(), tiny = std::numeric_limits<double>::min();
 
 /// Distance to the expected value in units in the last place of its double.
@@ -66,7 +67,8 @@ TEST_CASE("sines and cosines err by at most 1 ulp") {
   for (std::uint64_t seed = 0; seed < 100000; ++seed) {
     support::Generator any(seed);
     const double multiple = std::floor(any.uniform(-60000, 60000)) * (pi / 2);
-    for (const double x : {any.uniform(-10, 10), signed_log_uniform(any, 1e-300, 1e5), multiple, std::nextafter(multiple, infinity)}) {
+    for (const double x :
+         {any.uniform(-10, 10), signed_log_uniform(any, 1e-300, 1e5), multiple, std::nextafter(multiple, infinity)}) {
       CAPTURE(seed);
       CAPTURE(x);
       const auto [sine, cosine] = simd::sincos(x);
@@ -182,8 +184,8 @@ TEST_CASE("whole numbers and square roots are those of the C library") {
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
     support::Generator any(seed);
     const double near = std::floor(any.uniform(-1e6, 1e6)) + 0.5;
-    for (const double x :
-         {any.uniform(-3, 3), near, signed_log_uniform(any, 1e-300, 1e300), 0.0, -0.0, infinity, -infinity, not_a_number}) {
+    for (const double x : {any.uniform(-3, 3), near, signed_log_uniform(any, 1e-300, 1e300), 0.0, -0.0, infinity,
+                           -infinity, not_a_number}) {
       CAPTURE(seed);
       CAPTURE(x);
       REQUIRE(same_bits(simd::round(x), std::nearbyint(x)));

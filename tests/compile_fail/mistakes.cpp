@@ -19,8 +19,8 @@
 // error: the detector must be a Detector
 // error: the first argument must be a survey
 //
-// Mistakes in the use of the stages: the first line with `error:` says in one sentence what to do. Those that show only in a run are in
-// tests/mistakes.cpp.
+// Mistakes in the use of the stages: the first line with `error:` says in one sentence what to do. Those that show only
+// in a run are in tests/mistakes.cpp.
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>

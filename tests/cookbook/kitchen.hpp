@@ -15,13 +15,15 @@ namespace pulsecast::support {
 class Kitchen {
  public:
   Kitchen() {
-    for (const char* file : {"materials.obj", "materials.mtl", "terrain.tif"}) std::filesystem::copy(data_folder / file, folder_.path());
+    for (const char* file : {"materials.obj", "materials.mtl", "terrain.tif"})
+      std::filesystem::copy(data_folder / file, folder_.path());
     std::filesystem::rename(folder_.path() / "materials.obj", folder_.path() / "tree.obj");
     std::ofstream(folder_.path() / "flight.csv")
         << "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n0,0,-10,50,0,0,0\n2,0,10,50,0,0,0\n";
     for (const char* file : {"survey.xml", "plane.obj", "plane.mtl"})
       std::filesystem::copy(data_folder.parent_path() / "examples/pulsecast" / file, folder_.path());
-    std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/scanners_tls.xml", folder_.path());
+    std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/scanners_tls.xml",
+                          folder_.path());
     std::filesystem::current_path(folder_.path());
   }
   ~Kitchen() { std::filesystem::current_path(before_); }

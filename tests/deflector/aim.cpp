@@ -28,7 +28,8 @@ TEST_CASE("a beam aimed at two angles goes where a map and a level would say, an
     CAPTURE(elevation);
     const auto pose = aimed_at(azimuth, elevation);
     const double level = std::cos(elevation);
-    CHECK(length(pose.direction(axis::forward) - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-15);
+    CHECK(length(pose.direction(axis::forward) -
+                 Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-15);
     CHECK(std::fabs(pose.direction(axis::right).z) < 1e-15);
   }
 }

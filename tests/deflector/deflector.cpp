@@ -40,7 +40,9 @@ static_assert(!Deflects<support::LeastTrajectory, Scanner>, "a trajectory carrie
 
 /// Leaves from one metre above the middle of the housing, to the right.
 struct Periscope {
-  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {rotation_about(axis::up, -90_deg), {0, 0, 1}}; }
+  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept {
+    return {rotation_about(axis::up, -90_deg), {0, 0, 1}};
+  }
 };
 
 /// Lets every pulse of an even second out.
@@ -55,7 +57,8 @@ struct ChoppingHead : support::LeastHead {
 }  // namespace
 
 TEST_CASE("a deflector sends each pulse where its optic is at that time") {
-  const Mirrored device{PolygonMirror{.lines_per_second = 100, .sweep = 60_deg}, Scanner{.pulse_rate = 100_kHz, .pulses = 100000}};
+  const Mirrored device{PolygonMirror{.lines_per_second = 100, .sweep = 60_deg},
+                        Scanner{.pulse_rate = 100_kHz, .pulses = 100000}};
   const auto p = device.pulse(250);  // a quarter of the first line
   REQUIRE(p);
   CHECK(p->tick == Tick{0, 0.0025});
@@ -63,8 +66,8 @@ TEST_CASE("a deflector sends each pulse where its optic is at that time") {
 }
 
 TEST_CASE("a head turns what its instrument has deflected, not the other way round") {
-  const Headed device{RotatingHead{.rate = 90_deg},
-                      Mirrored{PolygonMirror{.lines_per_second = 0.25, .sweep = 90_deg}, Scanner{.pulse_rate = 1, .pulses = 4}}};
+  const Headed device{RotatingHead{.rate = 90_deg}, Mirrored{PolygonMirror{.lines_per_second = 0.25, .sweep = 90_deg},
+                                                             Scanner{.pulse_rate = 1, .pulses = 4}}};
   // after one second the mirror looks 45 degrees down and the head has turned to the left
   const auto p = device.pulse(1);
   REQUIRE(p);
@@ -72,7 +75,8 @@ TEST_CASE("a head turns what its instrument has deflected, not the other way rou
 }
 
 TEST_CASE("a head carries the place where the beam leaves around with it") {
-  const Deflector device{RotatingHead{.rate = 90_deg, .axis = axis::right}, Deflector{Periscope{}, Scanner{.pulse_rate = 1, .pulses = 4}}};
+  const Deflector device{RotatingHead{.rate = 90_deg, .axis = axis::right},
+                         Deflector{Periscope{}, Scanner{.pulse_rate = 1, .pulses = 4}}};
   const auto p = device.pulse(1);
   REQUIRE(p);
   CHECK(length(p->origin() + axis::forward) < 1e-15);  // what was above is behind
@@ -89,8 +93,10 @@ TEST_CASE("a whole spinning head may be turned again, about another axis: the ou
     CAPTURE(i);
     const double t = static_cast<double>(i) / 20e3, azimuth = spin * t, nod = turn * t, pan = 1 + 3 * turn * t;
     const Vec3 spun{std::cos(tilt) * std::sin(azimuth), std::cos(tilt) * std::cos(azimuth), std::sin(tilt)};
-    const Vec3 nodded{spun.x, std::cos(nod) * spun.y - std::sin(nod) * spun.z, std::sin(nod) * spun.y + std::cos(nod) * spun.z};
-    const Vec3 panned{std::cos(pan) * nodded.x - std::sin(pan) * nodded.y, std::sin(pan) * nodded.x + std::cos(pan) * nodded.y, nodded.z};
+    const Vec3 nodded{spun.x, std::cos(nod) * spun.y - std::sin(nod) * spun.z,
+                      std::sin(nod) * spun.y + std::cos(nod) * spun.z};
+    const Vec3 panned{std::cos(pan) * nodded.x - std::sin(pan) * nodded.y,
+                      std::sin(pan) * nodded.x + std::cos(pan) * nodded.y, nodded.z};
     CHECK(length(spinning.pulse(i)->direction() - spun) < 1e-12);
     CHECK(length(nodding.pulse(i)->direction() - nodded) < 1e-12);
     CHECK(length(panning.pulse(i)->direction() - panned) < 1e-12);
@@ -131,8 +137,12 @@ TEST_CASE("an optic or a head that gives no rotation is a bug, which debug build
   };
   const Scanner laser{.pulses = 1};
   CHECK(support::aborts([&] { (void)Deflector{Stretched{1.17}, laser}.pulse(0); }) == support::has_assertions);
-  CHECK_FALSE(support::aborts([&] { (void)Deflector{Stretched{std::nan("")}, laser}.pulse(0); }));  // which a run reports
-  CHECK(support::aborts([&] { (void)Deflector{StretchedHead{}, Mirrored{PolygonMirror{}, laser}}.pulse(0); }) == support::has_assertions);
+  CHECK_FALSE(support::aborts([&] {
+    (void)Deflector{Stretched{std::nan("")}, laser}.pulse(0);
+  }));  // which a run reports
+  CHECK(support::aborts([&] {
+          (void)Deflector{StretchedHead{}, Mirrored{PolygonMirror{}, laser}}.pulse(0);
+        }) == support::has_assertions);
   CHECK_FALSE(support::aborts([&] { (void)Deflector{Stretched{1 + 1e-7}, laser}.pulse(0); }));
 }
 

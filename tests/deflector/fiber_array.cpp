@@ -42,6 +42,7 @@ TEST_CASE("a fibre array refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(FiberArray{}.validate());
   CHECK_THROWS_AS(FiberArray{.fibers = 0}.validate(), SettingError);
-  for (const double bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(FiberArray{.fibers_per_second = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan})
+    CHECK_THROWS_AS(FiberArray{.fibers_per_second = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 3.2, nan}) CHECK_THROWS_AS(FiberArray{.half_angle = bad}.validate(), SettingError);
 }

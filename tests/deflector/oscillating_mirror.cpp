@@ -46,7 +46,8 @@ TEST_CASE("an oscillating mirror starts low, is high after half a cycle, and pas
 
 TEST_CASE("an oscillating mirror goes back as it came") {
   for (const OscillatingMirror& mirror : mirrors())
-    for (int k = 1; k < 500; ++k) CHECK(std::fabs(mirror.angle({0, k / 1000.0}) - mirror.angle({0, 1 - k / 1000.0})) < 1e-14);
+    for (int k = 1; k < 500; ++k)
+      CHECK(std::fabs(mirror.angle({0, k / 1000.0}) - mirror.angle({0, 1 - k / 1000.0})) < 1e-14);
 }
 
 TEST_CASE("an oscillating mirror turns the beam up by its angle, in the plane of forward and up") {
@@ -57,7 +58,9 @@ TEST_CASE("an oscillating mirror turns the beam up by its angle, in the plane of
     }
 }
 
-TEST_CASE("between its turns a triangle has a constant rate, and in its turns a constant acceleration over the turning time") {
+TEST_CASE(
+    "between its turns a triangle has a constant rate, and in its turns a constant acceleration over the turning "
+    "time") {
   const double half_angle = 20_deg, turning_time = 0.1, h = 1e-3;
   const OscillatingMirror mirror{.cycles_per_second = 1, .half_angle = half_angle, .turning_time = turning_time};
   const auto angle = [&](double s) { return mirror.angle(Tick::of_seconds(s + 10)); };  // ten whole cycles later
@@ -76,7 +79,8 @@ TEST_CASE("a triangle without turning time is one of straight lines") {
 
 TEST_CASE("a sine is one") {
   const OscillatingMirror mirror{.cycles_per_second = 1, .half_angle = 20_deg, .swing = Swing::sine};
-  for (int k = 0; k < 100; ++k) CHECK(std::fabs(mirror.angle({0, k / 100.0}) + 20_deg * std::cos(2 * pi * k / 100)) < 1e-15);
+  for (int k = 0; k < 100; ++k)
+    CHECK(std::fabs(mirror.angle({0, k / 100.0}) + 20_deg * std::cos(2 * pi * k / 100)) < 1e-15);
 }
 
 TEST_CASE("an oscillating mirror that turns round in 100 pulses has the shape of a peer's") {
@@ -118,8 +122,10 @@ TEST_CASE("an oscillating mirror refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(OscillatingMirror{}.validate());
   CHECK_NOTHROW(OscillatingMirror{.cycles_per_second = 50, .turning_time = 10_ms}.validate());
-  for (const double bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(OscillatingMirror{.cycles_per_second = bad}.validate(), SettingError);
-  for (const double bad : {-0.1, 3.2, nan}) CHECK_THROWS_AS(OscillatingMirror{.half_angle = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan})
+    CHECK_THROWS_AS(OscillatingMirror{.cycles_per_second = bad}.validate(), SettingError);
+  for (const double bad : {-0.1, 3.2, nan})
+    CHECK_THROWS_AS(OscillatingMirror{.half_angle = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 10.1_ms, nan})
     CHECK_THROWS_AS((OscillatingMirror{.cycles_per_second = 50, .turning_time = bad}.validate()), SettingError);
   CHECK_THROWS_AS((OscillatingMirror{.swing = Swing::sine, .turning_time = 1_ms}.validate()), SettingError);

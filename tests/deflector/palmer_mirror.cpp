@@ -21,7 +21,8 @@ TEST_CASE("a Palmer mirror draws a cone of its half angle, from up over right, o
   for (int k = 0; k < 1000; ++k) {
     const double turn = 2 * pi * k / 1000;
     const Vec3 d = mirror.at(Tick::of_seconds(7 + k / 10000.0)).direction(axis::forward);
-    CHECK(length(d - Vec3{std::sin(20_deg) * std::sin(turn), std::cos(20_deg), std::sin(20_deg) * std::cos(turn)}) < 1e-12);
+    CHECK(length(d - Vec3{std::sin(20_deg) * std::sin(turn), std::cos(20_deg), std::sin(20_deg) * std::cos(turn)}) <
+          1e-12);
   }
 }
 
@@ -59,7 +60,8 @@ TEST_CASE("a Palmer mirror keeps the laws of a motion") {
 TEST_CASE("a Palmer mirror refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(PalmerMirror{}.validate());
-  for (const double bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(PalmerMirror{.turns_per_second = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan})
+    CHECK_THROWS_AS(PalmerMirror{.turns_per_second = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 1.6, nan}) {
     CHECK_THROWS_AS(PalmerMirror{.half_angle = bad}.validate(), SettingError);
     CHECK_THROWS_AS(PalmerMirror{.half_angle_across = bad}.validate(), SettingError);

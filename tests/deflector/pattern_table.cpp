@@ -20,7 +20,8 @@ namespace {
 PatternTable some_table(std::uint64_t seed, std::size_t n, double rate) {
   support::Generator any(seed);
   PatternTable table{.entries_per_second = rate};
-  for (std::size_t k = 0; k < n; ++k) table.entries.push_back({.azimuth = any.uniform(-pi, pi), .elevation = any.uniform(-1.5, 1.5)});
+  for (std::size_t k = 0; k < n; ++k)
+    table.entries.push_back({.azimuth = any.uniform(-pi, pi), .elevation = any.uniform(-1.5, 1.5)});
   return table;
 }
 }  // namespace
@@ -49,7 +50,8 @@ TEST_CASE("a pattern table refuses entries that cannot be, and none at all") {
   CHECK_THROWS_AS(PatternTable{}.validate(), SettingError);
   CHECK_NOTHROW(PatternTable{.entries = {{}}}.validate());
   CHECK_THROWS_AS((PatternTable{.entries = {{}, {.azimuth = nan}}}.validate()), SettingError);
-  for (const double bad : {-1.6, 1.6, nan}) CHECK_THROWS_AS((PatternTable{.entries = {{}, {.elevation = bad}}}.validate()), SettingError);
+  for (const double bad : {-1.6, 1.6, nan})
+    CHECK_THROWS_AS((PatternTable{.entries = {{}, {.elevation = bad}}}.validate()), SettingError);
   for (const double bad : {0.0, -1.0, nan})
     CHECK_THROWS_AS((PatternTable{.entries = {{}}, .entries_per_second = bad}.validate()), SettingError);
 }

@@ -57,12 +57,18 @@ TEST_CASE("pulses on the ends of a gate and of a line are decided as by whole nu
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const PulseIndex slots = 2 + any.whole(2000), first = 1 + any.whole(slots - 1), last = first + any.whole(slots - first);
+    const PulseIndex slots = 2 + any.whole(2000), first = 1 + any.whole(slots - 1),
+                     last = first + any.whole(slots - first);
     const bool whole = any.coin();  // lines a second: otherwise the rates drift apart by their rounding
-    const double lines = whole ? std::round(any.log_uniform(1, 1000)) : any.log_uniform(0.1, 1000), sweep = any.uniform(0.1, pi);
-    const auto at = [&](PulseIndex slot) { return sweep * (2 * static_cast<double>(slot) / static_cast<double>(slots) - 1); };
-    const PolygonMirror mirror{
-        .lines_per_second = lines, .sweep = sweep, .angle_min = whole && first == 1 ? -sweep : at(first), .angle_max = at(last)};
+    const double lines = whole ? std::round(any.log_uniform(1, 1000)) : any.log_uniform(0.1, 1000),
+                 sweep = any.uniform(0.1, pi);
+    const auto at = [&](PulseIndex slot) {
+      return sweep * (2 * static_cast<double>(slot) / static_cast<double>(slots) - 1);
+    };
+    const PolygonMirror mirror{.lines_per_second = lines,
+                               .sweep = sweep,
+                               .angle_min = whole && first == 1 ? -sweep : at(first),
+                               .angle_max = at(last)};
     const PulseIndex start = any.whole(PulseIndex{1} << any.whole(whole ? 32 : 20)) * slots;
     for (PulseIndex i = 0; i < 2 * slots; ++i) {
       const Tick t = Tick::of(start + i, lines * static_cast<double>(slots));
@@ -79,7 +85,8 @@ TEST_CASE("a polygon mirror foresees the moment at which the beam enters its gat
   CHECK(opens(mirror, {0, 0}) == support::relative(0.0025, 1e-9));
   CHECK(opens(mirror, {0, 0.004}) == 0.004);
   CHECK(opens(mirror, {0, 0.009}) == support::relative(0.0125, 1e-9));
-  CHECK(opens({.lines_per_second = 100, .sweep = 60_deg, .angle_max = 0}, {5, 0.009}) == support::relative(5.01, 1e-12));
+  CHECK(opens({.lines_per_second = 100, .sweep = 60_deg, .angle_max = 0}, {5, 0.009}) ==
+        support::relative(5.01, 1e-12));
 }
 
 TEST_CASE("no slot before that of the foreseen opening is open, and few after it are closed") {
@@ -92,9 +99,11 @@ TEST_CASE("no slot before that of the foreseen opening is open, and few after it
     if (any.coin()) mirror.sweep = pi / static_cast<double>(1 + any.whole(8));  // slots on the ends of lines
     mirror.angle_min = std::clamp(mirror.angle_min, -pi, pi);
     mirror.angle_max = std::clamp(mirror.angle_max, mirror.angle_min, pi);
-    const double rate = any.coin() ? mirror.lines_per_second * static_cast<double>(2 + any.whole(3000)) : any.log_uniform(1, 1e9);
+    const double rate =
+        any.coin() ? mirror.lines_per_second * static_cast<double>(2 + any.whole(3000)) : any.log_uniform(1, 1e9);
     const double fit = std::clamp(rate, 1.0, 1e12);
-    const Deflector device{mirror, Scanner{.pulse_rate = fit, .pulses = PulseIndex{1} << 48, .delay = any.uniform() * 0.9 / fit}};
+    const Deflector device{
+        mirror, Scanner{.pulse_rate = fit, .pulses = PulseIndex{1} << 48, .delay = any.uniform() * 0.9 / fit}};
     for (int k = 0; k < 20; ++k) {
       const PulseIndex i = any.whole(PulseIndex{1} << (8 + any.whole(39)));
       CAPTURE(i);
@@ -104,8 +113,10 @@ TEST_CASE("no slot before that of the foreseen opening is open, and few after it
         REQUIRE(!device.pulse(i + j));
         REQUIRE(!device.pulse(next - 1 - j));
       }
-      const double lines_per_slot = mirror.lines_per_second / fit, share = 0.5 * (mirror.angle_max - mirror.angle_min) / mirror.sweep;
-      const bool opens = std::fabs(mirror.angle_min) < 0.99 * mirror.sweep && share > 0.01;  // for many slots of each line
+      const double lines_per_slot = mirror.lines_per_second / fit,
+                   share = 0.5 * (mirror.angle_max - mirror.angle_min) / mirror.sweep;
+      const bool opens =
+          std::fabs(mirror.angle_min) < 0.99 * mirror.sweep && share > 0.01;  // for many slots of each line
       if (opens && lines_per_slot < 1e-3 && lines_per_slot > 1e-9 && next < device.size())
         CHECK((device.pulse(next) || device.pulse(next + 1)));
     }
@@ -173,7 +184,8 @@ TEST_CASE("at the very beginning of a line, angle and facet tell of the same lin
           CAPTURE(n);
           CAPTURE(line);
           const Tick t = Tick::of(line, rate);
-          const bool begun = mirror.angle(t) < 0;  // else it is still at the last end of the one before, by rounding of the tick
+          const bool begun =
+              mirror.angle(t) < 0;  // else it is still at the last end of the one before, by rounding of the tick
           REQUIRE(mirror.facet(t) == (begun ? line : line - 1) % n);
         }
     }
@@ -186,17 +198,21 @@ TEST_CASE("a polygon mirror without tilts is one whose tilts are zero") {
 }
 
 TEST_CASE("a polygon mirror keeps the laws of a motion") {
-  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .facet_tilts = {0.1, -0.1, 0, 0.2}}, support::some_ticks(6)) == "");
-  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .angle_min = -0.3, .angle_max = 1}, support::some_ticks(3)) == "");
+  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .facet_tilts = {0.1, -0.1, 0, 0.2}},
+                             support::some_ticks(6)) == "");
+  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .angle_min = -0.3, .angle_max = 1},
+                             support::some_ticks(3)) == "");
 }
 
 TEST_CASE("a polygon mirror refuses what no mirror can do") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(PolygonMirror{}.validate());
-  for (const double bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(PolygonMirror{.lines_per_second = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan})
+    CHECK_THROWS_AS(PolygonMirror{.lines_per_second = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 3.2, nan}) CHECK_THROWS_AS(PolygonMirror{.sweep = bad}.validate(), SettingError);
   CHECK_THROWS_AS((PolygonMirror{.angle_min = 0.2, .angle_max = 0.1}.validate()), SettingError);
   CHECK_THROWS_AS(PolygonMirror{.angle_min = nan}.validate(), SettingError);
   CHECK_THROWS_AS(PolygonMirror{.angle_max = nan}.validate(), SettingError);
-  for (const double bad : {-1.6, 1.6, nan}) CHECK_THROWS_AS((PolygonMirror{.facet_tilts = {0, bad}}.validate()), SettingError);
+  for (const double bad : {-1.6, 1.6, nan})
+    CHECK_THROWS_AS((PolygonMirror{.facet_tilts = {0, bad}}.validate()), SettingError);
 }

@@ -26,8 +26,11 @@ RisleyPrisms two_wedges(double first, double second) {
                      {.wedge = 17.9634_deg, .turns_per_second = second, .inclined_exit = true}}};
 }
 
-/// Snell's law in a plane: light at an angle below forward meets a face whose normal, along the light, is at an angle below forward.
-double behind_face(double light, double normal, double ratio) { return normal + std::asin(ratio * std::sin(light - normal)); }
+/// Snell's law in a plane: light at an angle below forward meets a face whose normal, along the light, is at an angle
+/// below forward.
+double behind_face(double light, double normal, double ratio) {
+  return normal + std::asin(ratio * std::sin(light - normal));
+}
 
 /// Light at an angle below forward, behind a prism that is not turned, or turned half round if its wedge is negative.
 double behind_prism(double light, double wedge, bool inclined_exit, double index) {
@@ -58,7 +61,8 @@ TEST_CASE("light is refracted by Snell's law, in the plane of light and normal")
     CHECK(std::fabs(length(*on) - 1) < 1e-15);
     CHECK(length(cross(*on, normal) - ratio * cross(light, normal)) < 1e-14);
     CHECK(dot(*on, normal) <= 0);
-    if (dot(*on, normal) < -0.01) CHECK(length(-*refracted(-*on, -normal, 1 / ratio) - light) < 1e-12);  // the way back is the same
+    if (dot(*on, normal) < -0.01)
+      CHECK(length(-*refracted(-*on, -normal, 1 / ratio) - light) < 1e-12);  // the way back is the same
   }
   CHECK(reflected > 100);
   CHECK(!refracted(axis::forward, axis::forward, 1));  // from behind the face
@@ -99,7 +103,8 @@ TEST_CASE("a rosette closes after the common period of its prisms, and not befor
 TEST_CASE("a rosette's field of view reaches from where the prisms cancel to where they add up") {
   const RisleyPrisms optic = two_wedges(-121.5657, 77.7430);
   const double first = behind_prism(0, 18.7481_deg, false, 1.51);
-  const double widest = behind_prism(first, 17.9634_deg, true, 1.51), narrowest = std::fabs(behind_prism(first, -17.9634_deg, true, 1.51));
+  const double widest = behind_prism(first, 17.9634_deg, true, 1.51),
+               narrowest = std::fabs(behind_prism(first, -17.9634_deg, true, 1.51));
   CHECK(widest > 19_deg);
   CHECK(narrowest < 2_deg);
   double low = pi, high = 0;
@@ -130,7 +135,8 @@ TEST_CASE("the pose is the shortest turn to where the light goes") {
 }
 
 TEST_CASE("a prism that reflects all light inside lets none out") {
-  const RisleyPrisms steep{.prisms = {{.wedge = 45_deg, .inclined_exit = true}}};  // the glass reflects from asin(1/1.51), 41.5 degrees
+  const RisleyPrisms steep{
+      .prisms = {{.wedge = 45_deg, .inclined_exit = true}}};  // the glass reflects from asin(1/1.51), 41.5 degrees
   const RisleyPrisms flat{.prisms = {{.wedge = 41_deg, .inclined_exit = true}}};
   for (PulseIndex i = 0; i < 100; ++i) {
     CHECK(!steep.open(Tick::of(i, 1000)));
@@ -140,8 +146,8 @@ TEST_CASE("a prism that reflects all light inside lets none out") {
 }
 
 TEST_CASE("two steep prisms let light out in a part of their turns only") {
-  const RisleyPrisms optic{
-      .prisms = {{.wedge = 32_deg, .turns_per_second = 7}, {.wedge = 32_deg, .turns_per_second = -5, .inclined_exit = true}}};
+  const RisleyPrisms optic{.prisms = {{.wedge = 32_deg, .turns_per_second = 7},
+                                      {.wedge = 32_deg, .turns_per_second = -5, .inclined_exit = true}}};
   int open = 0;
   for (PulseIndex i = 0; i < 1000; ++i) open += optic.open(Tick::of(i, 1000));
   CHECK(open > 100);
@@ -171,7 +177,8 @@ TEST_CASE("Risley prisms refuse what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(RisleyPrisms{}.validate(), SettingError);
   CHECK_NOTHROW(RisleyPrisms{.prisms = {{}}}.validate());
-  for (const double bad : {-0.1, 1.6, nan}) CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.wedge = bad}}}.validate()), SettingError);
+  for (const double bad : {-0.1, 1.6, nan})
+    CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.wedge = bad}}}.validate()), SettingError);
   CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.turns_per_second = nan}}}.validate()), SettingError);
   for (const double bad : {-1.0, 0.0, nan}) {
     CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.refractive_index = bad}}}.validate()), SettingError);

@@ -47,7 +47,8 @@ TEST_CASE("a head's angle does not wear out with time") {
   // a turn a second: after any whole number of seconds it stands where it began
   const RotatingHead head{.rate = 2 * pi, .start = 0.3};
   for (const std::int64_t second : {1LL, 1000LL, 100000000LL})
-    CHECK(length(head.at({second, 0.25}).direction(axis::forward) - head.at({0, 0.25}).direction(axis::forward)) < 1e-14);
+    CHECK(length(head.at({second, 0.25}).direction(axis::forward) - head.at({0, 0.25}).direction(axis::forward)) <
+          1e-14);
 }
 
 TEST_CASE("a head keeps the laws of a motion") {

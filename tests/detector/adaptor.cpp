@@ -56,16 +56,20 @@ concept Sampling = requires(const D d) {
 /// A plate at 100 m, and another at 103 m behind its left half.
 struct TwoPlates {
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
-    return Hit{.range = (ray.direction.x < 0 ? 103 : 100) / ray.direction.y, .backscatter = 0.5, .object = ray.direction.x < 0 ? 2U : 1U};
+    return Hit{.range = (ray.direction.x < 0 ? 103 : 100) / ray.direction.y,
+               .backscatter = 0.5,
+               .object = ray.direction.x < 0 ? 2U : 1U};
   }
 };
 
 }  // namespace
 
 static_assert(Detector<DetectorAdaptor<FirstHit>> && Detector<LastEcho<FullWaveform<MomentWidth>>>);
-static_assert(ListensAlways<LastEcho<Everything>> && ReadsVelocity<LastEcho<Everything>> && Sampling<LastEcho<Everything>>);
+static_assert(ListensAlways<LastEcho<Everything>> && ReadsVelocity<LastEcho<Everything>> &&
+              Sampling<LastEcho<Everything>>);
 static_assert(Normalizable<LastEcho<Everything>> && !Normalizable<LastEcho<FirstHit>>);
-static_assert(!ListensAlways<LastEcho<FirstHit>> && !ReadsVelocity<LastEcho<FirstHit>> && !Sampling<LastEcho<FirstHit>>);
+static_assert(!ListensAlways<LastEcho<FirstHit>> && !ReadsVelocity<LastEcho<FirstHit>> &&
+              !Sampling<LastEcho<FirstHit>>);
 
 TEST_CASE("the last echo of a noisy detector has noise of its own for each of 9,000 pulses") {
   const TwoPlates plates;
@@ -73,14 +77,15 @@ TEST_CASE("the last echo of a noisy detector has noise of its own for each of 9,
   const FullWaveform noisy{WaveformSettings{.threshold = 1e-8}, NoWidth{}, ReceiverNoise{.deviation = 1e-10}};
   std::set<double> amplitudes;
   PulseIndex echoes = 0;
-  run(Survey{source, RingFootprint{}, plates, Receiver{}, LastEcho{noisy}}, {.threads = 1}, [&](const EchoBatch& batch) {
-    for (const Echo& echo : batch.echoes) {
-      ++echoes;
-      amplitudes.insert(echo.amplitude);
-      REQUIRE(echo.number == 1);
-      REQUIRE(echo.object == 2);
-    }
-  });
+  run(Survey{source, RingFootprint{}, plates, Receiver{}, LastEcho{noisy}}, {.threads = 1},
+      [&](const EchoBatch& batch) {
+        for (const Echo& echo : batch.echoes) {
+          ++echoes;
+          amplitudes.insert(echo.amplitude);
+          REQUIRE(echo.number == 1);
+          REQUIRE(echo.object == 2);
+        }
+      });
   CHECK(echoes == 9000);
   CHECK(amplitudes.size() == 9000);
 }
@@ -112,8 +117,11 @@ TEST_CASE("an adaptor hands on validation, normalisation and the sample interval
   CHECK_NOTHROW(LastEcho{support::LeastDetector{}}.validate(Laser{}));
   const TwoPlates plates;
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1}}};
-  const auto survey = [&](const auto& detector) { return Survey{source, SingleRay{}, plates, Receiver{}, detector}.sample_interval(); };
+  const auto survey = [&](const auto& detector) {
+    return Survey{source, SingleRay{}, plates, Receiver{}, detector}.sample_interval();
+  };
   CHECK(survey(LastEcho{FullWaveform{}}) == FullWaveform{}.sample_interval());
   CHECK_THROWS_AS(survey(LastEcho{FirstHit{-1}}), SettingError);
-  CHECK_THROWS_AS(survey(LastEcho{FullWaveform{WaveformSettings{.sample_interval = 1e-6}}}), SettingError);  // not for this laser
+  CHECK_THROWS_AS(survey(LastEcho{FullWaveform{WaveformSettings{.sample_interval = 1e-6}}}),
+                  SettingError);  // not for this laser
 }

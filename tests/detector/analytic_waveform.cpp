@@ -52,7 +52,8 @@ Received received(const std::vector<Reflection>& reflections, double time) {
 std::vector<Reflection> some(support::Generator& any, std::size_t most) {
   std::vector<Reflection> reflections(1 + any.whole(most));
   const double start = any.log_uniform(1, 3000), spread = any.log_uniform(0.01, 20);
-  for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-7), static_cast<ObjectId>(any.whole(9))};
+  for (Reflection& r : reflections)
+    r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-7), static_cast<ObjectId>(any.whole(9))};
   return reflections;
 }
 
@@ -142,11 +143,14 @@ TEST_CASE("every echo is where the sum of pulses has no slope, as high as the su
       if (e == 0) continue;
       double valley = infinity;
       for (double x = 0; x <= 1; x += 1e-3)
-        valley = std::fmin(valley, received(reflections, time - x * 2 * (echoes[e].range - echoes[e - 1].range) / speed_of_light).power);
+        valley = std::fmin(
+            valley,
+            received(reflections, time - x * 2 * (echoes[e].range - echoes[e - 1].range) / speed_of_light).power);
       CHECK(valley <= std::fmin(echoes[e].amplitude, echoes[e - 1].amplitude) * (1 + 1e-5));
     }
     for (const Reflection& r : reflections)  // nothing was passed over
-      for (double x = -2; x < 3; x += 0.1) CHECK(received(reflections, arrival(r) + x * shape.tau).power <= highest * (1 + 1e-9));
+      for (double x = -2; x < 3; x += 0.1)
+        CHECK(received(reflections, arrival(r) + x * shape.tau).power <= highest * (1 + 1e-9));
   }
   CHECK(several > 200);
 }
@@ -177,7 +181,8 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
       const Echo &a = found[0], &b = expected[0];
       // Of the last edge, whose two-way time is rounded, comes as much as the time has digits.
       const double rounding = 1e-15 * start, near = 1e-9 + rounding / metres_per_tau;
-      REQUIRE(std::fabs(a.range - b.range) < (timing == EchoTiming::true_range ? 0 : 1e-7 * metres_per_tau) + 4 * rounding + 1e-14);
+      REQUIRE(std::fabs(a.range - b.range) <
+              (timing == EchoTiming::true_range ? 0 : 1e-7 * metres_per_tau) + 4 * rounding + 1e-14);
       REQUIRE(a.amplitude == support::relative(b.amplitude, near));
       REQUIRE(a.width == support::relative(b.width, near));
       REQUIRE(a.number == 1);
@@ -189,12 +194,14 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
   }
   // at the threshold, and with edges so far apart that the ages' variance is 1 but for rounding
   const double least = echoes_of(AnalyticWaveform(), {{50, 1e-8}, {50.1, 1e-8}})[0].amplitude;
-  CHECK(both(AnalyticWaveform(WaveformSettings{.threshold = 0.999 * least}), {{50, 1e-8}, {50.1, 1e-8}}).first.size() == 1);
+  CHECK(both(AnalyticWaveform(WaveformSettings{.threshold = 0.999 * least}), {{50, 1e-8}, {50.1, 1e-8}}).first.size() ==
+        1);
   CHECK(both(AnalyticWaveform(WaveformSettings{.threshold = 1.001 * least}), {{50, 1e-8}, {50.1, 1e-8}}).first.empty());
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const double range = any.log_uniform(1, 1e4), further = range + 2 * metres_per_tau * (1 - any.log_uniform(1e-15, 1e-9)), power = 1e-8;
+    const double range = any.log_uniform(1, 1e4),
+                 further = range + 2 * metres_per_tau * (1 - any.log_uniform(1e-15, 1e-9)), power = 1e-8;
     const auto [found, expected] = both(AnalyticWaveform(all_peaks), {{range, power}, {further, power * std::exp(-2)}});
     REQUIRE(found.size() == 1);
     CHECK(found[0].amplitude == support::relative(expected[0].amplitude, 1e-6));
@@ -224,7 +231,8 @@ TEST_CASE("a slope of thousands of hits is one echo at its middle, as wide as va
 
 TEST_CASE("an echo's moments are those of the sum between its valleys") {
   const AnalyticWaveform<MomentWidth> detector(all_peaks);
-  const WaveformSettings fine{.sample_interval = 0.02e-9, .threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak};
+  const WaveformSettings fine{
+      .sample_interval = 0.02e-9, .threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak};
   const FullWaveform<MomentWidth> sampled(fine);
   std::size_t compared = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
@@ -250,12 +258,14 @@ TEST_CASE("a kept waveform is that of the sampling detector") {
   std::vector<Reflection> reflections{{60, 2e-8}, {61, 1e-8}, {70, 5e-9}, {95, 3e-8}};
   auto w = exact.workspace(4);
   auto v = sampled.workspace(4);
-  const Detection a = support::detect(exact, laser, reflections, w), b = support::detect(sampled, laser, reflections, v);
+  const Detection a = support::detect(exact, laser, reflections, w),
+                  b = support::detect(sampled, laser, reflections, v);
   REQUIRE(a.waveform.size() > 400);
   REQUIRE(a.waveform.size() <= b.waveform.size() + 1);
   REQUIRE(b.waveform.size() <= a.waveform.size() + 1);
   CHECK(a.waveform_start == b.waveform_start);
-  for (std::size_t i = 0; i < std::min(a.waveform.size(), b.waveform.size()); ++i) CHECK(std::fabs(a.waveform[i] - b.waveform[i]) < 1e-14F);
+  for (std::size_t i = 0; i < std::min(a.waveform.size(), b.waveform.size()); ++i)
+    CHECK(std::fabs(a.waveform[i] - b.waveform[i]) < 1e-14F);
   CHECK(echoes_of(AnalyticWaveform<>{}, reflections).size() == 4);
   std::vector<Reflection> one{{60, 1}};
   auto u = AnalyticWaveform<>{}.workspace(1);
@@ -267,7 +277,8 @@ TEST_CASE("a fitted width is that of the sampling detector, to what the place of
   const FullWaveform<GaussianFit> sampled;
   std::vector<Reflection> slope;
   for (int k = 0; k <= 100; ++k) slope.push_back({100 + 0.005 * k, 1e-10});
-  for (const auto& reflections : {std::vector<Reflection>{{100, 1e-8}}, slope, std::vector<Reflection>{{100, 1e-8}, {103, 2e-8}}}) {
+  for (const auto& reflections :
+       {std::vector<Reflection>{{100, 1e-8}}, slope, std::vector<Reflection>{{100, 1e-8}, {103, 2e-8}}}) {
     const auto a = echoes_of(exact, reflections), b = echoes_of(sampled, reflections);
     REQUIRE(a.size() == b.size());
     for (std::size_t e = 0; e < a.size(); ++e) CHECK(a[e].width == support::relative(b[e].width, 0.005));
@@ -290,7 +301,8 @@ TEST_CASE("hits that are too far to be counted, or that bring nothing, are left 
 TEST_CASE("hits any distance apart are echoes of their own") {
   for (const double apart : {10.0, 1e3, 1e5, 1e7, 1e9}) {
     CAPTURE(apart);
-    const auto echoes = echoes_of(AnalyticWaveform<MomentWidth>{}, {{50, 1e-8}, {50 + apart, 2e-8}, {50 + 2 * apart, 1e-8}});
+    const auto echoes =
+        echoes_of(AnalyticWaveform<MomentWidth>{}, {{50, 1e-8}, {50 + apart, 2e-8}, {50 + 2 * apart, 1e-8}});
     REQUIRE(echoes.size() == 3);
     CHECK(echoes[1].amplitude == support::relative(2e-8, 1e-5));
     CHECK(echoes[2].width == support::relative(shape.deviation(), 1e-3));
@@ -304,7 +316,8 @@ TEST_CASE("analytic waveforms keep the laws of a detector") {
     cases.push_back(some(any, 60));
   }
   CHECK(support::detector_laws(AnalyticWaveform(), laser, cases) == "");
-  CHECK(support::detector_laws(AnalyticWaveform<MomentWidth>(WaveformSettings{.record_length = 100e-9}), laser, cases) == "");
+  CHECK(support::detector_laws(AnalyticWaveform<MomentWidth>(WaveformSettings{.record_length = 100e-9}), laser,
+                               cases) == "");
   CHECK(support::detector_laws(AnalyticWaveform<GaussianFit>(), laser, cases) == "");
   CHECK(support::detector_laws(AnalyticWaveform(all_peaks), laser, cases) == "");
   CHECK_THROWS_AS(AnalyticWaveform(WaveformSettings{.dead_time = -1}), SettingError);

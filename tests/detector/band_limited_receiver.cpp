@@ -41,12 +41,14 @@ auto detector(const ReceiverChain& chain, const WaveformSettings& settings, cons
 template <class D, class Workspace>
 std::vector<Echo> echoes(const D& d, Workspace& w, std::vector<Reflection> reflections, std::uint64_t pulse = 0,
                          RangeGate gate = {80, 120}) {
-  const Detection found = d.detect({.emitter = emitter, .gate = gate, .reflections = reflections, .key = {.seed = 11, .pulse = pulse}}, w);
+  const Detection found =
+      d.detect({.emitter = emitter, .gate = gate, .reflections = reflections, .key = {.seed = 11, .pulse = pulse}}, w);
   return {found.echoes.begin(), found.echoes.end()};
 }
 
-/// Standard deviation of the range of a gamma pulse that no unbiased estimator beats [m]. Source: Cramer-Rao bound in white noise of
-/// two-sided density N/2: N/2 by the integral of the squared slope, which for (t/tau)^2 exp(-t/tau) e^2/4 is e^4/(64 tau).
+/// Standard deviation of the range of a gamma pulse that no unbiased estimator beats [m]. Source: Cramer-Rao bound in
+/// white noise of two-sided density N/2: N/2 by the integral of the squared slope, which for (t/tau)^2 exp(-t/tau)
+/// e^2/4 is e^4/(64 tau).
 double bound(double snr) {
   const double tau = laser.pulse_length / 3.394680670846503, slope = std::exp(4.0) / (64 * tau);
   return 0.5 * speed_of_light * std::sqrt(0.5 / (snr * snr * 2e9) / slope);
@@ -83,16 +85,20 @@ TEST_CASE("ranges err little more than the Cramer-Rao bound, whatever the bin") 
         CAPTURE(bin);
         CAPTURE(snr);
         CAPTURE(matched);
-        const ReceiverChain chain{.bandwidth = matched ? 350e6 : 0, .noise_power = noise_power(snr), .matched_filter = matched};
+        const ReceiverChain chain{
+            .bandwidth = matched ? 350e6 : 0, .noise_power = noise_power(snr), .matched_filter = matched};
         const Ranging r = range_walls(
-            chain, {.sample_interval = bin, .threshold = 0.4 * power, .prominence = 0.2 * power, .timing = EchoTiming::peak}, 300);
+            chain,
+            {.sample_interval = bin, .threshold = 0.4 * power, .prominence = 0.2 * power, .timing = EchoTiming::peak},
+            300);
         CHECK(r.other == 0);
         CHECK(r.error < (matched ? 1.2 : 1.35) * bound(snr));
         CHECK(r.error > 0.9 * bound(snr));
       }
 }
 
-TEST_CASE("a finer digitiser ranges no worse by the default timing, after a receiver of a bandwidth, and with ten bits") {
+TEST_CASE(
+    "a finer digitiser ranges no worse by the default timing, after a receiver of a bandwidth, and with ten bits") {
   constexpr double none = 0;
   for (const double snr : {none, 30.0, 300.0}) {
     ReceiverChain chain{.bandwidth = 2e9};
@@ -102,7 +108,8 @@ TEST_CASE("a finer digitiser ranges no worse by the default timing, after a rece
     for (const double bin : {0.5e-9, 0.25e-9, 0.1e-9, 0.05e-9}) {
       CAPTURE(snr);
       CAPTURE(bin);
-      const Ranging r = range_walls(chain, {.sample_interval = bin, .threshold = 0.4 * power, .prominence = 0.2 * power}, 300);
+      const Ranging r =
+          range_walls(chain, {.sample_interval = bin, .threshold = 0.4 * power, .prominence = 0.2 * power}, 300);
       CHECK(r.other == 0);
       CHECK(r.error < 1.1 * coarser);
       if (snr > none) CHECK(r.error < 2 * bound(snr));
@@ -113,8 +120,8 @@ TEST_CASE("a finer digitiser ranges no worse by the default timing, after a rece
 }
 
 TEST_CASE("false alarms are as many as Rice's formula gives, whatever the bin") {
-  // Source: Rice 1945, Bell System Technical Journal 24: upward crossings of u deviations, a second: sqrt(-R''(0)) / (2 pi) exp(-u^2/2)
-  // with R = exp(-(t / 2 s)^2) of a low-pass of deviation s
+  // Source: Rice 1945, Bell System Technical Journal 24: upward crossings of u deviations, a second: sqrt(-R''(0)) / (2
+  // pi) exp(-u^2/2) with R = exp(-(t / 2 s)^2) of a low-pass of deviation s
   const double u = 3, gate = 10e-6, s = laser.pulse_length / std::sqrt(8 * std::numbers::ln2);
   const double rate = 1 / (std::numbers::sqrt2 * s * 2 * std::numbers::pi) * std::exp(-0.5 * u * u);
   constexpr int pulses = 100;
@@ -122,8 +129,8 @@ TEST_CASE("false alarms are as many as Rice's formula gives, whatever the bin") 
   for (const double bin : {1e-9, 0.25e-9, 0.1e-9}) {
     const ReceiverChain chain{.noise_power = noise_power(30)};
     const LowPass filter = chain.filter(laser.pulse_length);
-    const double deviation =
-        std::sqrt(chain.density(0, laser.wavelength) * filter.noise_bandwidth()) / ReceivedPulse(GammaPulse{}, 4e-9, filter, bin).gain();
+    const double deviation = std::sqrt(chain.density(0, laser.wavelength) * filter.noise_bandwidth()) /
+                             ReceivedPulse(GammaPulse{}, 4e-9, filter, bin).gain();
     const auto d = detector(chain,
                             {.sample_interval = bin,
                              .threshold = u * deviation,
@@ -161,8 +168,8 @@ TEST_CASE("a threshold for few false alarms gives no second echo") {
   const double u = std::sqrt(2 * std::log(crossings / 1e-4));
   const ReceiverChain chain{.noise_power = noise_power(30)};
   const LowPass filter = chain.filter(laser.pulse_length);
-  const double deviation =
-      std::sqrt(chain.density(0, laser.wavelength) * filter.noise_bandwidth()) / ReceivedPulse(GammaPulse{}, 4e-9, filter, 0.25e-9).gain();
+  const double deviation = std::sqrt(chain.density(0, laser.wavelength) * filter.noise_bandwidth()) /
+                           ReceivedPulse(GammaPulse{}, 4e-9, filter, 0.25e-9).gain();
   const WaveformSettings settings{.threshold = u * deviation, .prominence = u * deviation, .timing = EchoTiming::peak};
   CHECK(range_walls(chain, settings, 3000).other <= 3);
 }
@@ -171,11 +178,12 @@ TEST_CASE("noise of a part in 1e10 does not move a slope") {
   std::vector<Reflection> slope;
   for (int k = 0; k < 200; ++k) slope.push_back({.range = 100 + 0.02 * k, .power = power / 200});
   for (const double bandwidth : {0.0, 350e6})
-    for (const EchoTiming timing :
-         {EchoTiming::true_range, EchoTiming::peak, EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::centroid}) {
+    for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak, EchoTiming::leading_edge,
+                                    EchoTiming::constant_fraction, EchoTiming::centroid}) {
       const WaveformSettings settings{.threshold = 0.02 * power, .prominence = 0.01 * power, .timing = timing};
       const auto quiet = detector(ReceiverChain{.bandwidth = bandwidth}, settings, GammaPulse{});
-      const auto noisy = detector(ReceiverChain{.bandwidth = bandwidth, .noise_power = 1e-10 * noise_power(1)}, settings, GammaPulse{});
+      const auto noisy = detector(ReceiverChain{.bandwidth = bandwidth, .noise_power = 1e-10 * noise_power(1)},
+                                  settings, GammaPulse{});
       auto w = quiet.workspace(200);
       auto v = noisy.workspace(200);
       const auto without = echoes(quiet, w, slope), with = echoes(noisy, v, slope);
@@ -183,19 +191,22 @@ TEST_CASE("noise of a part in 1e10 does not move a slope") {
       REQUIRE(with.size() == 1);
       CAPTURE(bandwidth);
       CAPTURE(static_cast<int>(timing));
-      CHECK(std::fabs(with[0].range - without[0].range) < (bandwidth > 0 ? 1e-4 : 1e-6));  // the plateau is flatter after a filter
+      CHECK(std::fabs(with[0].range - without[0].range) <
+            (bandwidth > 0 ? 1e-4 : 1e-6));  // the plateau is flatter after a filter
     }
 }
 
 TEST_CASE("flat targets are in their place by every timing, one after the other, of any form and bin") {
   const auto check = [](const auto& form, double bin, bool matched) {
-    for (const EchoTiming timing :
-         {EchoTiming::true_range, EchoTiming::peak, EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::centroid}) {
+    for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak, EchoTiming::leading_edge,
+                                    EchoTiming::constant_fraction, EchoTiming::centroid}) {
       const auto d = detector(ReceiverChain{.bandwidth = matched ? 300e6 : 0, .matched_filter = matched},
                               {.sample_interval = bin, .threshold = 0.1 * power, .timing = timing}, form);
       auto w = d.workspace(3);
       const auto found = echoes(
-          d, w, {{.range = 0.4, .power = power}, {.range = 100.123, .power = power}, {.range = 150.321, .power = power}}, 0, {0, 200});
+          d, w,
+          {{.range = 0.4, .power = power}, {.range = 100.123, .power = power}, {.range = 150.321, .power = power}}, 0,
+          {0, 200});
       CAPTURE(static_cast<int>(timing));
       CAPTURE(bin);
       CAPTURE(matched);
@@ -215,11 +226,15 @@ TEST_CASE("flat targets are in their place by every timing, one after the other,
 }
 
 TEST_CASE("a saturated echo walks as the clipped pulse does") {
-  const double s = laser.pulse_length / std::sqrt(8 * std::numbers::ln2) * std::numbers::sqrt2;  // of pulse and low-pass
+  const double s =
+      laser.pulse_length / std::sqrt(8 * std::numbers::ln2) * std::numbers::sqrt2;  // of pulse and low-pass
   const double limit = power / 20;
-  const auto rise = [&](double by_level) { return -s * std::sqrt(2 * std::log(by_level)); };  // of a Gaussian, to a level below its peak
+  const auto rise = [&](double by_level) {
+    return -s * std::sqrt(2 * std::log(by_level));
+  };  // of a Gaussian, to a level below its peak
   const auto range_of = [&](EchoTiming timing, double saturation) {
-    const auto d = detector(ReceiverChain{.saturation = saturation}, {.threshold = 0.01 * power, .timing = timing}, GaussianPulse{});
+    const auto d = detector(ReceiverChain{.saturation = saturation}, {.threshold = 0.01 * power, .timing = timing},
+                            GaussianPulse{});
     auto w = d.workspace(1);
     const auto found = echoes(d, w, {{.range = 100, .power = power}});
     REQUIRE(found.size() == 1);
@@ -234,8 +249,8 @@ TEST_CASE("a saturated echo walks as the clipped pulse does") {
 
 TEST_CASE("after saturation the amplifier recovers by its time constant") {
   const double recovery = 20e-9, limit = power / 10;
-  const auto d = detector(ReceiverChain{.saturation = limit, .recovery = recovery}, {.threshold = 0.01 * power, .record_length = 200e-9},
-                          GaussianPulse{});
+  const auto d = detector(ReceiverChain{.saturation = limit, .recovery = recovery},
+                          {.threshold = 0.01 * power, .record_length = 200e-9}, GaussianPulse{});
   auto w = d.workspace(1);
   std::vector<Reflection> one{{.range = 100, .power = power}, {.range = 130, .power = 1e-3 * power}};
   const Detection found = d.detect({.emitter = emitter, .gate = {0, 200}, .reflections = one}, w);
@@ -284,8 +299,10 @@ TEST_CASE("the signal has shot noise of its own") {
   const auto d = detector(chain, {.threshold = 0.3 * power, .record_length = 100e-9}, GaussianPulse{});
   auto w = d.workspace(1);
   const double photon = 6.62607015e-34 * speed_of_light / laser.wavelength, sqrt_2 = std::numbers::sqrt2;
-  const double s = laser.pulse_length / std::sqrt(8 * std::numbers::ln2), noise_bandwidth = 1 / (4 * std::sqrt(std::numbers::pi) * s);
-  const double expected = std::sqrt(2 * 3 * photon / 0.8 * power * noise_bandwidth) * sqrt_2;  // the low-pass lowers the peak by sqrt 2
+  const double s = laser.pulse_length / std::sqrt(8 * std::numbers::ln2),
+               noise_bandwidth = 1 / (4 * std::sqrt(std::numbers::pi) * s);
+  const double expected =
+      std::sqrt(2 * 3 * photon / 0.8 * power * noise_bandwidth) * sqrt_2;  // the low-pass lowers the peak by sqrt 2
   double sum = 0, squares = 0;
   constexpr int pulses = 4000;
   for (std::uint64_t k = 0; k < pulses; ++k) {
@@ -310,9 +327,9 @@ TEST_CASE("noise is heard in the sky") {
   const LowPass filter = chain.filter(laser.pulse_length);
   const double deviation = std::sqrt(chain.density(0, laser.wavelength) * filter.noise_bandwidth());
   const Platform up{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 500, .laser = laser}}};
-  const Survey survey{
-      up, SingleRay{}, sky, Receiver{.range_max = 300},
-      FullWaveform{WaveformSettings{.threshold = 4 * deviation, .timing = EchoTiming::peak}, NoWidth{}, BandLimitedReceiver{chain}}};
+  const Survey survey{up, SingleRay{}, sky, Receiver{.range_max = 300},
+                      FullWaveform{WaveformSettings{.threshold = 4 * deviation, .timing = EchoTiming::peak}, NoWidth{},
+                                   BandLimitedReceiver{chain}}};
   std::size_t found = 0;
   run(survey, {.threads = 1}, [&](const EchoBatch& batch) {
     found += batch.echoes.size();
@@ -326,7 +343,8 @@ TEST_CASE("the laws of detectors, and settings that are refused") {
                                                    {},
                                                    {{.range = 10, .power = power}, {.range = 500, .power = 3 * power}},
                                                    {{.range = 3, .power = power}}};
-  CHECK(support::detector_laws(detector(ReceiverChain{}, {.threshold = 0.1 * power}, GammaPulse{}), laser, cases) == "");
+  CHECK(support::detector_laws(detector(ReceiverChain{}, {.threshold = 0.1 * power}, GammaPulse{}), laser, cases) ==
+        "");
   CHECK_THROWS_AS(BandLimitedReceiver{ReceiverChain{.quantum_efficiency = 0}}, SettingError);
   BandLimitedReceiver<> receiver(ReceiverChain{.noise_power = 1e-9, .shot_noise = true});
   CHECK(receiver.settings().noisy());
@@ -346,8 +364,9 @@ TEST_CASE("a single maximum is found from the samples near it, as from all sampl
     std::vector<Reflection> reflections;
     const double range = any.uniform(1, 1000), spread = any.log_uniform(1e-4, 0.5);
     for (int j = 0; j < 7; ++j)
-      reflections.push_back(
-          {.range = range + any.uniform(0, spread), .power = any.log_uniform(0.1, 1) * power, .object = static_cast<ObjectId>(j)});
+      reflections.push_back({.range = range + any.uniform(0, spread),
+                             .power = any.log_uniform(0.1, 1) * power,
+                             .object = static_cast<ObjectId>(j)});
     auto w = d.workspace(7), v = full.workspace(7);
     const auto a = echoes(d, w, reflections, 0, {}), b = echoes(full, v, reflections, 0, {});
     CAPTURE(k);

@@ -49,23 +49,29 @@ struct Flight {
   std::size_t cells = 8192;
 
   [[nodiscard]] support::Traced pulse() const {
-    const LightScene ground({support::rectangle({}, 999.0 * axis::right, 999.0 * axis::forward, Material{.reflectance = 0.3}, 7)});
-    return traced(LightPaths{.air = Media({{.medium = medium}}), .volume_cells = cells}, ground, from_to({0, 0, height}, {}),
-                  LatticeFootprint(19), lamp);
+    const LightScene ground(
+        {support::rectangle({}, 999.0 * axis::right, 999.0 * axis::forward, Material{.reflectance = 0.3}, 7)});
+    return traced(LightPaths{.air = Media({{.medium = medium}}), .volume_cells = cells}, ground,
+                  from_to({0, 0, height}, {}), LatticeFootprint(19), lamp);
   }
   /// Power that returns from a range [W/m].
   [[nodiscard]] double density(double range) const {
     const LinkBudget budget(lamp.receiver, lamp.laser);
-    return range > lamp.receiver.range_min && range < height ? budget.power(1, pi * medium.backscatter, range) * left(range) : 0;
+    return range > lamp.receiver.range_min && range < height
+               ? budget.power(1, pi * medium.backscatter, range) * left(range)
+               : 0;
   }
   [[nodiscard]] double left(double range) const { return std::exp(-2 * medium.extinction() * range); }
   /// Power of the ground's reflections [W].
-  [[nodiscard]] double ground() const { return LinkBudget(lamp.receiver, lamp.laser).power(1, 0.3, height) * left(height); }
+  [[nodiscard]] double ground() const {
+    return LinkBudget(lamp.receiver, lamp.laser).power(1, 0.3, height) * left(height);
+  }
   /// Waveform of haze at a time, for a pulse in time since its arrival, by the midpoint rule [W].
   template <class Shape>
   [[nodiscard]] double of_haze(double time, const Shape& shape, int steps = 4000) const {
     const double far = 0.5 * speed_of_light * (time - shape.begin());
-    const double near = std::max(0.0, 0.5 * speed_of_light * (time - std::min(shape.end(), 10 * lamp.laser.pulse_length)));
+    const double near =
+        std::max(0.0, 0.5 * speed_of_light * (time - std::min(shape.end(), 10 * lamp.laser.pulse_length)));
     double sum = 0;
     for (int k = 0; k < steps; ++k) {
       const double range = near + (k + 0.5) / steps * (far - near);
@@ -111,7 +117,8 @@ void check_ground(const char* name, const D& detector, const Flight& flight, dou
   CHECK(ground == (flight.ground() > threshold ? 1 : 0));
 }
 
-/// Maxima a second of noise of a deviation of 1 and an autocorrelation exp(-(t / 2 s)^2) that exceed a level. Source: Rice 1945, sec. 3.6.
+/// Maxima a second of noise of a deviation of 1 and an autocorrelation exp(-(t / 2 s)^2) that exceed a level. Source:
+/// Rice 1945, sec. 3.6.
 double maxima_above(double level, double s) {
   const double second = 1 / (2 * s * s), fourth = 3 / (4 * s * s * s * s), regular = second / std::sqrt(fourth);
   const double irregular = std::sqrt(1 - regular * regular);
@@ -139,7 +146,8 @@ TEST_CASE("an airplane in haze keeps its ground, and has one echo of the air") {
       const WaveformSettings recorded{.threshold = 1e-12, .record_length = 3e-5};
       check_ground("GaussianDecomposition", GaussianDecomposition(FullWaveform(recorded)), flight, recorded.threshold);
       const BandLimitedReceiver matched(ReceiverChain{.matched_filter = true});
-      check_ground("matched filter", FullWaveform(WaveformSettings{.threshold = 1e-12}, NoWidth{}, matched), flight, 1e-12);
+      check_ground("matched filter", FullWaveform(WaveformSettings{.threshold = 1e-12}, NoWidth{}, matched), flight,
+                   1e-12);
     }
 }
 
@@ -148,7 +156,8 @@ TEST_CASE("haze has one echo for any number of cells, and any samples") {
     for (const double interval : {0.05e-9, 0.4e-9, 1e-9}) {
       Flight flight{.height = 1000, .visibility = 10e3};
       flight.cells = cells;
-      check_ground("FullWaveform", FullWaveform(WaveformSettings{.sample_interval = interval, .threshold = 1e-12}), flight, 1e-12);
+      check_ground("FullWaveform", FullWaveform(WaveformSettings{.sample_interval = interval, .threshold = 1e-12}),
+                   flight, 1e-12);
     }
 }
 
@@ -164,7 +173,8 @@ TEST_CASE("the record of a pulse in haze is the integral of the lidar equation, 
     const PulseShape shape(flight.lamp.laser.pulse_length);
     for (std::size_t k = 1; k < d.waveform.size(); k += k < 100 ? 7 : 97) {
       const double time = d.waveform_start + static_cast<double>(k) * s.sample_interval;
-      const double expected = flight.of_haze(time, shape) + flight.ground() * shape(time - 2 * flight.height / speed_of_light);
+      const double expected =
+          flight.of_haze(time, shape) + flight.ground() * shape(time - 2 * flight.height / speed_of_light);
       if (!(expected > 1e-16)) continue;
       CAPTURE(time);
       CHECK(static_cast<double>(d.waveform[k]) == doctest::Approx(expected).epsilon(5e-3));
@@ -187,7 +197,8 @@ TEST_CASE("in noise, echoes besides those of haze and ground are as many as Rice
     const ReceivedPulse received(GammaPulse{}, laser.pulse_length, filter, 0.25e-9);
     const double sigma = std::sqrt(chain.density(0, wavelength) * filter.noise_bandwidth()) / received.gain();
     const double threshold = 3.2 * sigma, begin = 2 * near / speed_of_light, end = 2 * 700 / speed_of_light;
-    FullWaveform detector(WaveformSettings{.threshold = threshold, .window = 0, .returns_max = 255}, NoWidth{}, BandLimitedReceiver{chain});
+    FullWaveform detector(WaveformSettings{.threshold = threshold, .window = 0, .returns_max = 255}, NoWidth{},
+                          BandLimitedReceiver{chain});
     detector.prepare(laser);
     const auto pulse = flight.pulse();
     auto w = detector.workspace(pulse.reflections.size());
@@ -204,8 +215,11 @@ TEST_CASE("in noise, echoes besides those of haze and ground are as many as Rice
     for (int k = 0; k < pulses; ++k) {
       std::vector<Reflection> reflections = pulse.reflections;
       const Emitter emitter{.laser = laser};
-      const Heard heard{
-          emitter, flight.lamp.receiver.gate(), reflections, {.seed = 3, .pulse = static_cast<PulseIndex>(k)}, pulse.continuous};
+      const Heard heard{emitter,
+                        flight.lamp.receiver.gate(),
+                        reflections,
+                        {.seed = 3, .pulse = static_cast<PulseIndex>(k)},
+                        pulse.continuous};
       bool on_ground = false;
       for (const Echo& echo : detector.detect(heard, w).echoes) {
         on_ground |= std::fabs(echo.range - flight.height) < 0.5 && echo.object == 7;
@@ -224,21 +238,27 @@ TEST_CASE("photons of haze and ground are Poisson processes with the rate of the
   Flight flight{.height = 300, .visibility = 2e3};
   flight.lamp.receiver.range_min = 5;
   flight.lamp.laser.peak_power = 2;
-  PhotonCounting<> detector(PhotonCountingSettings{.efficiency = 0.2, .dead_time = 0, .threshold = 1, .returns_max = 255});
+  PhotonCounting<> detector(
+      PhotonCountingSettings{.efficiency = 0.2, .dead_time = 0, .threshold = 1, .returns_max = 255});
   const Laser& laser = flight.lamp.laser;
   detector.prepare(laser);
   const auto pulse = flight.pulse();
   auto w = detector.workspace(pulse.reflections.size());
   // bins of 2 m, wider with range
   std::vector<double> edges;
-  for (double range = 5.5; range < 306; range = range < 294 ? range * 1.15 : range + 1) edges.push_back(std::min(range, 306.0));
+  for (double range = 5.5; range < 306; range = range < 294 ? range * 1.15 : range + 1)
+    edges.push_back(std::min(range, 306.0));
   std::vector<double> counts(edges.size() - 1), expected(edges.size() - 1);
   const int pulses = 400;
   for (int k = 0; k < pulses; ++k) {
     std::vector<Reflection> reflections = pulse.reflections;
     const Emitter emitter{.laser = laser};
-    (void)detector.detect(
-        {emitter, flight.lamp.receiver.gate(), reflections, {.seed = 3, .pulse = static_cast<PulseIndex>(k)}, pulse.continuous}, w);
+    (void)detector.detect({emitter,
+                           flight.lamp.receiver.gate(),
+                           reflections,
+                           {.seed = 3, .pulse = static_cast<PulseIndex>(k)},
+                           pulse.continuous},
+                          w);
     for (const auto& count : w.counts) {
       const double range = 0.5 * speed_of_light * count.time;
       for (std::size_t b = 0; b + 1 < edges.size(); ++b) counts[b] += range >= edges[b] && range < edges[b + 1] ? 1 : 0;
@@ -258,7 +278,8 @@ TEST_CASE("photons of haze and ground are Poisson processes with the rate of the
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     const double low = std::max(5.0, edges[b] - 12), step = (std::min(300.0, edges[b + 1] + 2) - low) / 4000;
     for (int k = 0; k < 4000; ++k)
-      expected[b] += photons(edges[b], edges[b + 1], low + (k + 0.5) * step, flight.density(low + (k + 0.5) * step) * step);
+      expected[b] +=
+          photons(edges[b], edges[b + 1], low + (k + 0.5) * step, flight.density(low + (k + 0.5) * step) * step);
     expected[b] = pulses * (expected[b] + photons(edges[b], edges[b + 1], 300, flight.ground()));
     if (expected[b] < 10) continue;
     chi2 += std::pow(counts[b] - expected[b], 2) / expected[b];
@@ -274,7 +295,8 @@ TEST_CASE("a phase-shift scanner measures the phasor of haze and wall") {
   const auto echoes = echoes_of(PhaseShift(PhaseShiftSettings{.frequencies = {1e6}}), flight, pulse);
   REQUIRE(echoes.size() == 1);
   const double period = 0.5 * speed_of_light / 1e6;
-  double in_phase = flight.ground() * std::cos(2 * pi * 40 / period), quadrature = flight.ground() * std::sin(2 * pi * 40 / period);
+  double in_phase = flight.ground() * std::cos(2 * pi * 40 / period),
+         quadrature = flight.ground() * std::sin(2 * pi * 40 / period);
   const int steps = 400'000;
   for (int k = 0; k < steps; ++k) {
     const double range = (k + 0.5) / steps * 40, power = flight.density(range) * 40 / steps;
@@ -410,10 +432,12 @@ TEST_CASE("the strongest return in haze is that of the greater integral, the las
     const auto pulse = flight.pulse();
     const PulseShape shape(flight.lamp.laser.pulse_length);
     double air = 0;
-    for (double range = near; range < near + 3; range += 0.01) air = std::max(air, flight.of_haze(2 * range / speed_of_light, shape));
+    for (double range = near; range < near + 3; range += 0.01)
+      air = std::max(air, flight.of_haze(2 * range / speed_of_light, shape));
     const auto kinds = [&](ReturnMode mode) {
       std::vector<ReflectionKind> all;
-      for (const Echo& e : echoes_of(SelectedReturns(mode, FullWaveform(WaveformSettings{.threshold = 1e-12})), flight, pulse))
+      for (const Echo& e :
+           echoes_of(SelectedReturns(mode, FullWaveform(WaveformSettings{.threshold = 1e-12})), flight, pulse))
         all.push_back(e.kind);
       return all;
     };

@@ -15,7 +15,8 @@ namespace {
 /// A Gaussian of height 8 and deviation 5 samples about a place.
 std::vector<double> gaussian(double place) {
   std::vector<double> y(60);
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] = 8 * std::exp(-0.5 * std::pow((static_cast<double>(i) - place) / 5, 2));
+  for (std::size_t i = 0; i < y.size(); ++i)
+    y[i] = 8 * std::exp(-0.5 * std::pow((static_cast<double>(i) - place) / 5, 2));
   return y;
 }
 

@@ -23,7 +23,8 @@ TEST_CASE("a low-pass passes half of the power at its bandwidth, and white noise
   // |H|^2 = exp(-(2 pi f s)^2)
   CHECK(std::exp(-std::pow(2 * std::numbers::pi * 1e9 * filter.deviation, 2)) == doctest::Approx(0.5).epsilon(1e-12));
   // the integral of exp(-ln 2 f^2) from 0 to infinity is sqrt(pi / ln 2) / 2
-  CHECK(filter.noise_bandwidth() == doctest::Approx(0.5 * std::sqrt(std::numbers::pi / std::numbers::ln2) * 1e9).epsilon(1e-12));
+  CHECK(filter.noise_bandwidth() ==
+        doctest::Approx(0.5 * std::sqrt(std::numbers::pi / std::numbers::ln2) * 1e9).epsilon(1e-12));
 }
 
 TEST_CASE("noise behind a low-pass is normal with the autocorrelation of its filter") {
@@ -68,7 +69,8 @@ TEST_CASE("the deviation is the same at every time, also between impulses") {
   for (const double place : {0.0, 0.2, 0.5, 0.7}) {
     double squares = 0;
     constexpr std::size_t pulses = 40'000;
-    for (PulseIndex pulse = 0; pulse < pulses; ++pulse) squares += std::pow(noise_of(filter, pulse)(0.75e-9 * (1000 + place)), 2);
+    for (PulseIndex pulse = 0; pulse < pulses; ++pulse)
+      squares += std::pow(noise_of(filter, pulse)(0.75e-9 * (1000 + place)), 2);
     CAPTURE(place);
     CHECK(std::fabs(squares / pulses - 1) < 4 * std::sqrt(2.0 / pulses));
   }
@@ -90,7 +92,8 @@ TEST_CASE("noise rises through a level as often as Rice's formula says") {
         before = now;
       }
     }
-    const double rate = std::exp(-0.5 * level * level) / (2 * std::numbers::pi * std::numbers::sqrt2 * filter.deviation);
+    const double rate =
+        std::exp(-0.5 * level * level) / (2 * std::numbers::pi * std::numbers::sqrt2 * filter.deviation);
     const double expected = rate * duration * pulses;
     CAPTURE(level);
     CHECK(std::fabs(static_cast<double>(crossings) - expected) < 3.5 * std::sqrt(expected));

@@ -48,7 +48,8 @@ TEST_CASE("the first hit keeps the laws of a detector") {
   std::vector<std::vector<Reflection>> cases{{}};
   for (int k = 0; k < 200; ++k) {
     std::vector<Reflection> c(any.whole(20));
-    for (Reflection& r : c) r = {any.log_uniform(1, 1e4), any.log_uniform(1e-12, 1e-3), static_cast<ObjectId>(any.whole(5)), 0};
+    for (Reflection& r : c)
+      r = {any.log_uniform(1, 1e4), any.log_uniform(1e-12, 1e-3), static_cast<ObjectId>(any.whole(5)), 0};
     cases.push_back(c);
   }
   CHECK(support::detector_laws(FirstHit{.threshold = 1e-9}, Laser{}, cases) == "");

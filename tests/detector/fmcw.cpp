@@ -32,7 +32,8 @@ TEST_CASE("a surface has its range and radial velocity") {
   for (const double range : {0.0, 1.0, 37.123, 100.05, 250.4})
     for (const double velocity : {-30.0, -0.02, 0.0, 0.5, 12.3}) {
       INFO(range, " m, ", velocity, " m/s");
-      const std::vector<Echo> found = echoes(detector, {{.range = range, .power = 1e-6, .object = 5, .velocity = velocity}});
+      const std::vector<Echo> found =
+          echoes(detector, {{.range = range, .power = 1e-6, .object = 5, .velocity = velocity}});
       if (range == 0 && found.empty()) continue;  // beyond the start by rounding
       REQUIRE(found.size() == 1);
       CHECK(std::fabs(found[0].range - range) < 1e-4);
@@ -49,10 +50,12 @@ TEST_CASE("two plates merge at half of c / 2B, and part at twice") {
     for (int i = 0; i < 20; ++i) {
       const double near = 20 + 0.05 * i * unit;
       INFO(bandwidth, " Hz, at ", near);
-      const auto merged = echoes(detector, {{.range = near, .power = 1e-6}, {.range = near + 0.5 * unit, .power = 1e-6}});
+      const auto merged =
+          echoes(detector, {{.range = near, .power = 1e-6}, {.range = near + 0.5 * unit, .power = 1e-6}});
       REQUIRE(merged.size() == 1);
       CHECK(merged[0].range == doctest::Approx(near + 0.25 * unit));
-      const auto parted = echoes(detector, {{.range = near, .power = 1e-6}, {.range = near + 2 * unit, .power = 2e-6, .object = 1}});
+      const auto parted =
+          echoes(detector, {{.range = near, .power = 1e-6}, {.range = near + 2 * unit, .power = 2e-6, .object = 1}});
       REQUIRE(parted.size() == 2);
       CHECK(std::fabs(parted[0].range - near) < 0.05 * unit);
       CHECK(std::fabs(parted[1].range - near - 2 * unit) < 0.05 * unit);
@@ -74,7 +77,8 @@ TEST_CASE("a car before a wall is paired by its power, at any speed; where power
   const Fmcw detector;
   for (const double speed : {-30.0, -5.0, 0.0, 5.0, 14.0, 30.0}) {
     CAPTURE(speed);
-    const auto found = echoes(detector, {{.range = 50, .power = 2e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
+    const auto found =
+        echoes(detector, {{.range = 50, .power = 2e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
     REQUIRE(found.size() == 2);
     CHECK(std::fabs(found[0].range - 50) < 1e-3);
     CHECK(std::fabs(found[1].range - 53) < 1e-3);
@@ -82,7 +86,8 @@ TEST_CASE("a car before a wall is paired by its power, at any speed; where power
     CHECK(std::fabs(found[1].velocity) < 1e-3);
     CHECK_FALSE(found[0].ambiguous);
     CHECK_FALSE(found[1].ambiguous);
-    const auto equal = echoes(detector, {{.range = 50, .power = 1e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
+    const auto equal =
+        echoes(detector, {{.range = 50, .power = 1e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
     REQUIRE(equal.size() == 2);
     CHECK(equal[0].ambiguous);
     CHECK(equal[1].ambiguous);
@@ -92,8 +97,8 @@ TEST_CASE("a car before a wall is paired by its power, at any speed; where power
 TEST_CASE("two peaks that are one in the other sweep are flagged") {
   const FmcwSettings settings;
   const double speed = settings.velocity_resolution(laser.wavelength), metres = settings.resolution();
-  const auto found =
-      echoes(Fmcw{settings}, {{.range = 50, .power = 2e-6, .velocity = 20 * speed}, {.range = 50 + 20 * metres, .power = 1e-6}});
+  const auto found = echoes(Fmcw{settings}, {{.range = 50, .power = 2e-6, .velocity = 20 * speed},
+                                             {.range = 50 + 20 * metres, .power = 1e-6}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].ambiguous);
 }
@@ -102,15 +107,17 @@ TEST_CASE("surfaces of random speeds and powers: whatever is not flagged is righ
   constexpr std::uint64_t seed = 3;
   constexpr int pulses = 3000;
   support::Generator any(seed);
-  constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6, noise = photon / 10e-6;  // power of the noise in a period [W]
+  constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6,
+                   noise = photon / 10e-6;  // power of the noise in a period [W]
   for (const bool shot_noise : {false, true}) {
     const Fmcw detector({.threshold = 30 * noise, .shot_noise = shot_noise});
     int sure = 0, right = 0;
     for (int i = 0; i < pulses; ++i) {
       std::vector<Reflection> true_ones;
       for (int k = 0; k < 2; ++k)
-        true_ones.push_back(
-            {.range = any.uniform(20, 80), .power = any.log_uniform(300, 30'000) * noise, .velocity = any.uniform(-30, 30)});
+        true_ones.push_back({.range = any.uniform(20, 80),
+                             .power = any.log_uniform(300, 30'000) * noise,
+                             .velocity = any.uniform(-30, 30)});
       for (const Echo& echo : echoes(detector, true_ones, static_cast<std::uint64_t>(i))) {
         if (echo.ambiguous) continue;
         ++sure;
@@ -124,7 +131,8 @@ TEST_CASE("surfaces of random speeds and powers: whatever is not flagged is righ
   }
 }
 
-// The deviation of a peak's frequency: that of the maximum of a windowed transform in white noise, to first order. The window is 1 + cos.
+// The deviation of a peak's frequency: that of the maximum of a windowed transform in white noise, to first order. The
+// window is 1 + cos.
 TEST_CASE("shot noise of the reference beam: deviation of range and velocity") {
   constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6;
   const FmcwSettings settings{.quantum_efficiency = 0.5, .shot_noise = true};
@@ -145,10 +153,12 @@ TEST_CASE("shot noise of the reference beam: deviation of range and velocity") {
   }
   CHECK(std::fabs(mean) < 4 * std::sqrt(range / pulses));
   CHECK(std::sqrt(range) == doctest::Approx(of_beat / std::sqrt(2.0) * settings.resolution()).epsilon(0.06));
-  CHECK(std::sqrt(velocity) == doctest::Approx(of_beat / std::sqrt(2.0) * settings.velocity_resolution(1.55e-6)).epsilon(0.06));
+  CHECK(std::sqrt(velocity) ==
+        doctest::Approx(of_beat / std::sqrt(2.0) * settings.velocity_resolution(1.55e-6)).epsilon(0.06));
 }
 
-// Many fields of random phases: an exponential distribution of power, about the sum of the powers. Source: Goodman 1975.
+// Many fields of random phases: an exponential distribution of power, about the sum of the powers. Source: Goodman
+// 1975.
 TEST_CASE("speckle: the power of a rough surface has the mean of its parts, and as great a deviation") {
   const Fmcw detector({.threshold = 1e-15, .speckle = true});
   double mean = 0, square = 0;
@@ -168,7 +178,8 @@ TEST_CASE("light below the threshold, and none, is no echo; the strongest are ke
   const Fmcw detector({.threshold = 1e-9, .returns_max = 2});
   CHECK(echoes(detector, {}).empty());
   CHECK(echoes(detector, {{.range = 10, .power = 0.9e-9}}).empty());
-  const auto found = echoes(detector, {{.range = 10, .power = 3e-9}, {.range = 20, .power = 2e-9}, {.range = 30, .power = 4e-9}});
+  const auto found =
+      echoes(detector, {{.range = 10, .power = 3e-9}, {.range = 20, .power = 2e-9}, {.range = 30, .power = 4e-9}});
   REQUIRE(found.size() == 2);
   CHECK(found[0].range == doctest::Approx(10));
   CHECK(found[1].range == doctest::Approx(30));

@@ -25,7 +25,8 @@ namespace {
 const Laser laser{.pulse_length = 4e-9};
 
 template <class Width>
-std::vector<Echo> echoes_of(const FullWaveform<Width>& detector, std::vector<Reflection> reflections, const Laser& l = laser) {
+std::vector<Echo> echoes_of(const FullWaveform<Width>& detector, std::vector<Reflection> reflections,
+                            const Laser& l = laser) {
   auto workspace = detector.workspace(reflections.size());
   const Detection d = support::detect(detector, l, reflections, workspace);
   return {d.echoes.begin(), d.echoes.end()};
@@ -43,7 +44,8 @@ struct Peak {
   double range, height;
 };
 
-/// The peaks of the sum, found on a grid 50 times finer than the digitiser's; empty if any of them is too flat to be sure of.
+/// The peaks of the sum, found on a grid 50 times finer than the digitiser's; empty if any of them is too flat to be
+/// sure of.
 std::vector<Peak> distinct_peaks(const std::vector<Reflection>& reflections) {
   const double step = 0.005e-9;
   double first = std::numeric_limits<double>::infinity(), last = 0;
@@ -103,7 +105,8 @@ TEST_CASE("a coarser digitiser errs more, by what a quartic through five of its 
   struct Limits {
     double interval, range, amplitude;
   };
-  for (const Limits& limit : {Limits{0.25e-9, 0.05e-3, 1e-5}, Limits{0.5e-9, 0.5e-3, 5e-4}, Limits{1e-9, 10e-3, 0.02}}) {
+  for (const Limits& limit :
+       {Limits{0.25e-9, 0.05e-3, 1e-5}, Limits{0.5e-9, 0.5e-3, 5e-4}, Limits{1e-9, 10e-3, 0.02}}) {
     CAPTURE(limit.interval);
     const FullWaveform detector(WaveformSettings{.sample_interval = limit.interval, .timing = EchoTiming::peak});
     double range_error = 0, amplitude_error = 0;
@@ -128,7 +131,8 @@ TEST_CASE("two equal hits far apart are two echoes of full strength, and two clo
     CHECK(std::fabs(echoes[0].range - 50) < 1e-4);
     CHECK(echoes[0].object == 1);
     CHECK(echoes[0].number == 1);
-    CHECK(std::fabs(echoes[1].range - (50 + apart)) < (apart < 5 ? 2e-3 : 1e-4));  // the first one's tail still reaches there
+    CHECK(std::fabs(echoes[1].range - (50 + apart)) <
+          (apart < 5 ? 2e-3 : 1e-4));  // the first one's tail still reaches there
     CHECK(echoes[1].object == 2);
     CHECK(echoes[1].number == 2);
   }
@@ -143,7 +147,8 @@ TEST_CASE("two equal hits far apart are two echoes of full strength, and two clo
 }
 
 TEST_CASE("echoes are the peaks of the sum of all pulses, as found on a finer grid") {
-  const FullWaveform detector(WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak});
+  const FullWaveform detector(
+      WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak});
   int compared = 0, several = 0, peaks_compared = 0, off_by_a_millimetre = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
@@ -176,7 +181,8 @@ TEST_CASE("reflections close to one another, of which the echo is found directly
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<Reflection> reflections(1 + any.whole(30));
-    const double start = any.log_uniform(1, 3000), spread = any.log_uniform(1e-6, 3) * 0.5 * speed_of_light * laser.pulse_length / 3.5;
+    const double start = any.log_uniform(1, 3000),
+                 spread = any.log_uniform(1e-6, 3) * 0.5 * speed_of_light * laser.pulse_length / 3.5;
     for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-8)};
     for (std::size_t k = 0; k < reflections.size(); ++k) {
       reflections[k].object = static_cast<ObjectId>(k);
@@ -264,7 +270,8 @@ TEST_CASE("no more returns than allowed are reported, the nearest ones") {
     CAPTURE(most);
     const auto echoes = echoes_of(FullWaveform(WaveformSettings{.returns_max = most}), reflections);
     REQUIRE(echoes.size() == std::min<std::size_t>(most, 20));
-    for (std::size_t k = 0; k < echoes.size(); ++k) CHECK(echoes[k].range == support::relative(105 + 5 * static_cast<double>(k), 1e-5));
+    for (std::size_t k = 0; k < echoes.size(); ++k)
+      CHECK(echoes[k].range == support::relative(105 + 5 * static_cast<double>(k), 1e-5));
   }
 }
 
@@ -305,7 +312,8 @@ TEST_CASE("a kept waveform leaves out nothing between hits that are far apart") 
   CHECK(d.echoes.size() == 3);  // beyond the record, echoes are found as well
 }
 
-TEST_CASE("a hit so far away that samples could not be counted is no echo, and does not keep the others from being found") {
+TEST_CASE(
+    "a hit so far away that samples could not be counted is no echo, and does not keep the others from being found") {
   for (const double far_away : {1e15, 1e18, 1e300}) {
     CAPTURE(far_away);
     CHECK(echoes_of(FullWaveform{}, {{far_away, 1e-8}}).empty());
@@ -333,12 +341,15 @@ TEST_CASE("full waveforms keep the laws of a detector") {
     support::Generator any(seed);
     std::vector<Reflection> c(any.whole(60));
     const double start = any.log_uniform(1, 3000), spread = any.log_uniform(0.01, 300);
-    for (Reflection& r : c) r = {start + any.uniform(0, spread), any.log_uniform(1e-12, 1e-6), static_cast<ObjectId>(any.whole(5)), 0};
+    for (Reflection& r : c)
+      r = {start + any.uniform(0, spread), any.log_uniform(1e-12, 1e-6), static_cast<ObjectId>(any.whole(5)), 0};
     cases.push_back(c);
   }
   CHECK(support::detector_laws(FullWaveform(), laser, cases) == "");
-  CHECK(support::detector_laws(FullWaveform<MomentWidth>(WaveformSettings{.record_length = 100e-9}), laser, cases) == "");
-  CHECK(support::detector_laws(FullWaveform(WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255}), laser, cases) == "");
+  CHECK(support::detector_laws(FullWaveform<MomentWidth>(WaveformSettings{.record_length = 100e-9}), laser, cases) ==
+        "");
+  CHECK(support::detector_laws(FullWaveform(WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255}), laser,
+                               cases) == "");
 }
 
 TEST_CASE("a waveform detector refuses settings that cannot be") {
@@ -358,8 +369,8 @@ TEST_CASE("an echo is timed by the energy of its reflections, or by its peak, wh
 
 TEST_CASE("peaks closer than the separation are one echo, and an echo makes the receiver blind for its dead time") {
   const std::vector<Reflection> reflections{{50, 1e-8}, {51, 3e-8}, {60, 1e-8}};
-  const auto two =
-      echoes_of(FullWaveform<MomentWidth>(WaveformSettings{.separation = 10e-9, .timing = EchoTiming::true_range}), reflections);
+  const auto two = echoes_of(
+      FullWaveform<MomentWidth>(WaveformSettings{.separation = 10e-9, .timing = EchoTiming::true_range}), reflections);
   REQUIRE(two.size() == 2);
   CHECK(two[0].range == support::relative(50.75, 1e-9));
   // Source: variances add up; two spikes of shares p and 1 - p a distance apart have p (1 - p) of its square
@@ -398,7 +409,8 @@ TEST_CASE("samples of noise have the deviation and the mean asked for, as long a
   CHECK(a.waveform_start == b.waveform_start);
   double sum = 0, square = 0;
   for (std::size_t i = 0; i < a.waveform.size(); ++i) {
-    const double error = static_cast<double>(a.waveform[i]) - (i < b.waveform.size() ? static_cast<double>(b.waveform[i]) : 0);
+    const double error =
+        static_cast<double>(a.waveform[i]) - (i < b.waveform.size() ? static_cast<double>(b.waveform[i]) : 0);
     sum += error;
     square += error * error;
   }
@@ -408,12 +420,13 @@ TEST_CASE("samples of noise have the deviation and the mean asked for, as long a
 }
 
 TEST_CASE("false echoes come at the rate that the normal distribution predicts") {
-  // A sample is a peak of the noise above T if it is above T and its two neighbours are below it. For independent samples that is
-  // the integral of f F^2 from T on, with f the density and F the distribution: (1 - F(T)^3) / 3.
+  // A sample is a peak of the noise above T if it is above T and its two neighbours are below it. For independent
+  // samples that is the integral of f F^2 from T on, with f the density and F the distribution: (1 - F(T)^3) / 3.
   constexpr std::size_t samples = 100'000;
   for (const double threshold : {0.0, 1.0, 2.0, 3.0}) {
     CAPTURE(threshold);
-    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000 * 0.25e-9};
+    const WaveformSettings settings{
+        .threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000 * 0.25e-9};
     const FullWaveform detector(settings, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
     auto workspace = detector.workspace(1);
     std::size_t found = 0, looked_at = 0;
@@ -422,8 +435,9 @@ TEST_CASE("false echoes come at the rate that the normal distribution predicts")
       const Detection d = support::detect(detector, laser, faint, workspace, {.seed = 11, .pulse = pulse});
       REQUIRE(d.waveform.size() >= 1000);
       // where the number of returns ends the search, it was over there
-      const double end = d.echoes.size() < 255 ? static_cast<double>(d.waveform.size())
-                                               : std::round((2 * d.echoes[254].range / speed_of_light - d.waveform_start) / 0.25e-9);
+      const double end = d.echoes.size() < 255
+                             ? static_cast<double>(d.waveform.size())
+                             : std::round((2 * d.echoes[254].range / speed_of_light - d.waveform_start) / 0.25e-9);
       found += d.echoes.size();
       looked_at += static_cast<std::size_t>(end);
       for (const Echo& e : d.echoes) CHECK(e.amplitude >= threshold * 1e-9);
@@ -445,6 +459,8 @@ TEST_CASE("noise does not break the laws of a detector, nor grow beyond the work
     cases.push_back(c);
   }
   const WaveformSettings settings{.threshold = 0, .window = 0, .returns_max = 255, .record_length = 10000e-9};
-  CHECK(support::detector_laws(FullWaveform(settings, MomentWidth{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
-  CHECK(support::detector_laws(FullWaveform(settings, GaussianFit{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
+  CHECK(support::detector_laws(FullWaveform(settings, MomentWidth{}, ReceiverNoise{.deviation = 1e-11}), laser,
+                               cases) == "");
+  CHECK(support::detector_laws(FullWaveform(settings, GaussianFit{}, ReceiverNoise{.deviation = 1e-11}), laser,
+                               cases) == "");
 }

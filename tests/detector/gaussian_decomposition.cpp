@@ -26,7 +26,8 @@ const Emitter emitter{.laser = laser};
 const double of_pulse = laser.pulse_length / std::sqrt(8 * std::numbers::ln2);  // deviation [s]
 
 auto detector(const ReceiverChain& chain = {}) {
-  const WaveformSettings settings{.threshold = 0.05 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 300e-9};
+  const WaveformSettings settings{
+      .threshold = 0.05 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 300e-9};
   GaussianDecomposition made{FullWaveform{settings, NoWidth{}, BandLimitedReceiver{chain, GaussianPulse{}}}};
   made.prepare(laser);
   return made;
@@ -66,9 +67,12 @@ TEST_CASE("overlapping echoes have the ranges, amplitudes and widths that they h
   CHECK(of_peaks[0].range > 100.11);
 }
 
-TEST_CASE("plates that overlap, in the default pulse: each is in its place, of its power and object, also without a peak of its own") {
+TEST_CASE(
+    "plates that overlap, in the default pulse: each is in its place, of its power and object, also without a peak of "
+    "its own") {
   const double length = 0.5 * speed_of_light * laser.pulse_length;
-  const WaveformSettings settings{.threshold = 0.02 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 300e-9};
+  const WaveformSettings settings{
+      .threshold = 0.02 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 300e-9};
   const auto check = [&](const auto& inside, double error) {
     GaussianDecomposition d{inside};
     d.prepare(laser);
@@ -77,8 +81,8 @@ TEST_CASE("plates that overlap, in the default pulse: each is in its place, of i
         const double first = shares.first, second = shares.second;
         INFO(apart, " pulse lengths apart, ", first, " to ", second);
         const double ranges[]{100.1, 100.1 + apart * length}, powers[]{first * power, second * power};
-        const auto found =
-            echoes(d, {{.range = ranges[0], .power = powers[0], .object = 1}, {.range = ranges[1], .power = powers[1], .object = 2}});
+        const auto found = echoes(d, {{.range = ranges[0], .power = powers[0], .object = 1},
+                                      {.range = ranges[1], .power = powers[1], .object = 2}});
         REQUIRE(found.size() == 2);
         for (std::size_t k = 0; k < 2; ++k) {
           CHECK(std::fabs(found[k].range - ranges[k]) < error);
@@ -94,14 +98,15 @@ TEST_CASE("plates that overlap, in the default pulse: each is in its place, of i
 }
 
 TEST_CASE("a slope of one plane is one echo, of its middle and spread, whatever its length") {
-  GaussianDecomposition d{
-      FullWaveform{WaveformSettings{.threshold = 0.02 * power, .record_length = 300e-9}, NoWidth{}, BandLimitedReceiver{}}};
+  GaussianDecomposition d{FullWaveform{WaveformSettings{.threshold = 0.02 * power, .record_length = 300e-9}, NoWidth{},
+                                       BandLimitedReceiver{}}};
   d.prepare(laser);
   for (const double lengths : {0.05, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0}) {
     CAPTURE(lengths);
     const double spread = lengths * 0.5 * speed_of_light * laser.pulse_length;
     std::vector<Reflection> slope;
-    for (int k = 0; k < 500; ++k) slope.push_back({.range = 110 + spread * ((k + 0.5) / 500 - 0.5), .power = power / 500});
+    for (int k = 0; k < 500; ++k)
+      slope.push_back({.range = 110 + spread * ((k + 0.5) / 500 - 0.5), .power = power / 500});
     const auto found = echoes(d, slope);
     REQUIRE(found.size() == 1);
     CHECK(std::fabs(found[0].range - 110) < 1e-3);
@@ -113,8 +118,9 @@ TEST_CASE("ranges do not depend on the length of the record, as long as it holds
     for (const double length : {290e-9, 300e-9, 390e-9, 420e-9, 2e-6}) {
       CAPTURE(noise);
       CAPTURE(length);
-      GaussianDecomposition d{FullWaveform{WaveformSettings{.threshold = 0.1 * power, .record_length = length}, NoWidth{},
-                                           BandLimitedReceiver{ReceiverChain{.noise_power = noise * power / std::sqrt(2e9)}}}};
+      GaussianDecomposition d{
+          FullWaveform{WaveformSettings{.threshold = 0.1 * power, .record_length = length}, NoWidth{},
+                       BandLimitedReceiver{ReceiverChain{.noise_power = noise * power / std::sqrt(2e9)}}}};
       d.prepare(laser);
       auto w = d.workspace(1);
       std::vector<Reflection> wall{{.range = 500, .power = power}};  // 267 ns after the start of the gate
@@ -125,14 +131,15 @@ TEST_CASE("ranges do not depend on the length of the record, as long as it holds
     }
 }
 
-TEST_CASE("in noise, overlapping plates are unbiased; those a pulse length apart are two echoes for most pulses, else one") {
+TEST_CASE(
+    "in noise, overlapping plates are unbiased; those a pulse length apart are two echoes for most pulses, else one") {
   // samples whose noise is a hundredth of the greater echo
   const LowPass filter = ReceiverChain{}.filter(laser.pulse_length);
   const double gain = ReceivedPulse(GammaPulse{}, laser.pulse_length, filter, 0.25e-9).gain();
   const double noise = 0.01 * power * gain / std::sqrt(filter.noise_bandwidth());
-  GaussianDecomposition d{
-      FullWaveform{WaveformSettings{.threshold = 0.06 * power, .prominence = 0.06 * power, .window = 0, .record_length = 200e-9}, NoWidth{},
-                   BandLimitedReceiver{ReceiverChain{.noise_power = noise}}}};
+  GaussianDecomposition d{FullWaveform{
+      WaveformSettings{.threshold = 0.06 * power, .prominence = 0.06 * power, .window = 0, .record_length = 200e-9},
+      NoWidth{}, BandLimitedReceiver{ReceiverChain{.noise_power = noise}}}};
   d.prepare(laser);
   const double length = 0.5 * speed_of_light * laser.pulse_length;
   constexpr int pulses = 200;
@@ -143,7 +150,8 @@ TEST_CASE("in noise, overlapping plates are unbiased; those a pulse length apart
       for (int k = 0; k < pulses; ++k) {
         const double ranges[]{100 + 0.0375 * k / pulses, 100 + 0.0375 * k / pulses + apart * length};
         const auto found =
-            echoes(d, {{.range = ranges[0], .power = power}, {.range = ranges[1], .power = second * power}}, static_cast<std::uint64_t>(k));
+            echoes(d, {{.range = ranges[0], .power = power}, {.range = ranges[1], .power = second * power}},
+                   static_cast<std::uint64_t>(k));
         if (found.size() != 2) {
           CHECK(found.size() == 1);
           continue;
@@ -175,7 +183,8 @@ TEST_CASE("the width of a slope grows by the spread of its ranges") {
   REQUIRE(found.size() == 1);
   CHECK(std::fabs(found[0].range - 110) < 1e-4);
   CHECK(found[0].width ==
-        doctest::Approx(std::sqrt(2 * of_pulse * of_pulse + squares * 4 / (speed_of_light * speed_of_light))).epsilon(3e-3));
+        doctest::Approx(std::sqrt(2 * of_pulse * of_pulse + squares * 4 / (speed_of_light * speed_of_light)))
+            .epsilon(3e-3));
 }
 
 TEST_CASE("in noise, echoes are as near as the Cramer-Rao bound lets them, or fewer") {

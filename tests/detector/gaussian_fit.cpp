@@ -23,13 +23,15 @@ namespace {
 
 std::vector<double> planted(const Gaussian& g, std::size_t n) {
   std::vector<double> y(n);
-  for (std::size_t i = 0; i < n; ++i) y[i] = g.amplitude * std::exp(-0.5 * std::pow((static_cast<double>(i) - g.position) / g.width, 2));
+  for (std::size_t i = 0; i < n; ++i)
+    y[i] = g.amplitude * std::exp(-0.5 * std::pow((static_cast<double>(i) - g.position) / g.width, 2));
   return y;
 }
 
 }  // namespace
 
-TEST_CASE("a Gaussian without noise is found as it was planted, of any size and width, also where its top is just inside") {
+TEST_CASE(
+    "a Gaussian without noise is found as it was planted, of any size and width, also where its top is just inside") {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
@@ -137,7 +139,8 @@ TEST_CASE("each echo has a fitted width of its own") {
   CHECK(d.echoes[0].width == support::relative(detector.pulse_width(laser), 0.006));
   // Source: variances of a convolution add up; a box of two-way length T has T^2 / 12
   const double box = 2 / speed_of_light;
-  CHECK(d.echoes[1].width == support::relative(std::sqrt(std::pow(detector.pulse_width(laser), 2) + box * box / 12), 0.1));
+  CHECK(d.echoes[1].width ==
+        support::relative(std::sqrt(std::pow(detector.pulse_width(laser), 2) + box * box / 12), 0.1));
 }
 
 TEST_CASE("a fit refuses settings that cannot be") {

@@ -31,7 +31,8 @@ Sections all(IdealSamples samples) {
 
 TEST_CASE("samples are the sum of the pulse shapes, in sections about the echoes") {
   const WaveformSettings settings;
-  std::vector<Reflection> reflections{{.range = 100, .power = 3}, {.range = 100.4, .power = 2}, {.range = 300, .power = 1}};
+  std::vector<Reflection> reflections{
+      {.range = 100, .power = 3}, {.range = 100.4, .power = 2}, {.range = 300, .power = 1}};
   const Heard heard{emitter, {}, reflections};
   const IdealSamples samples(0, 0, settings, heard, reflections, 20);
   CHECK(!samples.independent_noise());
@@ -42,7 +43,8 @@ TEST_CASE("samples are the sum of the pulse shapes, in sections about the echoes
   const PulseShape shape(4e-9, settings.shape_divisor);
   for (std::size_t i = 0; i < s.numbers.size(); ++i) {
     double sum = 0;
-    for (const Reflection& r : reflections) sum += r.power * shape(s.numbers[i] * settings.sample_interval - arrival(r));
+    for (const Reflection& r : reflections)
+      sum += r.power * shape(s.numbers[i] * settings.sample_interval - arrival(r));
     REQUIRE(std::fabs(s.powers[i] - sum) < 1e-6);
   }
 }

@@ -17,7 +17,8 @@ namespace {
 std::vector<Peak> kept(const WaveformSettings& s, const std::vector<Peak>& all) {
   std::vector<Peak> peaks;
   peaks.reserve(all.size());
-  for (const Peak& p : all) merge_or_append({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, s.prominence, peaks);
+  for (const Peak& p : all)
+    merge_or_append({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, s.prominence, peaks);
   keep_echoes(s, peaks);
   return peaks;
 }
@@ -51,7 +52,8 @@ TEST_CASE("within the window, only the highest is kept, and the first of equal o
 }
 
 TEST_CASE("after an echo, the receiver is blind for its dead time, whatever comes") {
-  CHECK(times(kept({.window = 0, .dead_time = 3}, {{10, 1}, {12, 5}, {13, 1}, {15.9, 1}, {16, 1}})) == Times{10, 13, 16});
+  CHECK(times(kept({.window = 0, .dead_time = 3}, {{10, 1}, {12, 5}, {13, 1}, {15.9, 1}, {16, 1}})) ==
+        Times{10, 13, 16});
   // what the window has dropped blinds nobody
   CHECK(times(kept({.window = 1, .dead_time = 3}, {{10, 1}, {11, 2}, {13.5, 1}, {15, 1}})) == Times{11, 15});
 }
@@ -65,7 +67,8 @@ TEST_CASE("of too many echoes, the first are kept, and those of the air only whe
     return ranges;
   };
   const auto air = ReflectionKind::air;
-  const std::vector<Echo> solid{{.range = 10, .amplitude = 1}, {.range = 20, .amplitude = 5}, {.range = 30, .amplitude = 9}};
+  const std::vector<Echo> solid{
+      {.range = 10, .amplitude = 1}, {.range = 20, .amplitude = 5}, {.range = 30, .amplitude = 9}};
   CHECK(kept_of(KeptReturns::first, 2, solid) == Times{10, 20});
   CHECK(kept_of(KeptReturns::strongest, 2, solid) == Times{20, 30});
   const std::vector<Echo> rainy{{.range = 1, .amplitude = 9, .kind = air},
@@ -84,7 +87,8 @@ TEST_CASE("peaks for which there is no room are lost") {
   std::vector<Peak> peaks;
   peaks.reserve(2);
   const std::size_t room = peaks.capacity();
-  for (std::size_t k = 0; k < room + 3; ++k) CHECK_FALSE(merge_or_append({.time = static_cast<double>(k), .height = 1}, 0, 0, peaks));
+  for (std::size_t k = 0; k < room + 3; ++k)
+    CHECK_FALSE(merge_or_append({.time = static_cast<double>(k), .height = 1}, 0, 0, peaks));
   CHECK(peaks.size() == room);
   CHECK(peaks.capacity() == room);
 }
@@ -96,7 +100,8 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
     std::vector<Peak> all(any.whole(100));
     double t = 0;
     for (Peak& p : all) p = {t += any.uniform(), any.uniform()};
-    const WaveformSettings s{.separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3)};
+    const WaveformSettings s{
+        .separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3)};
     const auto stay = kept(s, all);
     for (std::size_t i = 1; i < stay.size(); ++i) {
       CHECK(stay[i].time - stay[i - 1].time >= s.dead_time);
@@ -109,9 +114,12 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
 TEST_CASE("the higher of two peaks stays, with its mark, if the lower rises too little above the valley") {
   std::vector<Peak> peaks;
   peaks.reserve(4);
-  CHECK(!merge_or_append({.time = 1, .height = 5, .begin = 0, .end = 2, .before = 0, .after = 4, .mark = 0.9}, 0, 2, peaks));
-  CHECK(merge_or_append({.time = 3, .height = 7, .begin = 2, .end = 4, .before = 4, .after = 1, .mark = 2.9}, 0, 2, peaks));
-  CHECK(!merge_or_append({.time = 6, .height = 4, .begin = 4, .end = 8, .before = 1, .after = 0, .mark = 5.9}, 0, 2, peaks));
+  CHECK(!merge_or_append({.time = 1, .height = 5, .begin = 0, .end = 2, .before = 0, .after = 4, .mark = 0.9}, 0, 2,
+                         peaks));
+  CHECK(merge_or_append({.time = 3, .height = 7, .begin = 2, .end = 4, .before = 4, .after = 1, .mark = 2.9}, 0, 2,
+                        peaks));
+  CHECK(!merge_or_append({.time = 6, .height = 4, .begin = 4, .end = 8, .before = 1, .after = 0, .mark = 5.9}, 0, 2,
+                         peaks));
   REQUIRE(peaks.size() == 2);
   CHECK(peaks[0].mark == 2.9);
   CHECK(peaks[0].begin == 0);
@@ -125,7 +133,12 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
   const double metre = 2 / speed_of_light;
   const std::vector<Reflection> reflections{
       {10, 9, 1, 1, {}, 0.1}, {20, 1, 2, 2, {}, 0.2}, {20.1, 3, 3, 3, {}, 0.3}, {21, 2, 4, 4, {}, 0.4}};
-  const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .mark = 20.15 * metre, .width = 7};
+  const Peak peak{.time = 20.15 * metre,
+                  .height = 3.5,
+                  .begin = 19 * metre,
+                  .end = 20.9 * metre,
+                  .mark = 20.15 * metre,
+                  .width = 7};
   const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range);
   CHECK(e.range == support::relative(20.075, 1e-12));
   CHECK(e.amplitude == 3.5);

@@ -29,8 +29,8 @@ std::optional<Echo> echo(const PhaseShift& detector, std::vector<Reflection> ref
 /// Range by the argument of the power-weighted sum of phasors, nearest to a range [m].
 double by_phasors(const std::vector<Reflection>& reflections, double frequency, double near) {
   using Complex = std::complex<long double>;
-  const long double wave =
-      2 * std::numbers::pi_v<long double> * static_cast<long double>(frequency) * 2 / static_cast<long double>(speed_of_light);
+  const long double wave = 2 * std::numbers::pi_v<long double> * static_cast<long double>(frequency) * 2 /
+                           static_cast<long double>(speed_of_light);
   Complex sum = 0;
   for (const Reflection& r : reflections)
     sum += static_cast<long double>(r.power) * std::polar(1.0L, wave * static_cast<long double>(r.range));
@@ -50,7 +50,8 @@ TEST_CASE("a wall is in its place, up to the ambiguity, and folded beyond") {
     CHECK(std::fabs(echo(detector, {{.range = range + ambiguity, .power = 1e-6}})->range - range) < 1e-6);
   }
   CHECK(echo(detector, {{.range = 20, .power = 3e-6}})->amplitude == doctest::Approx(3e-6).epsilon(1e-12));
-  CHECK(echo(PhaseShift{{.contrast = 0.5}}, {{.range = 20, .power = 3e-6}})->amplitude == doctest::Approx(1.5e-6).epsilon(1e-12));
+  CHECK(echo(PhaseShift{{.contrast = 0.5}}, {{.range = 20, .power = 3e-6}})->amplitude ==
+        doctest::Approx(1.5e-6).epsilon(1e-12));
 }
 
 TEST_CASE("at an edge, the range is the argument of the sum of phasors") {
@@ -58,7 +59,8 @@ TEST_CASE("at an edge, the range is the argument of the sum of phasors") {
   support::Generator any(3);
   for (int k = 0; k < 500; ++k) {
     const double near = any.uniform(5, 50), apart = any.uniform(0, 0.3), share = any.uniform(0.05, 0.95);
-    const std::vector<Reflection> edge{{.range = near, .power = share * 1e-6}, {.range = near + apart, .power = (1 - share) * 1e-6}};
+    const std::vector<Reflection> edge{{.range = near, .power = share * 1e-6},
+                                       {.range = near + apart, .power = (1 - share) * 1e-6}};
     const auto found = echo(detector, edge);
     REQUIRE(found);
     CAPTURE(k);
@@ -76,7 +78,8 @@ TEST_CASE("noise moves the phase by its deviation over the amplitude") {
   const PhaseShift detector{{.deviation = deviation}};
   double squares = 0;
   constexpr int pulses = 4000;
-  for (std::uint64_t k = 0; k < pulses; ++k) squares += std::pow(echo(detector, {{.range = 42, .power = power}}, k)->range - 42, 2);
+  for (std::uint64_t k = 0; k < pulses; ++k)
+    squares += std::pow(echo(detector, {{.range = 42, .power = power}}, k)->range - 42, 2);
   const double expected = 0.5 * speed_of_light / 120e6 / (2 * std::numbers::pi) * deviation / power;
   CHECK(std::sqrt(squares / pulses) == doctest::Approx(expected).epsilon(3 / std::sqrt(2.0 * pulses)));
 }
@@ -90,7 +93,8 @@ TEST_CASE("an echo has the labels of the strongest, and nothing heard gives none
   CHECK(found->cos_incidence == 0.7);
   CHECK(!echo(detector, {}));
   CHECK(!echo(PhaseShift{{.threshold = 1e-3}}, {{.range = 10, .power = 1e-6}}));
-  const std::vector<std::vector<Reflection>> cases{{{.range = 100, .power = 1}}, {}, {{.range = 3, .power = 1}, {.range = 5, .power = 2}}};
+  const std::vector<std::vector<Reflection>> cases{
+      {{.range = 100, .power = 1}}, {}, {{.range = 3, .power = 1}, {.range = 5, .power = 2}}};
   CHECK(support::detector_laws(detector, Laser{}, cases) == "");
 }
 

@@ -68,7 +68,8 @@ TEST_CASE("a measured pulse is its table, about its peak and relative to it") {
 TEST_CASE("a measured pulse refuses a table that is none") {
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   using Table = std::vector<PulseSample>;
-  for (const Table& table : {Table{}, Table{{0, 1}}, Table{{0, 0}, {1e-9, 0}}, Table{{0, 1}, {0, 2}}, Table{{1e-9, 1}, {0, 1}},
-                             Table{{0, 1}, {1e-9, -1}}, Table{{0, 1}, {1e-9, not_a_number}}, Table{{0, 1}, {not_a_number, 1}}})
+  for (const Table& table :
+       {Table{}, Table{{0, 1}}, Table{{0, 0}, {1e-9, 0}}, Table{{0, 1}, {0, 2}}, Table{{1e-9, 1}, {0, 1}},
+        Table{{0, 1}, {1e-9, -1}}, Table{{0, 1}, {1e-9, not_a_number}}, Table{{0, 1}, {not_a_number, 1}}})
     CHECK_THROWS_AS(MeasuredPulse{table}, SettingError);
 }

@@ -65,12 +65,14 @@ TEST_CASE("a pulse's deviation is that of its shape") {
     second += t * t * shape(t);
   }
   const double mean = first / sum;
-  CHECK(mean == support::relative(shape.tau, 1e-6));  // the mean of a gamma distribution of order 3 is one tau after its peak
+  CHECK(mean ==
+        support::relative(shape.tau, 1e-6));  // the mean of a gamma distribution of order 3 is one tau after its peak
   CHECK(std::sqrt(second / sum - mean * mean) == support::relative(shape.deviation(), 1e-6));
 }
 
 TEST_CASE("a pulse has fallen to a share by when it says, and stays below") {
   const PulseShape shape(4e-9);
   for (double share = 1; share > 1e-12; share *= 0.7)
-    for (double later = 0; later < 20; later += 0.5) CHECK(shape((PulseShape::fallen_to(share) + later) * shape.tau) <= share);
+    for (double later = 0; later < 20; later += 0.5)
+      CHECK(shape((PulseShape::fallen_to(share) + later) * shape.tau) <= share);
 }

@@ -38,7 +38,8 @@ TEST_CASE("sums of pulses, sample by sample, are those of their definition, wher
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<Reflection> reflections(1 + any.whole(20));
-    const double start = any.log_uniform(1, 1000), spread = any.log_uniform(0.01, 30), interval = any.log_uniform(0.01e-9, 2e-9);
+    const double start = any.log_uniform(1, 1000), spread = any.log_uniform(0.01, 30),
+                 interval = any.log_uniform(0.01e-9, 2e-9);
     for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(0.1, 10)};
     REQUIRE(in_order_of_range(reflections, interval).size() == reflections.size());
     double first = SampledSum::first_sample(reflections.front(), shape, interval);

@@ -41,7 +41,8 @@ TEST_CASE("received power is that of the laser radar equation, by hand") {
 
 TEST_CASE("received power falls with the square of the range, and with what the air takes both ways") {
   const Receiver narrow{.diameter = 1e-4, .visibility = infinity};  // far from its aperture at all of these ranges
-  CHECK(LinkBudget(narrow, Laser{}).power(1, 1, 10) / LinkBudget(narrow, Laser{}).power(1, 1, 30) == support::relative(9, 1e-10));
+  CHECK(LinkBudget(narrow, Laser{}).power(1, 1, 10) / LinkBudget(narrow, Laser{}).power(1, 1, 30) ==
+        support::relative(9, 1e-10));
   const LinkBudget vacuum(Receiver{.visibility = infinity}, Laser{}), air(Receiver{.visibility = 5e3}, Laser{});
   for (const double range : {1.0, 10.0, 1000.0}) {
     CHECK(air.power(1, 1, range) / vacuum.power(1, 1, range) ==
@@ -74,7 +75,8 @@ TEST_CASE("several subrays at once bring back what each brings back alone") {
   }
 }
 
-TEST_CASE("near by, an aperture holds sin^2 of half the angle that it subtends, of what a Lambertian surface scatters") {
+TEST_CASE(
+    "near by, an aperture holds sin^2 of half the angle that it subtends, of what a Lambertian surface scatters") {
   const Receiver receiver{.diameter = 0.2, .efficiency = 1, .visibility = infinity};
   const LinkBudget budget(receiver, Laser{.peak_power = 4});
   for (const double range : {0.0, 1e-9, 0.01, 0.1, 0.2, 3.0, 1e4})
@@ -99,7 +101,8 @@ TEST_CASE("a receiver refuses what cannot be") {
     CHECK_THROWS_AS(Receiver{.diameter = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 1.1, nan_value}) CHECK_THROWS_AS(Receiver{.efficiency = bad}.validate(), SettingError);
   for (const double bad : {0.0, -1.0, nan_value}) CHECK_THROWS_AS(Receiver{.visibility = bad}.validate(), SettingError);
-  for (const double bad : {-0.1, nan_value, infinity}) CHECK_THROWS_AS(Receiver{.range_min = bad}.validate(), SettingError);
+  for (const double bad : {-0.1, nan_value, infinity})
+    CHECK_THROWS_AS(Receiver{.range_min = bad}.validate(), SettingError);
   CHECK_THROWS_AS((Receiver{.range_min = 5, .range_max = 4}.validate()), SettingError);
   CHECK_THROWS_AS(Receiver{.range_max = nan_value}.validate(), SettingError);
 }
@@ -107,12 +110,14 @@ TEST_CASE("a receiver refuses what cannot be") {
 TEST_CASE("a range error is its bias, and a deviation that grows with range and incidence") {
   CHECK(RangeErrors{}.none());
   CHECK(RangeErrors{.bias = 0.01}.at(Echo{.range = 100, .cos_incidence = 1}, 2) == 0.01);
-  CHECK(RangeErrors{.deviation = 0.005}.at(Echo{.range = 100, .cos_incidence = 0.5}, 2) == support::relative(0.01, 1e-15));
-  CHECK(RangeErrors{.deviation = 0.005, .deviation_per_metre = 1e-5}.at(Echo{.range = 1000, .cos_incidence = 0.5}, -1) ==
-        support::relative(-0.015, 1e-14));
+  CHECK(RangeErrors{.deviation = 0.005}.at(Echo{.range = 100, .cos_incidence = 0.5}, 2) ==
+        support::relative(0.01, 1e-15));
+  CHECK(RangeErrors{.deviation = 0.005, .deviation_per_metre = 1e-5}.at(Echo{.range = 1000, .cos_incidence = 0.5},
+                                                                        -1) == support::relative(-0.015, 1e-14));
   CHECK(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(Echo{.range = 100, .cos_incidence = 0.5}, 1) ==
         support::relative(0.01, 1e-14));
-  CHECK(std::isfinite(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(Echo{.range = 100, .cos_incidence = 0}, 1)));
+  CHECK(std::isfinite(
+      RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(Echo{.range = 100, .cos_incidence = 0}, 1)));
   CHECK(RangeErrors{.scale = 1e-5}.at(Echo{.range = 1000}, 3) == support::relative(0.01, 1e-14));
   CHECK_FALSE(RangeErrors{.scale = 1e-5}.none());
   const RangeErrors by_power{.deviation = 0.001, .deviation_at_watt = 1e-6, .power_exponent = -0.5};
@@ -127,7 +132,8 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
   CHECK_THROWS_AS(RangeErrors{.channel_biases = SharedArray<double>({0.0, std::nan("")})}.validate(), SettingError);
   CHECK_THROWS_AS(RangeErrors{.power_exponent = 1}.validate(), SettingError);
   CHECK_THROWS_AS(RangeErrors{.deviation = -1}.validate(), SettingError);
-  const RangeErrors table{.bias = 0.5, .deviations = std::vector<DeviationAtRange>{{10, 0.01}, {20, 0.03}, {100, 0.02}}};
+  const RangeErrors table{.bias = 0.5,
+                          .deviations = std::vector<DeviationAtRange>{{10, 0.01}, {20, 0.03}, {100, 0.02}}};
   CHECK_NOTHROW(table.validate());
   CHECK_FALSE(table.none());
   CHECK(table.at(Echo{.range = 5, .cos_incidence = 1}, 1) == support::relative(0.51, 1e-14));
@@ -135,7 +141,8 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
   CHECK(table.at(Echo{.range = 12.5, .cos_incidence = 1}, 1) == support::relative(0.515, 1e-14));
   CHECK(table.at(Echo{.range = 60, .cos_incidence = 1}, -2) == support::relative(0.45, 1e-14));
   CHECK(table.at(Echo{.range = 1e6}, 1) == support::relative(0.52, 1e-14));
-  CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, 0.01}, {10, 0.02}}}.validate()), SettingError);
+  CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, 0.01}, {10, 0.02}}}.validate()),
+                  SettingError);
   CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, -0.01}}}.validate()), SettingError);
   CHECK_THROWS_AS(RangeErrors{.bias = std::numeric_limits<double>::infinity()}.validate(), SettingError);
 }
@@ -143,5 +150,6 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
 TEST_CASE("a white target has the power of its budget at any range, asked in any order") {
   const LinkBudget budget(Receiver{}, Laser{});
   WhiteTarget white;
-  for (const double range : {0.0, 10.0, 10.0, 500.0, 10.0, 0.0, -1.0}) CHECK(white.power(budget, range) == budget.power(1, 1, range));
+  for (const double range : {0.0, 10.0, 10.0, 500.0, 10.0, 0.0, -1.0})
+    CHECK(white.power(budget, range) == budget.power(1, 1, range));
 }

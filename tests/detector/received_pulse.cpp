@@ -39,14 +39,17 @@ TEST_CASE("a Gaussian pulse behind a Gaussian low-pass is a Gaussian of both var
       const double both = std::hypot(deviation, filter.deviation);
       CHECK(pulse.gain() == doctest::Approx(deviation / both).epsilon(1e-6));
       for (const double arrival : {0.0, 0.1e-9, 0.77e-9, 123.456e-9, 6.67e-6})
-        CHECK(greatest_error(pulse, interval, arrival, [&](double t) { return std::exp(-0.5 * t * t / (both * both)); }) < 1e-6);
+        CHECK(greatest_error(pulse, interval, arrival,
+                             [&](double t) { return std::exp(-0.5 * t * t / (both * both)); }) < 1e-6);
     }
 }
 
 TEST_CASE("a rectangular pulse behind a low-pass has the edges of the error function") {
   const double length = 4e-9, s = 0.3e-9 * std::numbers::sqrt2;
   const ReceivedPulse pulse(RectangularPulse{}, length, LowPass{0.3e-9}, 0.25e-9);
-  const auto expected = [&](double t) { return 0.5 * (std::erf((t + 0.5 * length) / s) - std::erf((t - 0.5 * length) / s)); };
+  const auto expected = [&](double t) {
+    return 0.5 * (std::erf((t + 0.5 * length) / s) - std::erf((t - 0.5 * length) / s));
+  };
   CHECK(pulse.gain() == doctest::Approx(1).epsilon(1e-9));
   CHECK(greatest_error(pulse, 0.25e-9, 0.1e-9, expected) < 1e-6);
 }

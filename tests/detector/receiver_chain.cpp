@@ -12,13 +12,15 @@
 using namespace pulsecast;
 using support::relative;
 
-TEST_CASE("the density of the noise is that of the amplifier and of the shot noise of signal, background and dark current") {
+TEST_CASE(
+    "the density of the noise is that of the amplifier and of the shot noise of signal, background and dark current") {
   const ReceiverChain thermal{.noise_power = 1e-12};
   CHECK(thermal.density(0, 1.064e-6) == relative(1e-24, 1e-15));
   CHECK(thermal.density(1e-3, 1.064e-6) == relative(1e-24, 1e-15));
   // a photon of 1064 nm has 1.8669905e-19 J; of a current of 1 nA, q / (eta h nu) W are behind each ampere
   const double photon = 6.62607015e-34 * 299792458 / 1.064e-6;
-  const ReceiverChain shot{.background = 2e-9, .quantum_efficiency = 0.5, .shot_noise = true, .excess_noise = 3, .dark_current = 1e-9};
+  const ReceiverChain shot{
+      .background = 2e-9, .quantum_efficiency = 0.5, .shot_noise = true, .excess_noise = 3, .dark_current = 1e-9};
   const double dark = 1e-9 * photon / (0.5 * 1.602176634e-19);
   CHECK(shot.density(5e-9, 1.064e-6) == relative(2 * 3 * photon / 0.5 * (7e-9 + dark), 1e-12));
   CHECK(shot.density(-1, 1.064e-6) == relative(2 * 3 * photon / 0.5 * (2e-9 + dark), 1e-12));

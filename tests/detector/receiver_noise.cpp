@@ -35,9 +35,11 @@ TEST_CASE("the shot noise of a background is that of its photons") {
   const ReceiverNoise noise{.background = 1e-9};
   CHECK(noise.deviation_of_sample(1e-6, 1e-9) == support::relative(std::sqrt(5.03412) * 1.98645e-19 / 1e-9, 1e-5));
   const ReceiverNoise half{.background = 1e-9, .quantum_efficiency = 0.5};
-  CHECK(half.deviation_of_sample(1e-6, 1e-9) == support::relative(std::sqrt(2) * noise.deviation_of_sample(1e-6, 1e-9), 1e-12));
+  CHECK(half.deviation_of_sample(1e-6, 1e-9) ==
+        support::relative(std::sqrt(2) * noise.deviation_of_sample(1e-6, 1e-9), 1e-12));
   const ReceiverNoise both{.deviation = 3e-10, .background = 1e-9};
-  CHECK(both.deviation_of_sample(1e-6, 1e-9) == support::relative(std::hypot(3e-10, noise.deviation_of_sample(1e-6, 1e-9)), 1e-12));
+  CHECK(both.deviation_of_sample(1e-6, 1e-9) ==
+        support::relative(std::hypot(3e-10, noise.deviation_of_sample(1e-6, 1e-9)), 1e-12));
 }
 
 TEST_CASE("noise refuses settings that cannot be") {
@@ -47,10 +49,12 @@ TEST_CASE("noise refuses settings that cannot be") {
     CHECK_THROWS_AS(ReceiverNoise{.deviation = bad}.validate(), SettingError);
     CHECK_THROWS_AS(ReceiverNoise{.background = bad}.validate(), SettingError);
   }
-  for (const double bad : {-1.0, 0.0, 1.1, nan}) CHECK_THROWS_AS(ReceiverNoise{.quantum_efficiency = bad}.validate(), SettingError);
+  for (const double bad : {-1.0, 0.0, 1.1, nan})
+    CHECK_THROWS_AS(ReceiverNoise{.quantum_efficiency = bad}.validate(), SettingError);
 }
 
-TEST_CASE("a survey has the same noise whatever the number of threads, another for another seed, and none unless asked for") {
+TEST_CASE(
+    "a survey has the same noise whatever the number of threads, another for another seed, and none unless asked for") {
   struct Wall {
     std::optional<Hit> closest_hit(const Ray& ray) const noexcept { return Hit{100 / ray.direction.y, 1, 1, 0, 0}; }
   };
@@ -58,8 +62,12 @@ TEST_CASE("a survey has the same noise whatever the number of threads, another f
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 3000}}};
   const auto sum = [&](unsigned threads, std::uint64_t seed, double deviation) {
     const WaveformSettings settings{.threshold = 0, .returns_max = 255, .record_length = 100e-9};
-    const Survey survey{
-        source, RingFootprint(3), wall, Receiver{}, FullWaveform(settings, NoWidth{}, ReceiverNoise{.deviation = deviation}), seed};
+    const Survey survey{source,
+                        RingFootprint(3),
+                        wall,
+                        Receiver{},
+                        FullWaveform(settings, NoWidth{}, ReceiverNoise{.deviation = deviation}),
+                        seed};
     support::LawfulSink sink;
     (void)run(survey, {.threads = threads}, sink);
     CHECK(sink.broken() == "");

@@ -56,14 +56,16 @@ TEST_CASE("each mode keeps its echoes, numbered in order of range") {
 }
 
 TEST_CASE("the strongest that is the last is reported with the second strongest") {
-  const std::vector<Reflection> rising{
-      {.range = 10, .power = 1e-6}, {.range = 20, .power = 3e-6}, {.range = 30, .power = 2e-6}, {.range = 40, .power = 5e-6}};
+  const std::vector<Reflection> rising{{.range = 10, .power = 1e-6},
+                                       {.range = 20, .power = 3e-6},
+                                       {.range = 30, .power = 2e-6},
+                                       {.range = 40, .power = 5e-6}};
   CHECK(selected(ReturnMode::strongest_and_last, rising) == List{20, 40});
 }
 
 TEST_CASE("one echo, and none, stay what they are") {
-  for (const ReturnMode mode :
-       {ReturnMode::first, ReturnMode::last, ReturnMode::strongest, ReturnMode::first_and_last, ReturnMode::strongest_and_last}) {
+  for (const ReturnMode mode : {ReturnMode::first, ReturnMode::last, ReturnMode::strongest, ReturnMode::first_and_last,
+                                ReturnMode::strongest_and_last}) {
     CHECK(selected(mode, {{.range = 10, .power = 1e-6}}) == List{10});
     CHECK(selected(mode, {}).empty());
   }
@@ -75,14 +77,15 @@ TEST_CASE("ranges are folded exactly, in order, and lost where the instrument is
   const double ambiguity = folded.ambiguity();
   CHECK(ambiguity == doctest::Approx(149.896229));
   auto w = folded.workspace(3);
-  std::vector<Reflection> reflections{{.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}, {.range = 910, .power = 1e-6}};
+  std::vector<Reflection> reflections{
+      {.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}, {.range = 910, .power = 1e-6}};
   const Detection d = support::detect(folded, laser, reflections, w);
   REQUIRE(d.echoes.size() == 3);
   CHECK(d.echoes[1].range == std::fmod(910.0, ambiguity));
   CHECK(d.echoes[0].range == std::fmod(160.0, ambiguity));
   CHECK(d.echoes[2].range == 100);
-  CHECK(ranges(MultiplePulsesInAir{rate, FullWaveform{settings}, 10.5}, {{.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}}) ==
-        List{100});
+  CHECK(ranges(MultiplePulsesInAir{rate, FullWaveform{settings}, 10.5},
+               {{.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}}) == List{100});
 }
 
 TEST_CASE("an instrument that resolves multiple pulses in the air has blind zones about multiples of c / 2f") {

@@ -14,7 +14,8 @@ using namespace pulsecast;
 namespace {
 
 /// Peaks of samples, numbered from `first` on.
-std::vector<Peak> peaks_of(const std::vector<double>& samples, const WaveformSettings& settings, double first = 0, double delay = 0) {
+std::vector<Peak> peaks_of(const std::vector<double>& samples, const WaveformSettings& settings, double first = 0,
+                           double delay = 0) {
   SampleWindow<NoWidth> window;
   const NoWidth width;
   std::vector<Peak> peaks;
@@ -66,7 +67,8 @@ TEST_CASE("a peak that rises too little above the valley merges with its neighbo
 
 TEST_CASE("marks are where the timing says") {
   std::vector<double> y(80);
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] = 8 * std::exp(-0.5 * std::pow((static_cast<double>(i) - 40.3) / 6, 2));
+  for (std::size_t i = 0; i < y.size(); ++i)
+    y[i] = 8 * std::exp(-0.5 * std::pow((static_cast<double>(i) - 40.3) / 6, 2));
   WaveformSettings s = units;
   s.timing = EchoTiming::constant_fraction;
   s.fraction = 0.25;

@@ -35,7 +35,8 @@ std::vector<Reflection> slope(double length) {
   return all;
 }
 
-/// Mean distance of the sum of shifted pulses from a pulse, both by their maxima, within a pulse length of the maximum [1/1000].
+/// Mean distance of the sum of shifted pulses from a pulse, both by their maxima, within a pulse length of the maximum
+/// [1/1000].
 double by_quadrature(double length) {
   const double tau = 4e-9 / 3.3946806708465;
   const auto pulse = [&](double t) {
@@ -58,8 +59,9 @@ TEST_CASE("the echo of a flat target has no deviation, wherever it is between tw
     REQUIRE(ideal.size() == 1);
     CHECK(ideal[0] < 1);
     using Banded = FullWaveform<NoWidth, BandLimitedReceiver<GammaPulse>>;
-    const auto banded = deviations(ShapeDeviation(Banded(settings, {}, BandLimitedReceiver<GammaPulse>{ReceiverChain{}})),
-                                   {{.range = range, .power = 1e-6}});
+    const auto banded =
+        deviations(ShapeDeviation(Banded(settings, {}, BandLimitedReceiver<GammaPulse>{ReceiverChain{}})),
+                   {{.range = range, .power = 1e-6}});
     REQUIRE(banded.size() == 1);
     CHECK(banded[0] < 1);
   }
@@ -74,7 +76,8 @@ TEST_CASE("the echo of a slope deviates as by quadrature") {
 }
 
 TEST_CASE("echoes beyond the record have none, nor those of other detectors") {
-  const auto far = deviations(ShapeDeviation(FullWaveform{settings}), {{.range = 10, .power = 1e-6}, {.range = 80, .power = 1e-6}});
+  const auto far =
+      deviations(ShapeDeviation(FullWaveform{settings}), {{.range = 10, .power = 1e-6}, {.range = 80, .power = 1e-6}});
   REQUIRE(far.size() == 2);
   CHECK(far[0] < 1);
   CHECK(std::isnan(far[1]));

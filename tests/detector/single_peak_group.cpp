@@ -64,7 +64,9 @@ TEST_CASE("the sum of a group is that of its pulses from the last edge on, and h
   }
 }
 
-TEST_CASE("the range of a group is the mean by power, and its strongest reflection is that whose pulse is highest at the time") {
+TEST_CASE(
+    "the range of a group is the mean by power, and its strongest reflection is that whose pulse is highest at the "
+    "time") {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);

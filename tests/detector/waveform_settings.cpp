@@ -17,7 +17,8 @@ TEST_CASE("settings of a waveform that cannot be are refused") {
     CHECK_THROWS_AS(WaveformSettings{.sample_interval = bad}.validate(), SettingError);
     CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
   }
-  for (const double bad : {0.99, 10.1}) CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
+  for (const double bad : {0.99, 10.1})
+    CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
   for (const double good : {1.0, 10.0}) CHECK_NOTHROW(WaveformSettings{.shape_divisor = good}.validate());
   for (const double bad : {-1e-9, nan, infinity}) {
     CHECK_THROWS_AS(WaveformSettings{.threshold = bad}.validate(), SettingError);
@@ -43,7 +44,9 @@ TEST_CASE("peaks are one if they are closer than the separation, or than window 
   CHECK(WaveformSettings{.window = 0}.min_separation(4) == 0);
 }
 
-TEST_CASE("the default threshold is of more than ten photons of a default laser: a target of 20 % is found at 1 km, and not at 3 km") {
+TEST_CASE(
+    "the default threshold is of more than ten photons of a default laser: a target of 20 % is found at 1 km, and not "
+    "at 3 km") {
   const Laser laser;
   const LinkBudget budget(Receiver{}, laser);
   const double photon = 6.62607015e-34 * 299'792'458 / laser.wavelength;

@@ -39,7 +39,9 @@ struct Floor {
   }
 };
 
-AssetDocument read(const std::string& name) { return read_assets(catalogue / "data" / (name + ".xml"), {.assets = {catalogue}}); }
+AssetDocument read(const std::string& name) {
+  return read_assets(catalogue / "data" / (name + ".xml"), {.assets = {catalogue}});
+}
 
 /// How high above ground it works, and how fast it is carried.
 struct Place {
@@ -54,21 +56,27 @@ Place place_of(const std::string& document, const ScannerSettings& scanner) {
   if (scanner.id == "tractorscanner") return {"vehicle_linearpath", 0, 2};
   for (const char* maker : {"dji", "livox", "riegl_vux", "riegl_minivux"})
     if (document == "scanners_als" && scanner.id.starts_with(maker)) return {"copter_linearpath", 40, 5};
-  if (document == "scanners_als") return {"sr22", std::clamp(0.3 * channel.range_max, 2 * channel.range_min, 1000.0), 20};
+  if (document == "scanners_als")
+    return {"sr22", std::clamp(0.3 * channel.range_max, 2 * channel.range_min, 1000.0), 20};
   return {"tripod", 0, 0};
 }
 
 double scan_frequency_of(const ScannerSettings& scanner) {
   const ChannelSettings& channel = scanner.channels.front();
   if (channel.scan_frequency_max > 0) return 0.5 * (channel.scan_frequency_min + channel.scan_frequency_max);
-  const bool head_scans = channel.scan_angle_max >= pi && (scanner.channels.size() > 1 || channel.head_speed_max > radians(3600));
-  return std::holds_alternative<RotatingOptic>(channel.optic) && head_scans ? 0 : std::max(20.0, channel.scan_frequency_min);
+  const bool head_scans =
+      channel.scan_angle_max >= pi && (scanner.channels.size() > 1 || channel.head_speed_max > radians(3600));
+  return std::holds_alternative<RotatingOptic>(channel.optic) && head_scans
+             ? 0
+             : std::max(20.0, channel.scan_frequency_min);
 }
 
-SurveySettings survey_of(const std::string& document, const ScannerSettings& scanner, const std::vector<PlatformSettings>& platforms) {
+SurveySettings survey_of(const std::string& document, const ScannerSettings& scanner,
+                         const std::vector<PlatformSettings>& platforms) {
   SurveySettings survey{.name = scanner.id, .scanner = scanner};
   const Place place = place_of(document, scanner);
-  const auto platform = std::find_if(platforms.begin(), platforms.end(), [&](const auto& p) { return p.id == place.platform; });
+  const auto platform =
+      std::find_if(platforms.begin(), platforms.end(), [&](const auto& p) { return p.id == place.platform; });
   REQUIRE(platform != platforms.end());
   survey.platform = *platform;
   const double head_speed = std::min(scanner.channels.front().head_speed_max, radians(3600));
@@ -119,7 +127,8 @@ Scan scan(const SurveySettings& survey) {
       REQUIRE(echo.range >= channel.range_min - noise);
       REQUIRE(echo.range <= channel.range_max + noise);
       if (down < 0.1) continue;  // the footprint is drawn out
-      const double range = o.shot.origin.z / down, along = range * channel.divergence * std::sqrt(std::fmax(0.0, 1 - down * down)) / down;
+      const double range = o.shot.origin.z / down,
+                   along = range * channel.divergence * std::sqrt(std::fmax(0.0, 1 - down * down)) / down;
       REQUIRE(std::fabs(echo.range - range) <= noise + along + 1e-3 * channel.pulse_length * 1e9 + 1e-3);
     }
   }
@@ -144,11 +153,13 @@ TEST_CASE("every scanner of the catalogue scans a plane, at the rates that it is
       CHECK(found.echoes >= 20);
       for (const ChannelSettings& channel : scanner.channels) {
         CHECK(channel.scan_frequency_min <= survey.legs.front().scanner.scan_frequency);
-        CHECK((channel.scan_frequency_max == 0 || survey.legs.front().scanner.scan_frequency <= channel.scan_frequency_max));
+        CHECK((channel.scan_frequency_max == 0 ||
+               survey.legs.front().scanner.scan_frequency <= channel.scan_frequency_max));
       }
       if (scanner.channels.front().scan_frequency_max == 0) continue;
       survey.legs.front().scanner.scan_frequency = 1.01 * scanner.channels.front().scan_frequency_max;
-      CHECK_THROWS_AS((void)compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 0; }), SettingError);
+      CHECK_THROWS_AS((void)compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 0; }),
+                      SettingError);
     }
   }
   CHECK(scanners >= 59);

@@ -46,7 +46,8 @@ TEST_CASE("a seed gives the same hills again, and another seed other hills") {
 TEST_CASE("the ground has more than 200,000 triangles, and fills its square around its middle") {
   const auto& ground = valley().parts().front();
   CHECK(mesh_of(ground).size() > 200'000);
-  CHECK(length(ground.placement.box(mesh_of(ground).bounds()).size() * Vec3{1, 1, 0} - Vec3{hills::side, hills::side, 0}) < 1e-6);
+  CHECK(length(ground.placement.box(mesh_of(ground).bounds()).size() * Vec3{1, 1, 0} -
+               Vec3{hills::side, hills::side, 0}) < 1e-6);
   CHECK(ground.placement.translation == hills::middle);
 }
 

@@ -31,9 +31,10 @@ struct Lake {
     std::ofstream(folder.path() / "lake.mtl")
         << "newmtl water\nhelios_reflectance 0.005\nhelios_classification 9\nKd 1\npulsecast_water IB\n"
            "newmtl gravel\nhelios_reflectance 0.2\nhelios_classification 40\nKd 1\n";
-    std::ofstream(folder.path() / "lake.obj") << "mtllib lake.mtl\nv -300 -300 0\nv 300 -300 0\nv 300 300 0\nv -300 300 0\n"
-                                                 "v -300 -300 -5\nv 300 -300 -5\nv 300 300 -5\nv -300 300 -5\n"
-                                                 "usemtl water\nf 1 2 3 4\nusemtl gravel\nf 5 6 7 8\n";
+    std::ofstream(folder.path() / "lake.obj")
+        << "mtllib lake.mtl\nv -300 -300 0\nv 300 -300 0\nv 300 300 0\nv -300 300 0\n"
+           "v -300 -300 -5\nv 300 -300 -5\nv 300 300 -5\nv -300 300 -5\n"
+           "usemtl water\nf 1 2 3 4\nusemtl gravel\nf 5 6 7 8\n";
   }
 
   /// Calls `visit(shot, echo)` with all that a flight over it finds.
@@ -60,7 +61,9 @@ struct Lake {
 
 }  // namespace
 
-TEST_CASE("a green scanner finds the bottom of a lake where Snell's law and the group index put it, an infrared one does not") {
+TEST_CASE(
+    "a green scanner finds the bottom of a lake where Snell's law and the group index put it, an infrared one does "
+    "not") {
   const Lake lake;
   const double index = water_index(532e-9), group_index = water_group_index(532e-9);
   std::size_t surfaces = 0, bottoms = 0;
@@ -71,7 +74,8 @@ TEST_CASE("a green scanner finds the bottom of a lake where Snell's law and the 
     if (echo.classification == 40) {
       ++bottoms;
       if (bottoms < 6)
-        std::printf("b %d %g %g amp %g refl %g\n", echo.number, echo.range, echo.range - above - below, echo.amplitude, echo.reflectance);
+        std::printf("b %d %g %g amp %g refl %g\n", echo.number, echo.range, echo.range - above - below, echo.amplitude,
+                    echo.reflectance);
       CHECK(echo.kind == ReflectionKind::water);
       CHECK(std::fabs(echo.range - above - below) < 0.2);
       error += echo.range - above - below;

@@ -88,7 +88,8 @@ TEST_CASE("houses stand on both sides, the way between them is free, and the hou
 TEST_CASE("a car that drives there has its wheels on the ground") {
   const auto ground = [](const Vec2& place) { return town().ground_height(place); };
   const GroundVehicleSettings settings;
-  const auto drive = plan_ground_vehicle(std::vector<Vec2>{{1.9, -80}, {1.9, -1.9}, {40, -1.9}, {48, -0.6}, {38, 1.9}}, ground, settings);
+  const auto drive = plan_ground_vehicle(std::vector<Vec2>{{1.9, -80}, {1.9, -1.9}, {40, -1.9}, {48, -0.6}, {38, 1.9}},
+                                         ground, settings);
   double farthest = 0;
   for (double t = 0; t < drive.duration().seconds(); t += 0.05) {
     for (const double x : {-settings.track / 2, settings.track / 2}) {

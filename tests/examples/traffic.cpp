@@ -33,7 +33,8 @@ struct Loop {
   traffic::Vehicle robot{.from = {1.9, -50}, .along = {0, 1}, .speed = 8};
   SpinningSensor sensor = velodyne_vlp_16();
   Platform<traffic::LivePath, SpinningSource> platform{{&robot}, Mount{.lever_arm = {0, 0, 1.9}}, sensor.source(1000)};
-  Survey<decltype(platform), SingleRay, decltype(world), FirstHit> survey{platform, SingleRay{}, world, sensor.receiver(), FirstHit{}, 1};
+  Survey<decltype(platform), SingleRay, decltype(world), FirstHit> survey{platform,          SingleRay{}, world,
+                                                                          sensor.receiver(), FirstHit{},  1};
   io::PointBuffer scan{io::layouts::velodyne(), {.sensor = [this](Tick t) { return platform.instrument_at(t); }}};
   PulseIndex slot = 0;
 
@@ -74,11 +75,13 @@ TEST_CASE("a sensor spins on between steps: the points of six steps are those of
   const std::vector<std::byte> records(loop.scan.records().begin(), loop.scan.records().end());
   CHECK(loop.scan.size() > 20'000);
   loop.scan.begin_scan(Tick::of(6, 60));
-  run(loop.survey, {.first = loop.sensor.slot_from(Tick::of(6, 60)), .end = loop.sensor.slot_from(Tick::of(12, 60))}, loop.scan);
+  run(loop.survey, {.first = loop.sensor.slot_from(Tick::of(6, 60)), .end = loop.sensor.slot_from(Tick::of(12, 60))},
+      loop.scan);
   CHECK(std::equal(records.begin(), records.end(), loop.scan.records().begin(), loop.scan.records().end()));
 }
 
-TEST_CASE("the scans of a robot that drives, brakes and is set back are the same with and without a pool, to the byte") {
+TEST_CASE(
+    "the scans of a robot that drives, brakes and is set back are the same with and without a pool, to the byte") {
   const auto scans = [](const auto& in_step) {
     Loop loop;
     std::vector<std::byte> all;

@@ -48,7 +48,8 @@ Hit seen(const wood::Scene& scene, const Vec3& from, const Vec3& direction) {
 /// The height of the ground alone, met from above.
 double ground_at(const wood::Scene& scene, const Vec3& place) {
   const auto& ground = scene.parts().front();
-  const RayBundle down = bundle_of({.origin = Vec3(place.x, place.y, 100) - ground.placement.translation, .direction = -axis::up});
+  const RayBundle down =
+      bundle_of({.origin = Vec3(place.x, place.y, 100) - ground.placement.translation, .direction = -axis::up});
   ClosestHits nearest(down);
   mesh_of(ground).closest(down, nearest);
   return nearest.met(0) ? 100 - nearest.range[0] : std::numeric_limits<double>::quiet_NaN();
@@ -103,7 +104,8 @@ TEST_CASE("a tripod has room at every glade") {
       CAPTURE(glade.y);
       CHECK(seen(scene, glade + axis::up, -axis::up).classification == 2);
       CHECK(seen(scene, glade + axis::up, -axis::up).range == doctest::Approx(1).epsilon(0.05));
-      for (int k = 0; k < 72; ++k) CHECK(seen(scene, glade + 1.7 * axis::up, {std::cos(k * pi / 36), std::sin(k * pi / 36), 0}).range > 1);
+      for (int k = 0; k < 72; ++k)
+        CHECK(seen(scene, glade + 1.7 * axis::up, {std::cos(k * pi / 36), std::sin(k * pi / 36), 0}).range > 1);
     }
   }
 }

@@ -35,8 +35,8 @@ const std::string quantity = "bins";
 
 template <class Detector>
 auto survey_of(const Laser& laser, const Wall& wall, const Detector& detector) {
-  return Survey{Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}}, SingleRay{}, wall,
-                validation::vacuum, detector};
+  return Survey{Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}}, SingleRay{},
+                wall, validation::vacuum, detector};
 }
 
 /// The energy of a record [J] and how many samples it has.
@@ -45,8 +45,8 @@ struct Record {
   double energy = 0;
 
   explicit Record(const auto& detector, const auto& map, const Laser& laser) {
-    const Survey survey{Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}}, TwoRays{}, map,
-                        validation::vacuum, detector};
+    const Survey survey{Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}},
+                        TwoRays{}, map, validation::vacuum, detector};
     auto workspace = survey.workspace();
     const Outcome outcome = survey(0, workspace);
     samples = outcome.waveform.size();
@@ -78,7 +78,9 @@ TEST_CASE("bins of all sizes before a wall") {
     const std::string bins = name + std::string(", wall at 100 m, all detectors and widths: ");
     row(quantity, bins + "largest error of the range [m]", 0, errors.range, 1e-9);
     row(quantity, bins + "largest error of the amplitude, as a share", 0, errors.amplitude, amplitude);
-    if (width > 0) row(quantity, bins + "largest error of the width, as a share", 0, errors.width, width);  // else there are too few to fit
+    if (width > 0)
+      row(quantity, bins + "largest error of the width, as a share", 0, errors.width,
+          width);  // else there are too few to fit
   }
 }
 
@@ -90,16 +92,20 @@ TEST_CASE("bins that do not fit the pulse") {
   refused(quantity, "1 us, pulse of 4 ns, AnalyticWaveform with a fitted width", [&] {
     return survey_of(laser, wall, AnalyticWaveform{coarse, GaussianFit{}});
   });
-  refused(quantity, "1 us, pulse of 4 ns, AnalyticWaveform with a record",
-          [&] { return survey_of(laser, wall, AnalyticWaveform{WaveformSettings{.sample_interval = 1e-6, .record_length = 1e-3}}); });
+  refused(quantity, "1 us, pulse of 4 ns, AnalyticWaveform with a record", [&] {
+    return survey_of(laser, wall, AnalyticWaveform{WaveformSettings{.sample_interval = 1e-6, .record_length = 1e-3}});
+  });
   refused(quantity, "0.1 ps, pulse of 4 ns, FullWaveform", [&] { return survey_of(laser, wall, FullWaveform{fine}); });
-  refused(quantity, "1 us, width of a pulse of 4 ns, FullWaveform", [&] { return FullWaveform{coarse, MomentWidth{}}.pulse_width(laser); });
+  refused(quantity, "1 us, width of a pulse of 4 ns, FullWaveform", [&] {
+    return FullWaveform{coarse, MomentWidth{}}.pulse_width(laser);
+  });
   refused(quantity, "0.25 ns, the last of 3 channels with a pulse of 1 fs, FullWaveform", [&] {
     std::vector<Scanner> lasers(3, Scanner{.pulses = 1000});
     lasers[2].laser.pulse_length = 1e-15;
     std::vector<Deflector<FixedBeam, Scanner>> emitters;
     for (const Scanner& s : lasers) emitters.emplace_back(FixedBeam{}, s);
-    return Survey{Platform{Tripod{}, Mount{}, Channels{emitters}}, SingleRay{}, wall, validation::vacuum, FullWaveform{}};
+    return Survey{Platform{Tripod{}, Mount{}, Channels{emitters}}, SingleRay{}, wall, validation::vacuum,
+                  FullWaveform{}};
   });
   refused(quantity, "0.01 fs", [] { return FullWaveform{WaveformSettings{.sample_interval = 1e-17}}; });
   refused(quantity, "1 us, in a record of 1e7 and 1 bins",
@@ -138,14 +144,17 @@ TEST_CASE("waveforms of ten million bins") {
   const WaveformSettings settings{.sample_interval = 1e-9, .threshold = 0, .record_length = 10e-3};
   const Record full(FullWaveform{settings}, walls, laser), analytic(AnalyticWaveform{settings}, walls, laser);
   const double samples = std::ceil((2 * (1'400'000 - 100) / speed_of_light + 22 * tau) / 1e-9);
-  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: samples kept", samples, static_cast<double>(full.samples), 10);
+  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: samples kept", samples,
+      static_cast<double>(full.samples), 10);
   row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: samples kept", samples,
       static_cast<double>(analytic.samples), 10);
-  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: energy, of the right one", 1, full.energy / energy, 1e-3);
-  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1, analytic.energy / energy,
-      1e-3);
+  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: energy, of the right one", 1,
+      full.energy / energy, 1e-3);
+  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1,
+      analytic.energy / energy, 1e-3);
 
-  const Record noisy(FullWaveform{settings, NoWidth{}, ReceiverNoise{.deviation = 1e-12, .background = 1e-9}}, walls, laser);
+  const Record noisy(FullWaveform{settings, NoWidth{}, ReceiverNoise{.deviation = 1e-12, .background = 1e-9}}, walls,
+                     laser);
   row(quantity, "1e7 bins of 1 ns, all of noise: samples kept", 1e7, static_cast<double>(noisy.samples), 0);
   row(quantity, "1e7 bins of 1 ns, all of noise: mean power, of background and echoes", 1,
       noisy.energy / (energy + 1e-9 * static_cast<double>(noisy.samples) * 1e-9), 1e-3);
@@ -155,8 +164,8 @@ TEST_CASE("the noise of a sample does not come again") {
   // echoes 2^32 bins apart: their samples' numbers agree in the lower 32 bits
   const double apart = 0x1p32 * 1e-12 * speed_of_light / 2;
   const Laser laser{.pulse_length = 1e-9, .divergence = 1e-9};
-  const FullWaveform<> detector{WaveformSettings{.sample_interval = 1e-12, .threshold = 0.5e-9, .window = 100e-9}, NoWidth{},
-                                ReceiverNoise{.deviation = 1e-10}};
+  const FullWaveform<> detector{WaveformSettings{.sample_interval = 1e-12, .threshold = 0.5e-9, .window = 100e-9},
+                                NoWidth{}, ReceiverNoise{.deviation = 1e-10}};
   auto workspace = detector.workspace(2);
   std::vector<Reflection> reflections{{.range = 100, .power = 1e-9}, {.range = 100 + apart, .power = 1e-9}};
   const Detection detection = support::detect(detector, laser, reflections, workspace, {.seed = 1});

@@ -44,7 +44,8 @@ const std::vector<Place> places{{"UTM", {4.7e5 + 1.0 / 3, 5.4e6 + 1.0 / 7, 300.1
 /// Rays between the inside of a sphere and what is around it.
 RayBundle about(Generator& random, const Vec3& centre, double radius, std::size_t size) {
   const bool inside = random.coin();
-  const Vec3 origin = centre + (inside ? random.point(0.5 * radius) : random.unit() * (radius * random.log_uniform(1.5, 100)));
+  const Vec3 origin =
+      centre + (inside ? random.point(0.5 * radius) : random.unit() * (radius * random.log_uniform(1.5, 100)));
   return random.cone(origin, inside ? random.unit() : normalize(centre + random.point(0.5 * radius) - origin),
                      inside ? 0.5 : 0.2 * radius / length(centre - origin), size);
 }
@@ -65,8 +66,8 @@ void sphere(const std::string& what, const Vec3& centre, double radius, std::uin
   }
   check(verdict, others);
   CHECK(verdict.met > verdict.rays / 2);
-  row(quantity, "sphere of 80 triangles, " + what + ": largest error of a range [1e-12 of the radius]", 0, verdict.worst / radius * 1e12,
-      10);
+  row(quantity, "sphere of 80 triangles, " + what + ": largest error of a range [1e-12 of the radius]", 0,
+      verdict.worst / radius * 1e12, 10);
 }
 
 }  // namespace
@@ -97,25 +98,28 @@ TEST_CASE("no ray leaves a closed mesh of 1 m, wherever it is") {
       rays.size = 16;
       for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(target(random, data) - rays.origin));
       rays.pad();
-      lost += escaped(meshes.linear, rays) + escaped(meshes.bvh, rays) + escaped(meshes.exact_bvh, rays) + escaped(meshes.kd_tree, rays) +
-              escaped(meshes.exact_kd_tree, rays);
+      lost += escaped(meshes.linear, rays) + escaped(meshes.bvh, rays) + escaped(meshes.exact_bvh, rays) +
+              escaped(meshes.kd_tree, rays) + escaped(meshes.exact_kd_tree, rays);
       sent += 5 * rays.size;
     }
     CHECK(lost == 0);
   }
-  row(quantity, "sphere of 320 triangles, at these places: rays at corners and edges that get out, of " + std::to_string(sent), 0,
+  row(quantity,
+      "sphere of 320 triangles, at these places: rays at corners and edges that get out, of " + std::to_string(sent), 0,
       static_cast<double>(lost), 0);
 }
 
 namespace {
 
-/// Asks a scene of one part that is turned, and gives the largest error of a range [m]; `own` is where the part is in its own coordinates.
+/// Asks a scene of one part that is turned, and gives the largest error of a range [m]; `own` is where the part is in
+/// its own coordinates.
 double worst_of_part(const Vec3& own, double scale, const Vec3& centre, std::uint64_t seed) {
   Generator random(seed);
   const MeshData data = moved(icosphere(1), own);
   Similarity placement{random.rotation(), scale, {}};
   placement.translation = centre - placement.point(own);
-  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(data), .placement = placement}});
+  const Scene<TriangleMesh<>> scene(
+      {{.geometry = std::make_shared<const TriangleMesh<>>(data), .placement = placement}});
   // the rays as the part sees them, by the inverse of its rotation in double-double arithmetic
   const auto seen = [&](const ExactVec3& v) {
     const Rotation back = conjugate(placement.rotation);
@@ -126,7 +130,8 @@ double worst_of_part(const Vec3& own, double scale, const Vec3& centre, std::uin
   std::size_t met = 0;
   for (int time = 0; time < 300; ++time) {
     const RayBundle rays = about(random, centre, scale, 1);
-    const ExactVec3 origin = seen(ExactVec3(rays.origin, placement.translation)), direction = seen(ExactVec3(rays.direction(0)));
+    const ExactVec3 origin = seen(ExactVec3(rays.origin, placement.translation)),
+                    direction = seen(ExactVec3(rays.direction(0)));
     Hit hit;
     scene.closest(rays, std::span(&hit, 1));
     ExactCrossing expected;
@@ -155,7 +160,8 @@ TEST_CASE("a part that stands at far coordinates is as exact as at the origin; o
     row(quantity, "part of 0.25 m, turned, at " + place.name + ": largest error of a range [pm]", 0,
         1e12 * worst_of_part({}, 0.25, place.at, 8140), 10);
     row(quantity,
-        "part whose own coordinates are at " + place.name + ", turned, at the origin: largest error of a range [1e-15 of the coordinates]",
+        "part whose own coordinates are at " + place.name +
+            ", turned, at the origin: largest error of a range [1e-15 of the coordinates]",
         0, 1e15 * worst_of_part(place.at, 1, {}, 8145) / length(place.at), 10);
   }
 }
@@ -209,25 +215,29 @@ TEST_CASE("voxels of any size, anywhere") {
       const double depth = random.log_uniform(1, 1e3) * c.edge;
       const std::uint32_t column = static_cast<std::uint32_t>(random.whole(10));
       // straight down into a stair, from above: the face is where corner + edge k is, without a rounding
-      const Vec3 origin =
-          c.corner + Vec3{(column + random.uniform(0.1, 0.9)) * c.edge, random.uniform(0.5, 9.5) * c.edge, 10 * c.edge + depth};
+      const Vec3 origin = c.corner + Vec3{(column + random.uniform(0.1, 0.9)) * c.edge,
+                                          random.uniform(0.5, 9.5) * c.edge, 10 * c.edge + depth};
       const RayBundle rays = bundle_of({origin, -axis::up});
       ClosestHits nearest(rays);
       grid.closest(rays, nearest);
       // the column that the origin is in, as rounded
       const DoubleDouble stair = DoubleDouble(origin.x, -c.corner.x) / DoubleDouble(c.edge);
-      const DoubleDouble face = DoubleDouble(c.corner.z) + DoubleDouble(c.edge) * DoubleDouble(std::floor(static_cast<double>(stair)) + 1);
+      const DoubleDouble face =
+          DoubleDouble(c.corner.z) + DoubleDouble(c.edge) * DoubleDouble(std::floor(static_cast<double>(stair)) + 1);
       wrong += nearest.met(0) ? 0 : 1;
-      if (nearest.met(0)) worst = std::max(worst, std::fabs(static_cast<double>(DoubleDouble(origin.z) - face - nearest.range[0])));
+      if (nearest.met(0))
+        worst = std::max(worst, std::fabs(static_cast<double>(DoubleDouble(origin.z) - face - nearest.range[0])));
     }
     CHECK(wrong == 0);
-    row(quantity, "voxels, " + c.name + ": largest error of a range [1e-12 of the edge]", 0, worst / c.edge * 1e12, 100);
+    row(quantity, "voxels, " + c.name + ": largest error of a range [1e-12 of the edge]", 0, worst / c.edge * 1e12,
+        100);
   }
 }
 
 TEST_CASE("what lies farther than can be computed with is refused") {
   const auto mesh_at = [](double at) { return MeshData{{{at, 0, 0}, {at, 1, 0}, {at, 0, 1}}, {{0, 1, 2}}, {}}; };
-  refused_as(quantity, "mesh at 1.1e18 m", "within 1e18 m of the origin", [&] { return TriangleMesh<Bvh<>>(mesh_at(1.1e18)); });
+  refused_as(quantity, "mesh at 1.1e18 m", "within 1e18 m of the origin",
+             [&] { return TriangleMesh<Bvh<>>(mesh_at(1.1e18)); });
   CHECK_THROWS_AS((TriangleMesh<Bvh<double>>(mesh_at(1.1e18))), SettingError);
   CHECK_THROWS_AS((TriangleMesh<KdTree<>>(mesh_at(1.1e18))), SettingError);
   CHECK_THROWS_AS((TriangleMesh<Linear<>>(mesh_at(1.1e18))), SettingError);
@@ -245,7 +255,9 @@ TEST_CASE("what lies farther than can be computed with is refused") {
   refused_as(quantity, "raster of pixels of 8e-7 m at 1e9 m", "Raster::pixel.x", [] {
     return HeightField({.columns = 2, .rows = 2, .first = {1e9, 0}, .pixel = {8e-7, 1}, .heights = {1, 1, 1, 1}});
   });
-  CHECK_THROWS_AS(HeightField({.columns = 2, .rows = 2, .first = {0, -1e9}, .pixel = {1, 8e-7}, .heights = {1, 1, 1, 1}}), SettingError);
+  CHECK_THROWS_AS(
+      HeightField({.columns = 2, .rows = 2, .first = {0, -1e9}, .pixel = {1, 8e-7}, .heights = {1, 1, 1, 1}}),
+      SettingError);
   refused_as(quantity, "voxels of 8e-7 m at 1e9 m", "VoxelData::edge", [] {
     return VoxelGrid<>({.corner = {0, 0, 1e9}, .edge = 8e-7, .cells = {{0, 0, 0}}});
   });
@@ -254,6 +266,7 @@ TEST_CASE("what lies farther than can be computed with is refused") {
                                    .placement = {.translation = {0, 0, std::numeric_limits<double>::infinity()}}}});
   });
   refused_as(quantity, "part of 1e-31 of its size", "Similarity::scale", [&] {
-    return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)), .placement = {.scale = 1e-31}}});
+    return Scene<TriangleMesh<>>(
+        {{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)), .placement = {.scale = 1e-31}}});
   });
 }

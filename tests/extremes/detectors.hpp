@@ -62,8 +62,8 @@ struct TwoRays {
   double share(std::size_t) const noexcept { return 0.5; }
 };
 
-/// What a wall across the beam sends back in vacuum [W]. Source: radar equation of an extended Lambertian target, and the solid angle
-/// of a disc on the axis.
+/// What a wall across the beam sends back in vacuum [W]. Source: radar equation of an extended Lambertian target, and
+/// the solid angle of a disc on the axis.
 [[nodiscard]] inline double from_wall(const Laser& laser, double range) {
   const Receiver& receiver = validation::vacuum;
   const double reach = std::hypot(range, receiver.diameter / 2);
@@ -77,7 +77,8 @@ struct Width {
 };
 /// Of a pulse: sqrt(3) tau, and what the fit gives of one of 4 ns.
 [[nodiscard]] inline Width width_of(double pulse_length) {
-  const double fit = FullWaveform<GaussianFit>(WaveformSettings{.sample_interval = 4e-9 / 256}).pulse_width(Laser{.pulse_length = 4e-9});
+  const double fit = FullWaveform<GaussianFit>(WaveformSettings{.sample_interval = 4e-9 / 256})
+                         .pulse_width(Laser{.pulse_length = 4e-9});
   return {std::sqrt(3.0) * pulse_length / 3.3946806708, fit * (pulse_length / 4e-9)};
 }
 
@@ -89,7 +90,8 @@ struct Errors {
 
   /// Looks at the echoes of a pulse that must be one; no echo is an infinite error.
   template <class Detector>
-  void add(const Detector&, const std::vector<Echo>& echoes, double expected_range, double expected_power, const Width& expected_width) {
+  void add(const Detector&, const std::vector<Echo>& echoes, double expected_range, double expected_power,
+           const Width& expected_width) {
     if (echoes.size() != 1) {
       range = amplitude = width = INFINITY;
       return;
@@ -100,9 +102,11 @@ struct Errors {
     };
     range = std::max(range, std::fabs(echoes[0].range - expected_range));
     amplitude = std::max(amplitude, share(echoes[0].amplitude, expected_power));
-    if constexpr (std::is_same_v<Detector, FullWaveform<MomentWidth>> || std::is_same_v<Detector, AnalyticWaveform<MomentWidth>>)
+    if constexpr (std::is_same_v<Detector, FullWaveform<MomentWidth>> ||
+                  std::is_same_v<Detector, AnalyticWaveform<MomentWidth>>)
       width = std::max(width, share(echoes[0].width, expected_width.moment));
-    if constexpr (std::is_same_v<Detector, FullWaveform<GaussianFit>> || std::is_same_v<Detector, AnalyticWaveform<GaussianFit>>)
+    if constexpr (std::is_same_v<Detector, FullWaveform<GaussianFit>> ||
+                  std::is_same_v<Detector, AnalyticWaveform<GaussianFit>>)
       width = std::max(width, share(echoes[0].width, expected_width.fit));
   }
 };

@@ -32,7 +32,8 @@ namespace {
 using Real = long double;
 
 const std::string quantity = "divergence";
-constexpr double distance = 1;  // of the wall: so near that the pulse does not show how far apart its subrays are met [m]
+constexpr double distance =
+    1;  // of the wall: so near that the pulse does not show how far apart its subrays are met [m]
 
 /// A wall of many triangles, so that there is a tree to go through.
 template <class Index>
@@ -96,11 +97,14 @@ TEST_CASE("divergences before a wall") {
     double worst = 0, differ = 0;
     for_each_detector(WaveformSettings{.threshold = 0}, [&](const char* detector_name, const auto& detector) {
       CAPTURE(detector_name);
-      const auto one = [&](const auto& map) { return validation::one_pulse(map, footprint, laser, validation::vacuum, detector); };
+      const auto one = [&](const auto& map) {
+        return validation::one_pulse(map, footprint, laser, validation::vacuum, detector);
+      };
       const auto result = one(linear);
       REQUIRE(result.echoes.size() == 1);
       const bool first = std::string(detector_name) == "FirstHit";
-      worst = std::max(worst, static_cast<double>(std::fabs(result.echoes[0].range - (first ? expected.nearest : expected.mean))));
+      worst = std::max(
+          worst, static_cast<double>(std::fabs(result.echoes[0].range - (first ? expected.nearest : expected.mean))));
       CHECK(result.energy.share(&EnergyLedger::missed) == 0);
       CHECK(std::isfinite(result.echoes[0].width));
       for (const auto& other : {one(bvh), one(kd_tree), one(exact_bvh), one(exact_kd_tree)})

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// How a ray meets a surface: from straight down to all but along it, in its plane, at its edges and corners, along the borders of cells.
+// How a ray meets a surface: from straight down to all but along it, in its plane, at its edges and corners, along the
+// borders of cells.
 
 #include <algorithm>
 #include <cmath>
@@ -72,15 +73,17 @@ TEST_CASE("a plane at any incidence") {
       const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(data)}});
       Hit hit;
       scene.closest(rays, std::span(&hit, 1));
-      const ExactVec3 normal = cross(ExactVec3(data.vertices[1], data.vertices[0]), ExactVec3(data.vertices[2], data.vertices[0]));
-      const double cosine = std::fabs(static_cast<double>(dot(normal, ExactVec3(rays.direction(0))))) / length(Vec3(normal));
+      const ExactVec3 normal =
+          cross(ExactVec3(data.vertices[1], data.vertices[0]), ExactVec3(data.vertices[2], data.vertices[0]));
+      const double cosine =
+          std::fabs(static_cast<double>(dot(normal, ExactVec3(rays.direction(0))))) / length(Vec3(normal));
       worst_cosine = std::max(worst_cosine, std::fabs(hit.cos_incidence - cosine));
     }
     INFO(others.first);
     CHECK(others.different == 0);
     CHECK(wrong == 0);
-    row(quantity, "square met at " + angle + " degrees, 1 m away: largest error of a range, times the cosine [1e-15 m]", 0,
-        worst * 1e15 * std::cos(slant), 100);
+    row(quantity, "square met at " + angle + " degrees, 1 m away: largest error of a range, times the cosine [1e-15 m]",
+        0, worst * 1e15 * std::cos(slant), 100);
   }
   row(quantity, "square met at these angles: largest error of the cosine [1e-15]", 0, worst_cosine * 1e15, 100);
 }
@@ -109,10 +112,13 @@ TEST_CASE("ground and voxels at any incidence") {
       of_field = std::max(of_field, std::fabs(range_of(field, bundle_of(ray)) - exact));
       of_grid = std::max(of_grid, std::fabs(range_of(grid, bundle_of(ray)) - exact));
     }
-    row(quantity, "ground of a raster met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
-        of_field * 1e15 * std::cos(slant), 1000);
-    row(quantity, "top of voxels met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
-        of_grid * 1e15 * std::cos(slant), 1000);
+    row(quantity,
+        "ground of a raster met at " + angle +
+            " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]",
+        0, of_field * 1e15 * std::cos(slant), 1000);
+    row(quantity,
+        "top of voxels met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]",
+        0, of_grid * 1e15 * std::cos(slant), 1000);
   }
 }
 
@@ -132,19 +138,22 @@ TEST_CASE("a ray within next to nothing of a triangle's plane") {
     const Vec3 from = u * std::cos(turned) + v * std::sin(turned);
     const Vec3 aim = target(random, data);
     const Vec3 origin = aim + from * random.uniform(1, 10) + n * (random.coin() ? off * random.uniform() : off);
-    const RayBundle rays = bundle_of({origin, normalize(aim + from * random.uniform(-0.01, 0.01) + v * (off * random.normal()) - origin)});
+    const RayBundle rays =
+        bundle_of({origin, normalize(aim + from * random.uniform(-0.01, 0.01) + v * (off * random.normal()) - origin)});
     const Meshes meshes(data);
     judge(meshes.linear, data, rays, verdict);
     meshes.compare(rays, others);
   }
   check(verdict, others);
-  // the same at a corner, where a wall stands right before it: what the wall hides may depend on roundings, but not on the accelerator
+  // the same at a corner, where a wall stands right before it: what the wall hides may depend on roundings, but not on
+  // the accelerator
   for (int time = 0; time < 10000; ++time) {
     const Rotation turn = random.rotation();
     const Vec3 u = turn * axis::right, v = turn * axis::forward, n = turn * axis::up, corner = random.point(1);
     MeshData data{{corner, corner - u - v * 0.3, corner - u + v * 0.3}, {{0, 1, 2}}, {}};
     const double off = random.log_uniform(1e-12, 1e-6), range = random.uniform(1, 3);
-    const Vec3 origin = corner + (u * std::cos(0.1) + v * std::sin(0.1)) * range + n * off, way = normalize(corner - origin);
+    const Vec3 origin = corner + (u * std::cos(0.1) + v * std::sin(0.1)) * range + n * off,
+               way = normalize(corner - origin);
     const Vec3 wall = corner - way * (random.uniform() * 1e-15 * range / off);
     add_triangle(data, {wall + v * 3.0, wall + n * 3.0 - v * 2.0, wall - n * 3.0 - v * 2.0});
     Meshes(data).compare(bundle_of({origin, way}), others);
@@ -169,8 +178,9 @@ TEST_CASE("a ray in the plane of a triangle") {
     // in a plane across an quantity, and in the plane x + y + z = 0
     const MeshData across{{turned({0, 0, 0}), turned({4, 0, 0}), turned({0, 4, 0})}, {{0, 1, 2}}, {}};
     const MeshData aslant{{turned({4, -4, 0}), turned({0, 4, -4}), turned({-4, 0, 4})}, {{0, 1, 2}}, {}};
-    for (const auto& [data, ends] : {std::pair{across, std::vector<Vec3>{{-4, 1, 0}, {-3, -3, 0}, {5, -1, 0}, {9, 0, 0}, {1, 1, 0}}},
-                                     std::pair{aslant, std::vector<Vec3>{{8, -8, 0}, {5, -1, -4}, {-8, 4, 4}, {1, 1, -2}, {0, 0, 0}}}}) {
+    for (const auto& [data, ends] :
+         {std::pair{across, std::vector<Vec3>{{-4, 1, 0}, {-3, -3, 0}, {5, -1, 0}, {9, 0, 0}, {1, 1, 0}}},
+          std::pair{aslant, std::vector<Vec3>{{8, -8, 0}, {5, -1, -4}, {-8, 4, 4}, {1, 1, -2}, {0, 0, 0}}}}) {
       const Meshes meshes(data);
       for (const Vec3& from : ends)
         for (const Vec3& to : ends) {
@@ -221,7 +231,8 @@ TEST_CASE("a ray in the plane of a triangle") {
   INFO(others.first);
   CHECK(others.different == 0);
   row(quantity, "triangle, in its plane: rays that meet it, of 1120", 0, static_cast<double>(met), 0);
-  row(quantity, "cube, in the plane of its lid: rays that do not meet its side, of 12", 0, static_cast<double>(through), 0);
+  row(quantity, "cube, in the plane of its lid: rays that do not meet its side, of 12", 0, static_cast<double>(through),
+      0);
 }
 
 TEST_CASE("a ray through an edge and through a corner") {
@@ -244,7 +255,8 @@ TEST_CASE("a ray through an edge and through a corner") {
   for (int time = 0; time < 2000; ++time) {
     const Vec3 origin = Vec3{0, 0, random.log_uniform(2, 1e6)} + random.point(0.5), corner = data.vertices[0];
     const Vec3 edge = corner + (data.vertices[1 + random.whole(around)] - corner) * random.uniform();
-    const RayBundle at_corner = bundle_of({origin, normalize(corner - origin)}), at_edge = bundle_of({origin, normalize(edge - origin)});
+    const RayBundle at_corner = bundle_of({origin, normalize(corner - origin)}),
+                    at_edge = bundle_of({origin, normalize(edge - origin)});
     const auto misses = [&](const RayBundle& rays, const Vec3& aim) {
       const double range = length(aim - origin);
       return std::fabs(range_of(meshes.linear, rays) - range) < 1e-14 * range ? 0U : 1U;
@@ -256,8 +268,10 @@ TEST_CASE("a ray through an edge and through a corner") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(quantity, "fan of 1000 triangles: rays at a shared edge that slip through, of 2000", 0, static_cast<double>(edges), 0);
-  row(quantity, "fan of 1000 triangles: rays at the shared corner that slip through, of 2000", 0, static_cast<double>(corners), 0);
+  row(quantity, "fan of 1000 triangles: rays at a shared edge that slip through, of 2000", 0,
+      static_cast<double>(edges), 0);
+  row(quantity, "fan of 1000 triangles: rays at the shared corner that slip through, of 2000", 0,
+      static_cast<double>(corners), 0);
 }
 
 TEST_CASE("a ray along the border of cells") {
@@ -280,7 +294,8 @@ TEST_CASE("a ray along the border of cells") {
     Comparison others;
     for (std::uint32_t c = 1; c < cells; ++c)
       for (std::uint32_t r = 1; r < cells; ++r)
-        for (const Vec2 way : {Vec2{0, 0}, Vec2{0, 1}, Vec2{0, -1}, Vec2{1, 0}, Vec2{-0.5, 0}, Vec2{1, 1}, Vec2{-0.5, -0.5}}) {
+        for (const Vec2 way :
+             {Vec2{0, 0}, Vec2{0, 1}, Vec2{0, -1}, Vec2{1, 0}, Vec2{-0.5, 0}, Vec2{1, 1}, Vec2{-0.5, -0.5}}) {
           // down by one and on by `way`, so as to meet the corner of cells (c, r) in its plane
           const Vec3 aim{first.x + c, first.y - r, static_cast<double>(c)}, down{way.x, way.y, -1};
           const RayBundle rays = bundle_of({aim - 4.0 * down, down});
@@ -295,11 +310,13 @@ TEST_CASE("a ray along the border of cells") {
     INFO(others.first);
     CHECK(others.different == 0);
     row(quantity,
-        "raster " + where + ", along borders and diagonals of cells: rays that do not meet the ground where it is, of " +
+        "raster " + where +
+            ", along borders and diagonals of cells: rays that do not meet the ground where it is, of " +
             std::to_string(sent),
         0, static_cast<double>(of_field), 0);
     row(quantity,
-        "voxels " + where + ", along borders of cells: rays that do not meet the cell in the east, of " + std::to_string(sent * 3 / 7), 0,
-        static_cast<double>(of_grid), 0);
+        "voxels " + where + ", along borders of cells: rays that do not meet the cell in the east, of " +
+            std::to_string(sent * 3 / 7),
+        0, static_cast<double>(of_grid), 0);
   }
 }

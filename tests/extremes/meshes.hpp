@@ -23,13 +23,14 @@
 
 namespace pulsecast::extremes {
 
-/// How far beside an edge a ray may still meet its triangle: some roundings of the distance to the farthest corner, the more the nearer the
-/// ray comes to the triangle's plane [m].
+/// How far beside an edge a ray may still meet its triangle: some roundings of the distance to the farthest corner, the
+/// more the nearer the ray comes to the triangle's plane [m].
 [[nodiscard]] inline double edge_bound(const support::ExactCrossing& crossing) noexcept {
   return 32 * std::numeric_limits<double>::epsilon() * crossing.distance / crossing.sine;
 }
 
-/// What a range may err by: as much, and times the aspect where the triangle is a needle, at whose tip an edge is passed late [m].
+/// What a range may err by: as much, and times the aspect where the triangle is a needle, at whose tip an edge is
+/// passed late [m].
 [[nodiscard]] inline double range_bound(const support::ExactCrossing& crossing) noexcept {
   return (1 + crossing.aspect) * edge_bound(crossing);
 }
@@ -52,7 +53,8 @@ void judge(const G& shape, const MeshData& data, const RayBundle& rays, Verdict&
     for (std::size_t i = 0; i < data.triangles.size(); ++i) {
       const support::ExactCrossing crossing = support::exact_crossing(data.triangle(i), ray);
       const double range = static_cast<double>(crossing.range), bound = range_bound(crossing);
-      if (crossing.sine > 1.001e-12 && crossing.inside > edge_bound(crossing) && range > ray.near + bound && range < ray.far - bound)
+      if (crossing.sine > 1.001e-12 && crossing.inside > edge_bound(crossing) && range > ray.near + bound &&
+          range < ray.far - bound)
         sure = std::min(sure, range + bound);
     }
     ++verdict.rays;
@@ -65,13 +67,15 @@ void judge(const G& shape, const MeshData& data, const RayBundle& rays, Verdict&
     const support::ExactCrossing crossing = support::exact_crossing(data.triangle(nearest.primitive_of(j)), ray);
     const double error = std::fabs(static_cast<double>(crossing.range - found));
     verdict.worst = std::max(verdict.worst, error);
-    verdict.wrong += error <= range_bound(crossing) && crossing.inside >= -edge_bound(crossing) && found <= sure ? 0 : 1;
+    verdict.wrong +=
+        error <= range_bound(crossing) && crossing.inside >= -edge_bound(crossing) && found <= sure ? 0 : 1;
   }
 }
 
 /// The same triangles under every accelerator; the first tests all, the others must answer as it does, to the last bit.
 struct Meshes {
-  explicit Meshes(const MeshData& data) : linear(data), bvh(data), exact_bvh(data), kd_tree(data), exact_kd_tree(data) {}
+  explicit Meshes(const MeshData& data)
+      : linear(data), bvh(data), exact_bvh(data), kd_tree(data), exact_kd_tree(data) {}
 
   void compare(const RayBundle& rays, support::Comparison& result) const {
     support::compare(linear, bvh, "Bvh<float>", rays, result);

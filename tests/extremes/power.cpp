@@ -32,7 +32,8 @@ double energy_of_record(const Laser& laser, double range) {
   const Survey survey{source, SingleRay{}, wall, validation::vacuum, Detector{settings}};
   auto workspace = survey.workspace();
   double energy = 0;
-  for (const float power : survey(0, workspace).waveform) energy += static_cast<double>(power) * settings.sample_interval;
+  for (const float power : survey(0, workspace).waveform)
+    energy += static_cast<double>(power) * settings.sample_interval;
   return energy / (from_wall(laser, range) * std::exp(2.0) / 2 * laser.pulse_length / 3.3946806708);
 }
 
@@ -68,9 +69,12 @@ TEST_CASE("apertures and wavelengths before a wall") {
       receiver.validate();
       const double radius = diameter / 2, spread = std::hypot(range, radius);
       const std::string wall = name + std::string(range == 1 ? ", wall at 1 m" : ", wall at 40 000 km");
-      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the quantity
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the
+      // quantity
       row(quantity, wall + ": received power, of the right one", 1,
-          LinkBudget(receiver, Laser{}).power(1, 1, range) / (Laser{}.peak_power * (radius / spread) * (radius / spread) * 0.99), 1e-12);
+          LinkBudget(receiver, Laser{}).power(1, 1, range) /
+              (Laser{}.peak_power * (radius / spread) * (radius / spread) * 0.99),
+          1e-12);
     }
   for (const auto& [name, wavelength] : {std::pair{"10 nm", 1e-8}, {"1 cm", 1e-2}}) {
     const Scanner scanner{.laser = {.wavelength = wavelength}};
@@ -85,13 +89,16 @@ TEST_CASE("apertures and wavelengths before a wall") {
 }
 
 TEST_CASE("powers, apertures and wavelengths that cannot be") {
-  for (const auto& [name, power] : {std::pair{"1e-300 W", 1e-300}, {"1e-21 W", 1e-21}, {"1e21 W", 1e21}, {"1e300 W", 1e300}, {"0 W", 0.0}})
+  for (const auto& [name, power] :
+       {std::pair{"1e-300 W", 1e-300}, {"1e-21 W", 1e-21}, {"1e21 W", 1e21}, {"1e300 W", 1e300}, {"0 W", 0.0}})
     refused(quantity, name, [power = power] { Scanner{.laser = {.peak_power = power}}.validate(); });
-  for (const auto& [name, diameter] :
-       {std::pair{"an aperture of 1e-300 m", 1e-300}, {"an aperture of 0.09 mm", 9e-5}, {"an aperture of 1.1 km", 1.1e3}})
+  for (const auto& [name, diameter] : {std::pair{"an aperture of 1e-300 m", 1e-300},
+                                       {"an aperture of 0.09 mm", 9e-5},
+                                       {"an aperture of 1.1 km", 1.1e3}})
     refused(quantity, name, [diameter = diameter] { Receiver{.diameter = diameter}.validate(); });
-  for (const auto& [name, length] :
-       {std::pair{"a wavelength of 1e-300 m", 1e-300}, {"a wavelength of 9 nm", 9e-9}, {"a wavelength of 1.1 cm", 1.1e-2}})
+  for (const auto& [name, length] : {std::pair{"a wavelength of 1e-300 m", 1e-300},
+                                     {"a wavelength of 9 nm", 9e-9},
+                                     {"a wavelength of 1.1 cm", 1.1e-2}})
     refused(quantity, name, [length = length] { Scanner{.laser = {.wavelength = length}}.validate(); });
   refused(quantity, "a threshold without bound",
           [] { return FullWaveform{WaveformSettings{.threshold = std::numeric_limits<double>::infinity()}}; });

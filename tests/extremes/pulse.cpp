@@ -48,13 +48,15 @@ TEST_CASE("pulse rates") {
       REQUIRE(pulse);
       const auto each = static_cast<std::uint64_t>(rate);
       const double exact = static_cast<double>(i % each) / rate;  // of the second
-      worst = std::max(
-          worst,
-          std::fabs(static_cast<double>(pulse->tick.second - static_cast<std::int64_t>(i / each)) + (pulse->tick.fraction - exact)) * rate);
-      other_entry += std::fabs(std::atan2(pulse->direction().x, pulse->direction().y) - entries[i % 7].azimuth) < 1e-9 ? 0 : 1;
+      worst = std::max(worst, std::fabs(static_cast<double>(pulse->tick.second - static_cast<std::int64_t>(i / each)) +
+                                        (pulse->tick.fraction - exact)) *
+                                  rate);
+      other_entry +=
+          std::fabs(std::atan2(pulse->direction().x, pulse->direction().y) - entries[i % 7].azimuth) < 1e-9 ? 0 : 1;
     }
     row(quantity, name + std::string(", 100 000 pulses: largest error of the time [slots]"), 0, worst, bound);
-    row(quantity, name + std::string(", 100 000 pulses through a table of 7 entries: how many by a wrong one"), 0, other_entry, 0);
+    row(quantity, name + std::string(", 100 000 pulses through a table of 7 entries: how many by a wrong one"), 0,
+        other_entry, 0);
   }
   refused(quantity, "0 Hz", [] { Scanner{.pulse_rate = 0}.validate(); });
   refused(quantity, "10 us for a rate", [] { Scanner{.pulse_rate = 1e-5}.validate(); });
@@ -66,7 +68,8 @@ TEST_CASE("pulse lengths, before a wall") {
     const char* name;
     double length;
   };
-  for (const auto& [name, length] : {Case{"1 fs", 1e-15}, {"1 ps", 1e-12}, {"1 ns", 1e-9}, {"1 us", 1e-6}, {"1 ms", 1e-3}}) {
+  for (const auto& [name, length] :
+       {Case{"1 fs", 1e-15}, {"1 ps", 1e-12}, {"1 ns", 1e-9}, {"1 us", 1e-6}, {"1 ms", 1e-3}}) {
     const Laser laser{.pulse_length = length};
     const WaveformSettings settings{.sample_interval = length / 10, .threshold = 0, .window = length / 4};
     const Errors errors = errors_at_wall(laser, 100, settings);
@@ -77,15 +80,18 @@ TEST_CASE("pulse lengths, before a wall") {
   }
   // a double tells two-way times of 0.27 s from each other by 6e-17 s, a fifth of the tau of 1 fs
   const Laser shortest{.pulse_length = 1e-15};
-  const WaveformSettings bins{.sample_interval = 1e-16, .threshold = 0, .window = 1e-15, .timing = EchoTiming::true_range};
+  const WaveformSettings bins{
+      .sample_interval = 1e-16, .threshold = 0, .window = 1e-15, .timing = EchoTiming::true_range};
   const auto far_away = [&](const auto& detector) {
     const auto echoes = validation::one_pulse(Wall{4e7}, SingleRay{}, shortest, validation::vacuum, detector).echoes;
     REQUIRE(echoes.size() == 1);
     CHECK(echoes[0].range == 4e7);
     return echoes[0].amplitude / from_wall(shortest, 4e7);
   };
-  row(quantity, "1 fs, wall at 40 000 km, AnalyticWaveform: amplitude, of the right one", 1, far_away(AnalyticWaveform<>(bins)), 1e-6);
-  row(quantity, "1 fs, wall at 40 000 km, FullWaveform: amplitude, of the right one", 1, far_away(FullWaveform<>(bins)), 0.1);
+  row(quantity, "1 fs, wall at 40 000 km, AnalyticWaveform: amplitude, of the right one", 1,
+      far_away(AnalyticWaveform<>(bins)), 1e-6);
+  row(quantity, "1 fs, wall at 40 000 km, FullWaveform: amplitude, of the right one", 1, far_away(FullWaveform<>(bins)),
+      0.1);
 }
 
 TEST_CASE("pulse lengths, before two walls") {
@@ -95,7 +101,8 @@ TEST_CASE("pulse lengths, before two walls") {
   double worst = 0;
   for_each_waveform(fine, [&](const char* name, const auto& detector) {
     CAPTURE(name);
-    const auto echoes = validation::one_pulse(TwoWalls{100, 100.000001}, TwoRays{}, shortest, validation::vacuum, detector).echoes;
+    const auto echoes =
+        validation::one_pulse(TwoWalls{100, 100.000001}, TwoRays{}, shortest, validation::vacuum, detector).echoes;
     REQUIRE(echoes.size() == 2);
     worst = std::max({worst, std::fabs(echoes[0].range - 100), std::fabs(echoes[1].range - 100.000001)});
   });
@@ -108,11 +115,13 @@ TEST_CASE("pulse lengths, before two walls") {
   worst = 0;
   for_each_waveform(coarse, [&](const char* name, const auto& detector) {
     CAPTURE(name);
-    const auto echoes = validation::one_pulse(TwoWalls{near, far}, TwoRays{}, longest, validation::vacuum, detector).echoes;
+    const auto echoes =
+        validation::one_pulse(TwoWalls{near, far}, TwoRays{}, longest, validation::vacuum, detector).echoes;
     REQUIRE(echoes.size() == 1);
     worst = std::max(worst, std::fabs(echoes[0].range - (share * near + (1 - share) * far)));
   });
-  row(quantity, "1 ms, walls 10 km apart: largest error of the mean range, all detectors and widths [m]", 0, worst, 1e-3);
+  row(quantity, "1 ms, walls 10 km apart: largest error of the mean range, all detectors and widths [m]", 0, worst,
+      1e-3);
 }
 
 TEST_CASE("pulses that cannot be") {

@@ -39,7 +39,8 @@ struct Distance {
 };
 const std::vector<Distance> distances{{"1 mm", 1e-3}, {"1 m", 1}, {"1 km", 1e3}, {"1000 km", 1e6}, {"40,000 km", 4e7}};
 
-/// Bumpy ground of 20 x 20 pixels, a hundredth of the distance from one to the next, but 10 m at most; its middle in the origin.
+/// Bumpy ground of 20 x 20 pixels, a hundredth of the distance from one to the next, but 10 m at most; its middle in
+/// the origin.
 Raster ground(double distance, Generator& random) {
   const double pixel = std::min(distance / 100, 10.0);
   Raster raster{.columns = 20, .rows = 20, .first = {-9.5 * pixel, 9.5 * pixel}, .pixel = {pixel, pixel}};
@@ -75,7 +76,8 @@ TEST_CASE("ground at any range") {
       compare(meshes.linear, field, "HeightField", rays, others);
     }
     check(verdict, others);
-    row(quantity, "ground at " + d.name + ": largest error of a range [1e-15 of it]", 0, verdict.worst / d.range * 1e15, 100);
+    row(quantity, "ground at " + d.name + ": largest error of a range [1e-15 of it]", 0, verdict.worst / d.range * 1e15,
+        100);
   }
 }
 
@@ -106,7 +108,8 @@ TEST_CASE("what lies at the very ends of a ray, at any range") {
   }
   row(quantity, "wall at these ranges: answers, of 50, that meet it up to its range, or from a rounding before it", 50,
       static_cast<double>(good), 0);
-  row(quantity, "wall at these ranges: answers, of 50, that meet it up to a rounding before its range, or from there on", 0,
+  row(quantity,
+      "wall at these ranges: answers, of 50, that meet it up to a rounding before its range, or from there on", 0,
       static_cast<double>(bad), 0);
 }
 
@@ -143,14 +146,17 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
       const double size = d.range / 4;
       const MeshData plate{{{-size, d.range, -size}, {size, d.range, -size}, {0, d.range, size}}, {{0, 1, 2}}, {}};
       const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(plate)}});
-      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the quantity
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the
+      // quantity
       const Receiver& receiver = validation::vacuum;
-      const double reach = std::hypot(d.range, receiver.diameter / 2), gain = receiver.diameter * receiver.diameter * receiver.efficiency;
+      const double reach = std::hypot(d.range, receiver.diameter / 2),
+                   gain = receiver.diameter * receiver.diameter * receiver.efficiency;
       const Laser laser{.peak_power = 1e9};
       const validation::Result result = validation::one_pulse(scene, SingleRay{}, laser, receiver, instrument);
       REQUIRE(result.echoes.size() == 1);
       worst = std::max(worst, std::fabs(result.echoes[0].range - d.range));
-      worst_power = std::max(worst_power, std::fabs(result.power / (laser.peak_power * 0.5 * gain / (4 * reach * reach)) - 1));
+      worst_power =
+          std::max(worst_power, std::fabs(result.power / (laser.peak_power * 0.5 * gain / (4 * reach * reach)) - 1));
     }
     row(quantity, detector + ", wall at these ranges: largest error of the range [nm]", 0, worst * 1e9, 1000);
     row(quantity, detector + ", wall at these ranges: largest error of the power [1e-12]", 0, worst_power * 1e12, 1);

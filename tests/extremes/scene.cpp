@@ -100,13 +100,17 @@ TEST_CASE("a scene of one triangle") {
   check(verdict, others);
   CHECK(verdict.met < verdict.rays);
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(data)}});
-  row(quantity, "one triangle: range of a pulse at it [m]", 5, validation::one_pulse(scene, SingleRay{}).echoes.at(0).range, 1e-9);
-  refused_as(quantity, "mesh of no triangle", "at least one in number", [] { return TriangleMesh<>(MeshData{{{0, 0, 0}}, {}, {}}); });
+  row(quantity, "one triangle: range of a pulse at it [m]", 5,
+      validation::one_pulse(scene, SingleRay{}).echoes.at(0).range, 1e-9);
+  refused_as(quantity, "mesh of no triangle", "at least one in number", [] {
+    return TriangleMesh<>(MeshData{{{0, 0, 0}}, {}, {}});
+  });
 }
 
 TEST_CASE("more primitives than can be counted are refused before memory is asked for") {
   const Box box{{0, 0, 0}, {1, 1, 1}};
-  const std::span<const Box> many(&box, std::size_t{4294967295});  // refused by their number: none but the first is there
+  const std::span<const Box> many(&box,
+                                  std::size_t{4294967295});  // refused by their number: none but the first is there
   refused_as(quantity, "2^32 - 1 boxes, Bvh<float>", "in number", [&] { return Bvh<float>(many); });
   refused_as(quantity, "2^32 - 1 boxes, Bvh<double>", "in number", [&] { return Bvh<double>(many); });
   refused_as(quantity, "2^32 - 1 boxes, KdTree<float>", "in number", [&] { return KdTree<float>(many); });
@@ -117,13 +121,15 @@ TEST_CASE("more primitives than can be counted are refused before memory is aske
     return true;
   };
   CHECK_NOTHROW(static_cast<void>(counts(4294967295, 4294967294)));  // 2^31 + 1 triangles are served
-  refused_as(quantity, "mesh of 2^32 - 1 triangles", "MeshData::triangles (number)", [&] { return counts(3, 4294967295); });
+  refused_as(quantity, "mesh of 2^32 - 1 triangles", "MeshData::triangles (number)",
+             [&] { return counts(3, 4294967295); });
   refused_as(quantity, "mesh of 2^32 vertices", "MeshData::vertices (number)", [&] { return counts(4294967296, 1); });
   refused_as(quantity, "raster of 65537 x 32769 pixels, 2^31 cells", "cells between them",
              [] { return HeightField({.columns = 65537, .rows = 32769}); });
   refused_as(quantity, "raster of 65536 x 65536 pixels", "cells between them",
              [] { return HeightField({.columns = 65536, .rows = 65536}); });
-  refused_as(quantity, "raster of 2^32 - 1 columns", "Raster::columns is", [] { return HeightField({.columns = 4294967295, .rows = 2}); });
+  refused_as(quantity, "raster of 2^32 - 1 columns", "Raster::columns is",
+             [] { return HeightField({.columns = 4294967295, .rows = 2}); });
   refused_as(quantity, "voxels 2^21 cells apart", "within 2097152 cells", [] {
     return VoxelGrid<>({.cells = {{0, 0, 0}, {0, 0, 1U << 21}}});
   });
@@ -137,7 +143,8 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
   std::size_t wrong = 0;
   for (int k = 0; k < 3; ++k)
     for (std::uint32_t i = 0; i < 8; ++i) {
-      // from the outside of each corner, along each quantity that leads out of the other end, past what is in the first cell or into it
+      // from the outside of each corner, along each quantity that leads out of the other end, past what is in the first
+      // cell or into it
       Vec3 cell{data.cells[i][0], data.cells[i][1], data.cells[i][2]}, way{};
       const bool low = cell[k] == 0;
       way[k] = low ? 1 : -1;
@@ -149,23 +156,25 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
       wrong += first.met(0) && first.range[0] == 9.5 ? 0 : 1;
       wrong += second.met(0) && second.range[0] == last - 10.5 ? 0 : 1;
     }
-  row(quantity, "voxels in the corners of a lattice of 2^63 cells: rays along its edges that do not meet them where they are, of 48", 0,
-      static_cast<double>(wrong), 0);
+  row(quantity,
+      "voxels in the corners of a lattice of 2^63 cells: rays along its edges that do not meet them where they are, of "
+      "48",
+      0, static_cast<double>(wrong), 0);
 }
 
 #if defined(__linux__)
 
 namespace {
 
-/// Fills a height field as one that was kept in a file is filled: flat ground of one material at height 0, on pages that
-/// nobody ever wrote to.
+/// Fills a height field as one that was kept in a file is filled: flat ground of one material at height 0, on pages
+/// that nobody ever wrote to.
 struct FlatGround {
   std::uint32_t columns, rows;
   std::shared_ptr<const void> zeros;
   std::size_t size;  ///< of the zeros [byte]
 
-  void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad, Vec3& centre,
-                  Box& bounds, pulsecast::detail::PixelHeights& heights, SharedArray<float>& pyramid,
+  void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad,
+                  Vec3& centre, Box& bounds, pulsecast::detail::PixelHeights& heights, SharedArray<float>& pyramid,
                   pulsecast::detail::PackedNumbers&) const {
     grid = {.columns = columns, .rows = rows};
     per_metre = {1, -1};
@@ -195,7 +204,9 @@ struct FlatGround {
       REQUIRE(count * sizeof(float) <= size);
       return SharedArray<float>({static_cast<const float*>(zeros.get()), count}, zeros);
     };
-    const auto set = [&](SharedArray<float>& all, SharedArray<std::uint16_t>&) { all = of(std::size_t{columns} * rows); };
+    const auto set = [&](SharedArray<float>& all, SharedArray<std::uint16_t>&) {
+      all = of(std::size_t{columns} * rows);
+    };
     heights.archive(set);
     pyramid = of(floats);
   }
@@ -216,17 +227,21 @@ TEST_CASE("ground of nearly 2^32 triangles is served") {
   std::size_t wrong = 0;
   for (int time = 0; time < 2000; ++time) {
     // anywhere, and in the last cells of all
-    const auto place = [&] { return static_cast<std::uint32_t>(random.coin() ? random.whole(side - 1) : side - 2 - random.whole(3)); };
+    const auto place = [&] {
+      return static_cast<std::uint32_t>(random.coin() ? random.whole(side - 1) : side - 2 - random.whole(3));
+    };
     const std::uint32_t column = place(), row = place(), half = random.coin() ? 1 : 0;
     const Vec2 inside = half == 0 ? Vec2{0.25, 0.25} : Vec2{0.75, 0.75};
-    const RayBundle rays = bundle_of({{column + inside.x, -(row + inside.y), 7}, normalize(Vec3{0.01, -0.01, -1} * random.uniform())});
+    const RayBundle rays =
+        bundle_of({{column + inside.x, -(row + inside.y), 7}, normalize(Vec3{0.01, -0.01, -1} * random.uniform())});
     const double range = 7 / -rays.z[0];
     const Vec2 at{rays.origin.x + range * rays.x[0], -(rays.origin.y + range * rays.y[0])};
     const auto c = static_cast<std::uint32_t>(at.x), r = static_cast<std::uint32_t>(at.y);
     const std::uint32_t expected = 2 * (r * (side - 1) + c) + (at.x - c + (at.y - r) > 1 ? 1 : 0);
     ClosestHits nearest(rays);
     field.closest(rays, nearest);
-    wrong += nearest.met(0) && std::fabs(nearest.range[0] - range) < 1e-9 && nearest.primitive_of(0) == expected ? 0 : 1;
+    wrong +=
+        nearest.met(0) && std::fabs(nearest.range[0] - range) < 1e-9 && nearest.primitive_of(0) == expected ? 0 : 1;
     const Triangle t = field.triangle(expected);
     const Vec3& south_west = expected % 2 == 0 ? t.b : t.a;
     wrong += south_west.x == c && south_west.y == -1.0 - r ? 0 : 1;

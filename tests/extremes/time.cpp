@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Time of survey: pulse 1 to pulse 10^12, a year at 31 688 Hz. What an optic does with a pulse is held against exact turns.
+// Time of survey: pulse 1 to pulse 10^12, a year at 31 688 Hz. What an optic does with a pulse is held against exact
+// turns.
 
 #include <algorithm>
 #include <bit>
@@ -94,7 +95,8 @@ double worst(const Source& source, PulseIndex first, const std::function<Directi
 template <class Source>
 void directions(const std::string& name, const Source& source, const std::function<Direction(PulseIndex)>& right_one) {
   row(quantity, name + ", 20 000 pulses from pulse 1: largest error [rad]", 0, worst(source, 1, right_one), 1e-11);
-  row(quantity, name + ", 20 000 pulses from pulse 1e12: largest error [rad]", 0, worst(source, late, right_one), 1e-11);
+  row(quantity, name + ", 20 000 pulses from pulse 1e12: largest error [rad]", 0, worst(source, late, right_one),
+      1e-11);
 }
 
 }  // namespace
@@ -114,18 +116,21 @@ TEST_CASE("the time of a pulse") {
 
 TEST_CASE("the phase of each optic") {
   const double tilt = 20_deg;
-  directions("OscillatingMirror, triangle", Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt}, scanner},
+  directions("OscillatingMirror, triangle",
+             Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt}, scanner},
              [&](PulseIndex i) {
                const Real phase = turns(i).phase;
                return above(tilt * (phase < 0.5L ? 4 * phase - 1 : 3 - 4 * phase));
              });
-  directions("OscillatingMirror, sine",
-             Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt, .swing = Swing::sine}, scanner},
-             [&](PulseIndex i) { return above(-tilt * std::cos(turn * turns(i).phase)); });
-  directions("PalmerMirror", Deflector{PalmerMirror{.turns_per_second = frequency, .half_angle = tilt}, scanner}, [&](PulseIndex i) {
-    const Real angle = turn * turns(i).phase, off = tilt;
-    return Direction{std::sin(off) * std::sin(angle), std::cos(off), std::sin(off) * std::cos(angle)};
-  });
+  directions(
+      "OscillatingMirror, sine",
+      Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt, .swing = Swing::sine}, scanner},
+      [&](PulseIndex i) { return above(-tilt * std::cos(turn * turns(i).phase)); });
+  directions("PalmerMirror", Deflector{PalmerMirror{.turns_per_second = frequency, .half_angle = tilt}, scanner},
+             [&](PulseIndex i) {
+               const Real angle = turn * turns(i).phase, off = tilt;
+               return Direction{std::sin(off) * std::sin(angle), std::cos(off), std::sin(off) * std::cos(angle)};
+             });
   const std::vector<double> tilts{0, 1_deg, 2_deg};
   // where a pulse and a line begin together, the tick may round to the end of the line before
   const PolygonMirror polygon{.lines_per_second = rate / 8.0, .sweep = 6_deg, .facet_tilts = tilts};
@@ -143,28 +148,34 @@ TEST_CASE("the phase of each optic") {
   directions("PatternTable of 1009 entries at the pulse rate",
              Deflector{PatternTable{.entries = entries, .entries_per_second = rate}, scanner}, [&](PulseIndex i) {
                const Real azimuth = entries[i % 1009].azimuth, elevation = entries[i % 1009].elevation;
-               return Direction{std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
+               return Direction{std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
+                                std::sin(elevation)};
              });
-  directions("RotatingHead at half a turn a second", Deflector{RotatingHead{.rate = pi}, Deflector{FixedBeam{}, scanner}},
-             [&](PulseIndex i) {
+  directions("RotatingHead at half a turn a second",
+             Deflector{RotatingHead{.rate = pi}, Deflector{FixedBeam{}, scanner}}, [&](PulseIndex i) {
                const Real angle = turn * turns(i, 8).phase;
                return Direction{-std::sin(angle), std::cos(angle), 0};
              });
-  const double apart = worst(Deflector{RotatingHead{.rate = 10}, Deflector{FixedBeam{}, scanner}}, late, [&](PulseIndex i) {
-    const Real angle = std::remainder(10 * static_cast<Real>(i) / rate, turn);
-    return Direction{-std::sin(angle), std::cos(angle), 0};
-  });
-  row(quantity, "RotatingHead at 10 rad/s, the same: largest error, of what half a unit in the last place of its rate makes up", 0,
-      apart / (0x1p-50 * static_cast<double>(late) / rate), 2);
+  const double apart =
+      worst(Deflector{RotatingHead{.rate = 10}, Deflector{FixedBeam{}, scanner}}, late, [&](PulseIndex i) {
+        const Real angle = std::remainder(10 * static_cast<Real>(i) / rate, turn);
+        return Direction{-std::sin(angle), std::cos(angle), 0};
+      });
+  row(quantity,
+      "RotatingHead at 10 rad/s, the same: largest error, of what half a unit in the last place of its rate makes up",
+      0, apart / (0x1p-50 * static_cast<double>(late) / rate), 2);
   // a thin end of glass before the beam, which turns: entered through the inclined face, left through the square one
   const double wedge = 0.3, index = 1.5;
-  directions("RisleyPrisms",
-             Deflector{RisleyPrisms{.prisms = {{.wedge = wedge, .turns_per_second = frequency, .refractive_index = index}}}, scanner},
-             [&](PulseIndex i) {
-               const Real inside = std::asin(std::sin(static_cast<Real>(wedge)) / index);  // from the normal of the inclined face
-               const Real off = std::asin(index * std::sin(wedge - inside)), angle = turn * turns(i).phase;
-               return Direction{-std::sin(off) * std::sin(angle), std::cos(off), -std::sin(off) * std::cos(angle)};
-             });
+  directions(
+      "RisleyPrisms",
+      Deflector{RisleyPrisms{.prisms = {{.wedge = wedge, .turns_per_second = frequency, .refractive_index = index}}},
+                scanner},
+      [&](PulseIndex i) {
+        const Real inside =
+            std::asin(std::sin(static_cast<Real>(wedge)) / index);  // from the normal of the inclined face
+        const Real off = std::asin(index * std::sin(wedge - inside)), angle = turn * turns(i).phase;
+        return Direction{-std::sin(off) * std::sin(angle), std::cos(off), -std::sin(off) * std::cos(angle)};
+      });
   refused(quantity, "a mirror at 0 Hz", [] { OscillatingMirror{.cycles_per_second = 0}.validate(); });
   refused(quantity, "a mirror at 1e13 Hz", [] { OscillatingMirror{.cycles_per_second = 1e13}.validate(); });
   refused(quantity, "a cone at 1e13 Hz", [] { PalmerMirror{.turns_per_second = 1e13}.validate(); });
@@ -183,14 +194,16 @@ TEST_CASE("channels and legs") {
   std::uint64_t wrong = 0;
   for (PulseIndex i = late; i < late + window; ++i) {
     const auto pulse = device.pulse(i);
-    wrong += pulse && emitters[pulse->emitter].channel == i % 16 && pulse->tick == Tick::of(i / 16, rate / 16.0) ? 0 : 1;
+    wrong +=
+        pulse && emitters[pulse->emitter].channel == i % 16 && pulse->tick == Tick::of(i / 16, rate / 16.0) ? 0 : 1;
   }
   row(quantity, "Channels, 20 000 slots from 1e12: of a wrong channel or time", 0, static_cast<double>(wrong), 0);
 
   // strips of 10^6 seconds less a bit: starts are sums of what has no exact fraction
   constexpr PulseIndex each = 12'345'678'901;
   using Strip = Platform<Tripod, Deflector<FixedBeam, Scanner>>;
-  const Legs strips{std::vector<Strip>(82, Strip{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulse_rate = rate, .pulses = each}}})};
+  const Legs strips{std::vector<Strip>(
+      82, Strip{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulse_rate = rate, .pulses = each}}})};
   Real worst = 0;
   wrong = 0;
   for (PulseIndex i = late; i < late + window; ++i) {
@@ -202,9 +215,11 @@ TEST_CASE("channels and legs") {
                                       (static_cast<Real>(pulse->tick.fraction) - exact.phase)));
   }
   row(quantity, "Legs, 20 000 pulses from pulse 1e12: of a wrong leg", 0, static_cast<double>(wrong), 0);
-  row(quantity, "Legs, 82 end to end, 20 000 pulses from pulse 1e12: largest error of the time [s]", 0, static_cast<double>(worst), 1e-13);
+  row(quantity, "Legs, 82 end to end, 20 000 pulses from pulse 1e12: largest error of the time [s]", 0,
+      static_cast<double>(worst), 1e-13);
   const auto longest = [](double pulse_rate) {
-    return Strip{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulse_rate = pulse_rate, .pulses = PulseIndex{1} << 52}}};
+    return Strip{Tripod{}, Mount{},
+                 Deflector{FixedBeam{}, Scanner{.pulse_rate = pulse_rate, .pulses = PulseIndex{1} << 52}}};
   };
   refused(quantity, "Legs of 2^62 slots together", [&] { return Legs{std::vector<Strip>(1024, longest(1e9))}; });
   refused(quantity, "Legs of 1.8e15 s together", [&] { return Legs{std::vector<Strip>(2, longest(5))}; });
@@ -215,31 +230,38 @@ TEST_CASE("trajectories") {
     return std::fabs(static_cast<Real>(path.at(Tick::of(i, rate)).position.y) - position);
   };
   Real slow = 0, fast = 0, between = 0, smooth = 0;
-  const StraightLine survey{.to = {0, 1e6, 0}, .speed = 0.0078125}, orbit{.from = {0, -1e9, 0}, .to = {0, 1e9, 0}, .speed = 32};
+  const StraightLine survey{.to = {0, 1e6, 0}, .speed = 0.0078125},
+      orbit{.from = {0, -1e9, 0}, .to = {0, 1e9, 0}, .speed = 32};
   const auto begin = static_cast<double>(late / rate);  // a whole second, shortly before the pulse
   std::vector<TimedPose> points;
   for (int k = 0; k < 5; ++k) points.push_back({.time = begin + k, .position = {0, 32.0 * k, 0}});
   const Waypoints linear{points}, cubic{points, Interpolation::cubic};
   for (PulseIndex i = late; i < late + window; ++i) {
     const Turns t = turns(i, 16);
-    const Real time = static_cast<Real>(t.whole) + t.phase, since = (static_cast<Real>(t.whole) - static_cast<Real>(begin)) + t.phase;
+    const Real time = static_cast<Real>(t.whole) + t.phase,
+               since = (static_cast<Real>(t.whole) - static_cast<Real>(begin)) + t.phase;
     slow = std::max(slow, error(survey, 0.0078125L * time, i));
     fast = std::max(fast, error(orbit, 32 * time - 1e9L, i));
     between = std::max(between, error(linear, 32 * since, i));
     smooth = std::max(smooth, error(cubic, 32 * since, i));
   }
-  row(quantity, "StraightLine at 8 mm/s, 246 km on: largest error of the position [m]", 0, static_cast<double>(slow), 1e-8);
-  row(quantity, "StraightLine at 32 m/s, 1 000 000 km on: largest error of the position [m]", 0, static_cast<double>(fast), 1e-5);
-  row(quantity, "Waypoints at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(between), 1e-12);
-  row(quantity, "Waypoints, cubic, at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(smooth), 1e-12);
+  row(quantity, "StraightLine at 8 mm/s, 246 km on: largest error of the position [m]", 0, static_cast<double>(slow),
+      1e-8);
+  row(quantity, "StraightLine at 32 m/s, 1 000 000 km on: largest error of the position [m]", 0,
+      static_cast<double>(fast), 1e-5);
+  row(quantity, "Waypoints at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(between),
+      1e-12);
+  row(quantity, "Waypoints, cubic, at 32 m/s after a year: largest error of the position [m]", 0,
+      static_cast<double>(smooth), 1e-12);
   refused(quantity, "a waypoint at 1e16 s", [] { return Waypoints{{{.time = 1e16}}}; });
   refused(quantity, "a line that takes 1e16 s", [] { StraightLine{.to = {0, 1e8, 0}, .speed = 1e-8}.validate(); });
 }
 
 TEST_CASE("the errors of a pose") {
   const auto tripod = [](double duration) {
-    return Platform{Tripod{}, Mount{},
-                    Deflector{FixedBeam{}, Scanner{.pulse_rate = rate, .pulses = static_cast<PulseIndex>(duration * rate)}}};
+    return Platform{
+        Tripod{}, Mount{},
+        Deflector{FixedBeam{}, Scanner{.pulse_rate = rate, .pulses = static_cast<PulseIndex>(duration * rate)}}};
   };
   constexpr double year = 31'557'600, hour = 3600;
   const WithPoseErrors drifting{tripod(year), PoseErrors{.position_drift = 1, .drift_time = hour, .seed = 7}};
@@ -256,10 +278,12 @@ TEST_CASE("the errors of a pose") {
     if (n + 500 < steps) continue;
     for (int k = 0; k < 8; ++k) {  // eighths of a step of 72 s
       const Tick t{static_cast<std::int64_t>((n - 1) * 72 + static_cast<std::uint64_t>(9 * k)), 0};
-      worst = std::max(worst, std::fabs(drifting.reported(t).position.x - (before + (drift - before) * static_cast<Real>(k) / 8)));
+      worst = std::max(
+          worst, std::fabs(drifting.reported(t).position.x - (before + (drift - before) * static_cast<Real>(k) / 8)));
     }
   }
-  row(quantity, "PoseErrors, a Gauss-Markov drift of 1 m and an hour, in the last ten hours of a year: largest error [m]", 0,
+  row(quantity,
+      "PoseErrors, a Gauss-Markov drift of 1 m and an hour, in the last ten hours of a year: largest error [m]", 0,
       static_cast<double>(worst), 1e-9);
   row(quantity, "PoseErrors, the same drift: its deviation over the year [m]", 1,
       static_cast<double>(std::sqrt(squares / static_cast<Real>(steps))), 0.05);
@@ -271,11 +295,13 @@ TEST_CASE("the errors of a pose") {
   const WithPoseErrors noisy{tripod(year), PoseErrors{.position_noise = 1, .seed = 7}};
   std::uint64_t same = 0;
   for (int k = 0; k < 1000; ++k) {
-    const double fraction = 0.5 + k / 4096.0, other = std::bit_cast<double>(std::bit_cast<std::uint64_t>(fraction) ^ 2U);
+    const double fraction = 0.5 + k / 4096.0,
+                 other = std::bit_cast<double>(std::bit_cast<std::uint64_t>(fraction) ^ 2U);
     same += noisy.reported({31'000'000, fraction}).position == noisy.reported({31'000'001, other}).position ? 1 : 0;
     same += noisy.reported({31'000'000, fraction}).position == noisy.reported({31'000'001, fraction}).position ? 1 : 0;
   }
-  row(quantity, "PoseErrors, white noise of 2000 pairs of moments in two seconds: how many are alike", 0, static_cast<double>(same), 0);
+  row(quantity, "PoseErrors, white noise of 2000 pairs of moments in two seconds: how many are alike", 0,
+      static_cast<double>(same), 0);
 }
 
 TEST_CASE("random numbers") {
@@ -315,7 +341,9 @@ TEST_CASE("a whole survey") {
   for (PulseIndex i = late; i < late + window; ++i) {
     const Outcome outcome = survey(i, workspace);
     REQUIRE(outcome.echoes.size() == 1);
-    worst = std::max(worst, std::fabs(outcome.echoes[0].range - 1000 / std::cos(static_cast<Real>(30_deg) * (2 * turns(i).phase - 1))));
+    worst = std::max(worst, std::fabs(outcome.echoes[0].range -
+                                      1000 / std::cos(static_cast<Real>(30_deg) * (2 * turns(i).phase - 1))));
   }
-  row(quantity, "a survey from 1 km, 20 000 pulses from pulse 1e12: largest error of the range [m]", 0, static_cast<double>(worst), 1e-9);
+  row(quantity, "a survey from 1 km, 20 000 pulses from pulse 1e12: largest error of the range [m]", 0,
+      static_cast<double>(worst), 1e-9);
 }

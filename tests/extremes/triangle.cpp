@@ -35,7 +35,8 @@ namespace {
 const std::string quantity = "triangle";
 
 /// Rays at triangles from up to so many times their size away.
-void shoot(const MeshData& data, double size, double farthest, Generator& random, Verdict& verdict, Comparison& others) {
+void shoot(const MeshData& data, double size, double farthest, Generator& random, Verdict& verdict,
+           Comparison& others) {
   const Meshes meshes(data);
   for (int time = 0; time < 200; ++time) {
     RayBundle rays;
@@ -73,8 +74,8 @@ MeshData slope(std::uint32_t cells) {
   return net(cells, [](std::uint32_t x, std::uint32_t) { return 0.5 * x; });
 }
 
-/// The first triangle of such a slope that a place belongs to: of those around a corner or along an edge, that in the row before, or else
-/// in the column before.
+/// The first triangle of such a slope that a place belongs to: of those around a corner or along an edge, that in the
+/// row before, or else in the column before.
 PrimitiveIndex first_of(std::uint32_t cells, double x, double y) {
   double column = std::floor(x), row = std::floor(y);
   if (y == row && row > 0) --row;
@@ -88,7 +89,9 @@ std::size_t wrong_on_slope(const G& mesh, std::uint32_t cells, int times) {
   Generator random(8330);
   std::size_t wrong = 0;
   for (int time = 0; time < times; ++time) {
-    const auto at = [&] { return 0.125 * static_cast<double>(random.coin() ? 8 * random.whole(cells) + 8 : random.whole(8ULL * cells)); };
+    const auto at = [&] {
+      return 0.125 * static_cast<double>(random.coin() ? 8 * random.whole(cells) + 8 : random.whole(8ULL * cells));
+    };
     const double x = at(), y = random.whole(4) == 0 ? x : at();
     const Answer answer = ask(mesh, {{x, y, 2.0 * cells}, -axis::up});
     wrong += answer.range == 2.0 * cells - 0.5 * x && answer.primitive == first_of(cells, x, y) ? 0 : 1;
@@ -136,8 +139,9 @@ TEST_CASE("triangles of any aspect") {
     shoot(data, 1, 1e3, random, verdict, others);
     check(verdict, others);
     row(quantity,
-        "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " + std::to_string(verdict.rays), 0,
-        static_cast<double>(verdict.wrong), 0);
+        "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " +
+            std::to_string(verdict.rays),
+        0, static_cast<double>(verdict.wrong), 0);
     const TriangleMesh<> mesh(data);
     for (PrimitiveIndex i = 0; i < 40; ++i) {
       const Triangle t = data.triangle(i);
@@ -155,7 +159,8 @@ TEST_CASE("triangles without area are never met, and hide nothing") {
   MeshData flat;
   for (int i = 0; i < 100; ++i) {
     const auto whole = [&] {
-      return Vec3{std::floor(random.uniform(-9, 9)), std::floor(random.uniform(-9, 9)), std::floor(random.uniform(-9, 9))};
+      return Vec3{std::floor(random.uniform(-9, 9)), std::floor(random.uniform(-9, 9)),
+                  std::floor(random.uniform(-9, 9))};
     };
     const Vec3 a = whole(), step = i % 3 == 0 ? Vec3{} : whole(), end = random.point(10);
     if (i % 4 == 0)
@@ -185,7 +190,8 @@ TEST_CASE("triangles without area are never met, and hide nothing") {
   INFO(others.first);
   CHECK(others.different == 0);
   row(quantity, "100 triangles without area: rays that meet one", 0, static_cast<double>(met), 0);
-  row(quantity, "30 triangles among 100 without area: rays that do not meet them as without", 0, static_cast<double>(other), 0);
+  row(quantity, "30 triangles among 100 without area: rays that do not meet them as without", 0,
+      static_cast<double>(other), 0);
   CHECK(degenerate.bvh.surface(3, bundle_of({}), 0).normal == Vec3{});
 }
 
@@ -193,7 +199,9 @@ TEST_CASE("very many triangles in one plane") {
 #if defined(PULSECAST_TEST_SANITIZED)
   constexpr std::uint32_t many = 200, fewer = 100;
 #else
-  constexpr std::uint32_t many = 2237, fewer = 708;  // 1e7 triangles where it takes seconds to build, 1e6 where it would take minutes
+  constexpr std::uint32_t many = 2237,
+                          fewer =
+                              708;  // 1e7 triangles where it takes seconds to build, 1e6 where it would take minutes
 #endif
   const auto wrong = [](const std::string& what, std::uint32_t cells, const auto& mesh, int times) {
     row(quantity, what + ": rays at corners, edges and insides that do not meet the first triangle there", 0,
@@ -231,8 +239,9 @@ TEST_CASE("one triangle very many times over") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(quantity, "1e5 doubles of one triangle, and another beneath: rays that do not meet a double, of " + std::to_string(asked), 0,
-      static_cast<double>(wrong), 0);
+  row(quantity,
+      "1e5 doubles of one triangle, and another beneath: rays that do not meet a double, of " + std::to_string(asked),
+      0, static_cast<double>(wrong), 0);
   row(quantity, "1e5 doubles of one triangle: rays of which accelerators do not meet the same double", 0,
       static_cast<double>(others.different), 0);
   CHECK(meshes.bvh.index().depth() <= 64);

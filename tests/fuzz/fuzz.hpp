@@ -52,7 +52,8 @@ inline void expect(bool condition) {
 }  // namespace pulsecast::fuzz
 
 /// Begins the definition of a target, as `FUZZ_TARGET(las) { ... }`, whose parameters are `data` and `size`.
-#define FUZZ_TARGET(name)                                                                                               \
-  static void try_##name(const std::uint8_t* data, std::size_t size);                                                   \
-  [[maybe_unused]] static const bool name##_is_target = ::pulsecast::fuzz::targets().emplace(#name, try_##name).second; \
+#define FUZZ_TARGET(name)                                             \
+  static void try_##name(const std::uint8_t* data, std::size_t size); \
+  [[maybe_unused]] static const bool name##_is_target =               \
+      ::pulsecast::fuzz::targets().emplace(#name, try_##name).second; \
   static void try_##name(const std::uint8_t* data, std::size_t size)

@@ -22,6 +22,7 @@ FUZZ_TARGET(geotiff) {
       settings.packed = true;  // the same heights
       const std::vector<float> again = read_geotiff(path, settings).raster.unpacked().heights;
       const auto& heights = file.raster.heights;
-      fuzz::expect(again.size() == heights.size() && std::memcmp(again.data(), heights.data(), sizeof(float) * again.size()) == 0);
+      fuzz::expect(again.size() == heights.size() &&
+                   std::memcmp(again.data(), heights.data(), sizeof(float) * again.size()) == 0);
     });
 }

@@ -9,13 +9,14 @@ using namespace pulsecast::io;
 
 FUZZ_TARGET(point_cloud) {
   const std::filesystem::path path = fuzz::file(data, size, "cloud");
-  for (const PointCloudSettings& settings : {PointCloudSettings{.normals = VoxelNormals::fitted},
-                                             PointCloudSettings{.voxel_size = 0.25,
-                                             .lattice = VoxelLattice::at_multiples,
-                                             .normals = VoxelNormals::mean,
-                                             .default_normal = axis::up,
-                                             .colours = true},
-                                             PointCloudSettings{.voxel_size = 1e-6, .normals = VoxelNormals::nearest, .colours = true}})
+  for (const PointCloudSettings& settings :
+       {PointCloudSettings{.normals = VoxelNormals::fitted},
+        PointCloudSettings{.voxel_size = 0.25,
+        .lattice = VoxelLattice::at_multiples,
+        .normals = VoxelNormals::mean,
+        .default_normal = axis::up,
+        .colours = true},
+        PointCloudSettings{.voxel_size = 1e-6, .normals = VoxelNormals::nearest, .colours = true}})
     fuzz::may_refuse([&] {
       const PointCloud cloud = read_point_cloud(path, settings);
       const VoxelData& voxels = cloud.voxels;

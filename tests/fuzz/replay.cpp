@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Tries a fuzz target on every file of a folder, on every beginning of the shorter ones, and on spoilt copies of each, with any compiler.
-// Usage: fuzz_replay TARGET FOLDER; fails if there is no file.
+// Tries a fuzz target on every file of a folder, on every beginning of the shorter ones, and on spoilt copies of each,
+// with any compiler. Usage: fuzz_replay TARGET FOLDER; fails if there is no file.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -13,8 +13,9 @@
 
 namespace {
 
-constexpr const char* words[] = {"nan", "-1", "0",  "1e308", "1e-320", "1e12", "99999999999", ",",  ";",  "\t", "\n", "\r", "\\\n", " ",
-                                 "/",   "#",  "\"", "_",     "=\"",    "</",   "<a>",         "f ", "v ", "-",  ".",  "e",  "x",    "%"};
+constexpr const char* words[] = {"nan", "-1", "0",    "1e308", "1e-320", "1e12", "99999999999", ",", ";",   "\t",
+                                 "\n",  "\r", "\\\n", " ",     "/",      "#",    "\"",          "_", "=\"", "</",
+                                 "<a>", "f ", "v ",   "-",     ".",      "e",    "x",           "%"};
 
 void try_on(pulsecast::fuzz::Target target, const std::string& bytes, std::size_t size) {
   target(reinterpret_cast<const std::uint8_t*>(bytes.data()), size);

@@ -25,8 +25,9 @@ FUZZ_TARGET(run_log) {
     for (const auto& [file, bytes] : log.files) fuzz::expect(!file.empty() && file.find('/') == file.npos);
     try {
       const RunLog same = RunLog::parse(log.text(), "again");
-      fuzz::expect(same.seed == log.seed && same.start_time == log.start_time && same.run == log.run && same.how == log.how &&
-                   same.inputs == log.inputs && same.before == log.before && same.files == log.files);
+      fuzz::expect(same.seed == log.seed && same.start_time == log.start_time && same.run == log.run &&
+                   same.how == log.how && same.inputs == log.inputs && same.before == log.before &&
+                   same.files == log.files);
     } catch (const FileError&) {
       fuzz::expect(false);
     }

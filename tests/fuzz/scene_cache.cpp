@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Opening a scene cache that someone has tampered with, and tracing what it holds. The input says what is changed in a cache that was just
-// saved, so that it never goes stale; the header and its checksum are made right again, as they would stop nearly every input.
-// The shapes are those whose `is_consistent` is complete, down to the nodes of their trees.
+// Opening a scene cache that someone has tampered with, and tracing what it holds. The input says what is changed in a
+// cache that was just saved, so that it never goes stale; the header and its checksum are made right again, as they
+// would stop nearly every input. The shapes are those whose `is_consistent` is complete, down to the nodes of their
+// trees.
 //
-// The first byte chooses the scene, or (from 128 on) that all other bytes are the file behind its header. Then come changes: two bytes of
-// position, one byte of which the upper half is the kind (even: overwritten; 1 mod 4: inserted; 3 mod 4: cut off there) and the lower half
-// the number of bytes that follow, less one.
+// The first byte chooses the scene, or (from 128 on) that all other bytes are the file behind its header. Then come
+// changes: two bytes of position, one byte of which the upper half is the kind (even: overwritten; 1 mod 4: inserted; 3
+// mod 4: cut off there) and the lower half the number of bytes that follow, less one.
 
 #include <algorithm>
 #include <array>
@@ -61,7 +62,8 @@ std::array<std::string, 2> saved_scenes() {
 std::string tampered(const std::uint8_t* data, std::size_t size) {
   static const std::array<std::string, 2> scenes = saved_scenes();
   const std::size_t header = sizeof(io::detail::CacheHeader);
-  if (data[0] >= 128) return scenes[0].substr(0, header) + std::string(reinterpret_cast<const char*>(data + 1), size - 1);
+  if (data[0] >= 128)
+    return scenes[0].substr(0, header) + std::string(reinterpret_cast<const char*>(data + 1), size - 1);
   std::string file = scenes[data[0] % scenes.size()];
   for (std::size_t at = 1; at + 3 < size;) {
     const std::size_t position = header + (data[at] + 256U * data[at + 1]) % (file.size() - header + 1);
@@ -83,7 +85,8 @@ std::string tampered(const std::uint8_t* data, std::size_t size) {
 /// As a file is mapped: at the beginning of a page.
 std::shared_ptr<std::byte> mapped(const std::string& file) {
   constexpr auto page = std::align_val_t{4096};
-  const std::shared_ptr<std::byte> memory(new (page) std::byte[file.size()], [](std::byte* bytes) { ::operator delete[](bytes, page); });
+  const std::shared_ptr<std::byte> memory(new (page) std::byte[file.size()],
+                                          [](std::byte* bytes) { ::operator delete[](bytes, page); });
   std::memcpy(memory.get(), file.data(), file.size());
   return memory;
 }

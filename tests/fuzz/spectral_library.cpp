@@ -12,8 +12,10 @@ FUZZ_TARGET(spectral_library) {
   fuzz::may_refuse([&] {
     const SpectrumFile file = read_spectrum(path);
     const Spectrum& spectrum = *file.spectrum;
-    fuzz::expect(spectrum.samples().size() <= size && spectrum.shortest() > 0 && spectrum.longest() >= spectrum.shortest());
-    for (const double wavelength : {1e-12, spectrum.shortest(), 1064e-9, 0.5 * (spectrum.shortest() + spectrum.longest()), 1.0}) {
+    fuzz::expect(spectrum.samples().size() <= size && spectrum.shortest() > 0 &&
+                 spectrum.longest() >= spectrum.shortest());
+    for (const double wavelength :
+         {1e-12, spectrum.shortest(), 1064e-9, 0.5 * (spectrum.shortest() + spectrum.longest()), 1.0}) {
       const double reflectance = spectrum.reflectance(wavelength);
       fuzz::expect(reflectance >= 0 && reflectance <= 1);
     }

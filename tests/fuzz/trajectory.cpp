@@ -31,7 +31,8 @@ void check(const TrajectoryTable& table) {
 
 }  // namespace
 
-/// What can be read moves a platform, and can be written and read again, unless its times are too close to each other to be told apart.
+/// What can be read moves a platform, and can be written and read again, unless its times are too close to each other
+/// to be told apart.
 FUZZ_TARGET(trajectory) {
   const std::filesystem::path path = fuzz::file(data, size, "flight.txt"), again = path.parent_path() / "again.txt";
   for (const TrajectoryFormat& format : {csv_format(), helios_format(), helios_output_format(), tum_format()})

@@ -11,8 +11,8 @@ using namespace pulsecast::io;
 
 FUZZ_TARGET(vox) {
   const std::filesystem::path path = fuzz::file(data, size, "grid.vox");
-  for (const VoxelFileSettings& settings :
-       {VoxelFileSettings{}, VoxelFileSettings{.use = VoxelUse::opaque}, VoxelFileSettings{.use = VoxelUse::scaled, .shift = 1}})
+  for (const VoxelFileSettings& settings : {VoxelFileSettings{}, VoxelFileSettings{.use = VoxelUse::opaque},
+                                            VoxelFileSettings{.use = VoxelUse::scaled, .shift = 1}})
     fuzz::may_refuse([&] {
       const VoxelFile file = read_voxel_file(path, settings);
       const VoxelData& voxels = file.voxels;

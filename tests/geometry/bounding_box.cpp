@@ -15,7 +15,8 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-TEST_CASE_TEMPLATE("rounding down never gives more, rounding up never less, and both are as near as can be", Real, float, double) {
+TEST_CASE_TEMPLATE("rounding down never gives more, rounding up never less, and both are as near as can be", Real,
+                   float, double) {
   Generator random(80);
   for (int time = 0; time < 1000; ++time) {
     const double v = (random.coin() ? 1 : -1) * random.log_uniform(1e-60, 1e30);
@@ -28,7 +29,8 @@ TEST_CASE_TEMPLATE("rounding down never gives more, rounding up never less, and 
   CHECK(round_down<Real>(0.5) == Real(0.5));
 }
 
-TEST_CASE_TEMPLATE("boxes contain what they stand for, and compact ones grow by two steps of their grid at most", Real, float, double) {
+TEST_CASE_TEMPLATE("boxes contain what they stand for, and compact ones grow by two steps of their grid at most", Real,
+                   float, double) {
   for (std::uint64_t seed = 90; seed < 290; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
@@ -50,7 +52,8 @@ TEST_CASE_TEMPLATE("boxes contain what they stand for, and compact ones grow by 
         CHECK(static_cast<double>(exact.min[k]) <= boxes[place].min[k] - centre[k]);
         CHECK(static_cast<double>(exact.max[k]) >= boxes[place].max[k] - centre[k]);
         const double step = static_cast<double>(compact.step(axis)), origin = static_cast<double>(compact.origin[k]);
-        const double low = origin + step * compact.walls[k][0][place], high = origin + step * compact.walls[k][1][place];
+        const double low = origin + step * compact.walls[k][0][place],
+                     high = origin + step * compact.walls[k][1][place];
         CHECK(low <= static_cast<double>(exact.min[k]));
         CHECK(low > static_cast<double>(exact.min[k]) - 2 * step);
         CHECK(high >= static_cast<double>(exact.max[k]));

@@ -28,7 +28,8 @@ Stretch stretch(const Box& box, const Vec3& origin, const Vec3& direction) {
   constexpr long double infinity = std::numeric_limits<long double>::infinity();
   Stretch s{-infinity, infinity};
   for (int k = 0; k < 3; ++k) {
-    const long double d = direction[k], low = static_cast<long double>(box.min[k]) - static_cast<long double>(origin[k]),
+    const long double d = direction[k],
+                      low = static_cast<long double>(box.min[k]) - static_cast<long double>(origin[k]),
                       high = static_cast<long double>(box.max[k]) - static_cast<long double>(origin[k]);
     if (d == 0) {
       if (low > 0 || high < 0) return {infinity, -infinity};
@@ -153,7 +154,8 @@ TEST_CASE_TEMPLATE("no box that any ray of a bundle meets is passed over, at any
       ++met;
       bool kept = holds<Real>(span, entry) && holds<Real>(span, s.exit);
       for (const long double range : {entry, s.exit}) {
-        const long double at = static_cast<long double>(origin[k]) + range * rays.direction(j)[k] - static_cast<long double>(centre[k]);
+        const long double at =
+            static_cast<long double>(origin[k]) + range * rays.direction(j)[k] - static_cast<long double>(centre[k]);
         if (range <= 0) continue;
         if (at >= static_cast<long double>(wall)) kept = kept && holds<Real>(interval.above(all, k, wall), range);
         if (at <= static_cast<long double>(wall)) kept = kept && holds<Real>(interval.below(all, k, wall), range);
@@ -165,8 +167,9 @@ TEST_CASE_TEMPLATE("no box that any ray of a bundle meets is passed over, at any
   CHECK(met > 100000);
 }
 
-TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over, also along the axes and all but along them", Real, float,
-                   double) {
+TEST_CASE_TEMPLATE(
+    "no compact box that any ray of a bundle meets is passed over, also along the axes and all but along them", Real,
+    float, double) {
   static constexpr double slight[] = {0, -0.0, 1e-300, -1e-300, 1e-40, -1e-40, 1e-20, -1e-20, 1e-9};
   constexpr std::uint64_t seed = 84;
   CAPTURE(seed);
@@ -244,13 +247,14 @@ TEST_CASE("a ray that begins in a small box of a large grid finds it") {
   QuantizedBox8<float> boxes;
   boxes.begin({{-0x1p19F, -0x1p19F, -0x1p19F}, {0x1p19F, 0x1p19F, 0x1p19F}});
   boxes.add({{-128, -32, -32}, {0, 32, 32}});
-  const RayBundle rays =
-      bundle_of({{-0.015, 0, 0}, axis::right, 0.01});  // leaves at 0.015 m; at the corner of the grid, that is lost in rounding
+  const RayBundle rays = bundle_of(
+      {{-0.015, 0, 0}, axis::right, 0.01});  // leaves at 0.015 m; at the corner of the grid, that is lost in rounding
   CHECK(met_by(BundleInterval<float>(rays, bounds, {}), boxes, 100.0F).found == 1);
   CHECK(met_by(RayInterval<float>(rays, bounds, {}), boxes, 100.0F).found == 1);
 }
 
-TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of its box, however it is seen", Real, float, double) {
+TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of its box, however it is seen", Real,
+                   float, double) {
   constexpr std::uint64_t seed = 83;
   CAPTURE(seed);
   Generator random(seed);
@@ -258,7 +262,8 @@ TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of i
   for (int time = 0; time < 200000; ++time) {
     const double scale = random.log_uniform(1e-6, 1e7);
     Triangle t{random.point(scale), random.point(scale), random.point(scale)};
-    if (random.whole(3) == 0) t.c = t.a + (t.b - t.a) * random.uniform() + random.point(scale * random.log_uniform(1e-12, 1e-2));
+    if (random.whole(3) == 0)
+      t.c = t.a + (t.b - t.a) * random.uniform() + random.point(scale * random.log_uniform(1e-12, 1e-2));
     Vec3 origin = random.point(scale);
     if (random.coin())  // edge on
       origin = t.a + (t.b - t.a) * random.uniform(-3, 3) + (t.c - t.a) * random.uniform(-3, 3) +
@@ -283,7 +288,8 @@ TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of i
   CHECK(met > 200000);
 }
 
-TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, and alone they meet nothing", Real, float, double) {
+TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, and alone they meet nothing", Real,
+                   float, double) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Box box{{-1, 4, -1}, {1, 6, 1}};
   const auto around = BoundingBox<Real>::around(box, {});
@@ -301,7 +307,9 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   QuantizedBox8<Real> boxes;
   boxes.begin(around);
   boxes.add(around);
-  const auto found = [&](const Ray& ray) { return met_by(RayInterval<Real>(bundle_of(ray), box, {}), boxes, Real{100}).found; };
+  const auto found = [&](const Ray& ray) {
+    return met_by(RayInterval<Real>(bundle_of(ray), box, {}), boxes, Real{100}).found;
+  };
   CHECK(found({{}, axis::forward}) == 1);
   CHECK(found({{}, {0, 1, nan}}) == 0);
   CHECK(found({{nan, 0, 0}, axis::forward}) == 0);

@@ -34,7 +34,8 @@ Triangle any_triangle(Generator& random, double scale) {
   const double size = random.log_uniform(1e-9, 1);
   t.b = t.a + size * (t.b - t.a);
   t.c = t.a + size * (t.c - t.a);
-  if (random.whole(4) == 0) t.c = t.a + (t.b - t.a) * random.uniform() + random.point(size * scale * random.log_uniform(1e-15, 1e-2));
+  if (random.whole(4) == 0)
+    t.c = t.a + (t.b - t.a) * random.uniform() + random.point(size * scale * random.log_uniform(1e-15, 1e-2));
   if (random.whole(8) == 0) t.a.z = t.b.z = t.c.z;
   return t;
 }
@@ -84,7 +85,8 @@ TEST_CASE("no triangle that a ray meets is passed over, at any scale, far from t
     const Vec3 place = random.coin() ? Vec3{} : random.point(scale * random.log_uniform(1, 1e7));
     Triangle t = any_triangle(random, scale);
     const Vec3 aim = any_aim(random, t, scale);
-    const Vec3 origin = random.coin() ? random.point(scale) : aim + random.unit() * (scale * random.log_uniform(1e-9, 1e3));
+    const Vec3 origin =
+        random.coin() ? random.point(scale) : aim + random.unit() * (scale * random.log_uniform(1e-9, 1e3));
     const auto moved = [&](const Vec3& p) { return p + place; };
     t = {moved(t.a), moved(t.b), moved(t.c)};
     BundleOfOne ray(Ray{.origin = moved(origin), .direction = normalize(aim - origin)});

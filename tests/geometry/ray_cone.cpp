@@ -41,7 +41,8 @@ TEST_CASE("a cone passes what is behind it and beside it, and no box that it tou
   CHECK_FALSE(cone.passes({{-1, 10, -1}, {1, 12, 1}}));
   CHECK_FALSE(cone.passes({{-1, -1, -1}, {1, 1, 1}}));
   CHECK(cone.passes({{-1, -12, -1}, {1, -10, 1}}));
-  // far wall at 12 m: as directions are an interval, a box of half side h is passed from (1.2 + 0.2 h) / 0.9 m to the side on
+  // far wall at 12 m: as directions are an interval, a box of half side h is passed from (1.2 + 0.2 h) / 0.9 m to the
+  // side on
   CHECK_FALSE(cone.passes({{1.3, 10, -1}, {1.9, 12, 1}}));
   CHECK(cone.passes({{1.41, 10, -1}, {2.01, 12, 1}}));
   CHECK(cone.passes({{-1, 10, 1.41}, {1, 12, 2.01}}));
@@ -55,9 +56,11 @@ TEST_CASE("a line of no width passes a corner by more than a millionth, and no n
 }
 
 TEST_CASE("a cone or box that is not finite is not passed") {
-  const Box box{{10, 10, 10}, {11, 11, 11}}, ahead{{-1, 10, 0}, {1, 12, 1}}, tall{{10, -infinity, 10}, {11, infinity, 11}};
+  const Box box{{10, 10, 10}, {11, 11, 11}}, ahead{{-1, 10, 0}, {1, 12, 1}},
+      tall{{10, -infinity, 10}, {11, infinity, 11}};
   REQUIRE(RayCone{}.passes(box));
-  const RayCone nowhere{.origin = {none, 0, 0}, .direction = {0.6, 0.8, 0}}, lost{.direction = {none, none, none}}, vague{.spread = none};
+  const RayCone nowhere{.origin = {none, 0, 0}, .direction = {0.6, 0.8, 0}}, lost{.direction = {none, none, none}},
+      vague{.spread = none};
   CHECK_FALSE(nowhere.passes(ahead));
   CHECK_FALSE(lost.passes(box));
   CHECK_FALSE(vague.passes(box));

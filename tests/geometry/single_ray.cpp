@@ -69,7 +69,8 @@ struct Counts {
 };
 
 template <class Index>
-void compare_single(const MeshData& data, const TriangleMesh<Linear<>>& believed, std::uint64_t seed, int rays_asked, Counts& counts) {
+void compare_single(const MeshData& data, const TriangleMesh<Linear<>>& believed, std::uint64_t seed, int rays_asked,
+                    Counts& counts) {
   const TriangleMesh<Index> mesh(data);
   Generator random(seed);
   for (int k = 0; k < rays_asked; ++k) {
@@ -92,12 +93,15 @@ void compare_single(const MeshData& data, const TriangleMesh<Linear<>>& believed
 
 }  // namespace
 
-TEST_CASE("a ray alone meets what a bundle of one meets, bit for bit, in every accelerator, and all of its triangles in order") {
+TEST_CASE(
+    "a ray alone meets what a bundle of one meets, bit for bit, in every accelerator, and all of its triangles in "
+    "order") {
   Generator random(31);
   std::uint64_t seed = 310;
   std::size_t several = 0;
-  for (const MeshData& data : {soup(random, 300, 10), doubled(soup(random, 100, 10)), slivers(random, 200, 10), doubled(plane(8)),
-                               walls(random, 200, 8), moved(soup(random, 200, 100), {4.7e5, 5.4e6, 300})}) {
+  for (const MeshData& data :
+       {soup(random, 300, 10), doubled(soup(random, 100, 10)), slivers(random, 200, 10), doubled(plane(8)),
+        walls(random, 200, 8), moved(soup(random, 200, 100), {4.7e5, 5.4e6, 300})}) {
     ++seed;
     CAPTURE(seed);
     const TriangleMesh<Linear<>> believed(data);
@@ -120,7 +124,8 @@ TEST_CASE("a buffer holds the closest hits in order, each once, and continues af
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
-    const double near = static_cast<double>(random.whole(4)), far = random.coin() ? infinity : static_cast<double>(random.whole(60));
+    const double near = static_cast<double>(random.whole(4)),
+                 far = random.coin() ? infinity : static_cast<double>(random.whole(60));
     std::vector<HitBuffer::Entry> offered, expected, found;
     for (std::uint64_t n = random.whole(150); offered.size() < n;)
       offered.push_back({static_cast<double>(random.whole(60)), random.whole(4) << 32 | random.whole(3)});

@@ -57,7 +57,8 @@ TEST_CASE("a triangle is missed beside its edges") {
 }
 
 TEST_CASE("edges and corners belong to the triangle") {
-  for (const Vec3 p : {Vec3{0, 0, 3}, {4, 0, 3}, {0, 4, 3}, {2, 0, 3}, {0, 2, 3}, {2, 2, 3}}) CHECK(meets(flat, {p, -axis::up}) == 3);
+  for (const Vec3 p : {Vec3{0, 0, 3}, {4, 0, 3}, {0, 4, 3}, {2, 0, 3}, {0, 2, 3}, {2, 2, 3}})
+    CHECK(meets(flat, {p, -axis::up}) == 3);
 }
 
 TEST_CASE("what is behind the origin, or at it, is not met") {
@@ -186,7 +187,8 @@ TEST_CASE("rays of a staggered bundle meet what is beyond their own beginnings")
     StaggeredBundle rays;
     rays.size = 1 + any.whole(RayBundle::capacity);
     rays.origin = any.point(1);
-    for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(Vec3{any.uniform(-0.3, 0.3), 1, any.uniform(-0.3, 0.3)}));
+    for (std::size_t j = 0; j < rays.size; ++j)
+      rays.set_direction(j, normalize(Vec3{any.uniform(-0.3, 0.3), 1, any.uniform(-0.3, 0.3)}));
     for (std::size_t j = 0; j < rays.padded_size(); ++j) rays.begin[j] = any.uniform(0, 20);
     rays.pad();
     std::vector<Triangle> triangles;

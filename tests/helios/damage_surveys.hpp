@@ -57,9 +57,10 @@ inline bool holds_numbers(std::string_view name, std::string_view value) {
 /// A figure that makes no sense for an attribute; empty if there is none.
 inline std::string absurd(std::string_view name) {
   static constexpr std::pair<const char*, const char*> figures[] = {
-      {"_deg", "1e9"}, {"_hz", "-20000"}, {"_Hz", "-1e9"}, {"_ns", "-1"},   {"_rad", "3000"}, {"_m", "-3"},       {"_km", "0"},
-      {"_nm", "1e9"},  {"_s", "-7"},      {"_w", "-4"},    {"_W", "-1"},    {"angle", "1e9"}, {"numFibers", "0"}, {"Efficiency", "2"},
-      {"loop", "-1"},  {"Step", "-1"},    {"drag", "-1"},  {"stdev", "-1"}, {"Quality", "0"}, {"maxNOR", "-1"},   {"Index", "-1"}};
+      {"_deg", "1e9"},    {"_hz", "-20000"},   {"_Hz", "-1e9"}, {"_ns", "-1"},  {"_rad", "3000"}, {"_m", "-3"},
+      {"_km", "0"},       {"_nm", "1e9"},      {"_s", "-7"},    {"_w", "-4"},   {"_W", "-1"},     {"angle", "1e9"},
+      {"numFibers", "0"}, {"Efficiency", "2"}, {"loop", "-1"},  {"Step", "-1"}, {"drag", "-1"},   {"stdev", "-1"},
+      {"Quality", "0"},   {"maxNOR", "-1"},    {"Index", "-1"}};
   for (const auto& [end, figure] : figures)
     if (name.ends_with(end)) return figure;
   return "";
@@ -73,8 +74,11 @@ inline std::vector<Damage> damages(const std::string& text) {
   for (const detail::Attribute& a : detail::attributes(text)) {
     const std::string name = text.substr(a.name_begin, a.name_end - a.name_begin);
     const std::string value = text.substr(a.value_begin, a.value_end - a.value_begin);
-    const auto add = [&](DamageKind kind, std::size_t begin, std::size_t end, const std::string& wrong, std::string mended = "") {
-      const auto line = static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n')) + 1;
+    const auto add = [&](DamageKind kind, std::size_t begin, std::size_t end, const std::string& wrong,
+                         std::string mended = "") {
+      const auto line =
+          static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n')) +
+          1;
       all.push_back({kind, std::string(text).replace(begin, end - begin, wrong), line, wrong, std::move(mended)});
     };
     std::string misspelt = name;
@@ -94,8 +98,9 @@ inline std::vector<Damage> damages(const std::string& text) {
       if (const std::string figure = detail::absurd(name); !figure.empty())
         add(DamageKind::unit_absurd, a.value_begin, a.value_end, figure);
     }
-    const bool is_file = value.ends_with(".obj") || value.ends_with(".vox") || value.ends_with(".tif") || value.ends_with(".mtl") ||
-                         value.ends_with(".trj") || value.ends_with(".txt") || value.ends_with(".xyz");
+    const bool is_file = value.ends_with(".obj") || value.ends_with(".vox") || value.ends_with(".tif") ||
+                         value.ends_with(".mtl") || value.ends_with(".trj") || value.ends_with(".txt") ||
+                         value.ends_with(".xyz");
     const std::size_t sign = value.find(".xml#");
     if (is_file || sign != std::string::npos) add(DamageKind::file_missing, a.value_begin, a.value_begin, "missing_");
     if (sign != std::string::npos) add(DamageKind::id_wrong, a.value_begin + sign + 5, a.value_end, "nobody");

@@ -74,7 +74,8 @@ TEST_CASE("a survey is read with its templates, its scanner, its platform and it
 
   CHECK(survey.platform.kind == PlatformKind::linear_path);
   CHECK(survey.platform.mount.position == Vec3(0, 0, 0.7));
-  const Vec3 beam = survey.platform.mount.rotation.rotation() * axis::forward;  // down by the first turn, which the second does not change
+  const Vec3 beam = survey.platform.mount.rotation.rotation() *
+                    axis::forward;  // down by the first turn, which the second does not change
   CHECK(length(beam - Vec3(0, 0, -1)) < 1e-12);
   CHECK(survey.platform.position_noise[0]->deviation == 0.02);
   CHECK(survey.platform.position_noise[1]->deviation == 0.03);
@@ -116,9 +117,9 @@ TEST_CASE("what a survey sets of the scanner holds for every channel, and takes 
   CHECK(tripod.legs[1].scanner.divergence == 0.001);
   CHECK(tripod.legs[0].scanner.vertical_angle_min == radians(-40));
 
-  const std::string text =
-      survey_text(R"(scanner="surveys/assets.xml#puck")",
-                  R"(<FWFSettings beamSampleQuality="2"/><detectorSettings rangeMin_m="2" distanceMeasurementError="1+t/100"/>
+  const std::string text = survey_text(
+      R"(scanner="surveys/assets.xml#puck")",
+      R"(<FWFSettings beamSampleQuality="2"/><detectorSettings rangeMin_m="2" distanceMeasurementError="1+t/100"/>
         <leg maxDuration_s="1"><platformSettings/><scannerSettings scanFreq_hz="5"/></leg>)");
   const SurveySettings puck = read_text(text).survey;
   REQUIRE(puck.scanner.channels.size() == 4);
@@ -181,7 +182,8 @@ TEST_CASE("parts have their filters, motions and swaps") {
   CHECK(spinner.motions[0].next == "turn");
   CHECK(spinner.motions[0].motions.at(1).about_itself);
   CHECK(std::get<TranslationMotion>(spinner.motions[0].motions.at(0).kind).by == Vec3(0.002, 0, 0));
-  CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(0).kind) == RotationMotion{axis::up, radians(1), Vec3(1, 2, 3), {}});
+  CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(0).kind) ==
+        RotationMotion{axis::up, radians(1), Vec3(1, 2, 3), {}});
   CHECK(spinner.motions[1].motions.at(0).shift_factor == 1);
   CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(1).kind).glide == 0.01);
   CHECK(std::get<ReflectionMotion>(spinner.motions[1].motions.at(3).kind).shift == Vec3(0, 1, 0));
@@ -208,9 +210,9 @@ TEST_CASE("an interpolated platform takes mount and noise from another, and the 
   CHECK(trajectory.start == 1);
   CHECK(trajectory.end == 2.5);
   for (const char* name : {"trajectory_seperator", "trajectory_separator"}) {
-    const std::string text =
-        survey_text(R"(platform="interpolated")", "<leg><platformSettings trajectory=\"flight.trj\" " + std::string(name) +
-                                                      "=\";\"/><scannerSettings scanFreq_hz=\"20\"/></leg>");
+    const std::string text = survey_text(R"(platform="interpolated")",
+                                         "<leg><platformSettings trajectory=\"flight.trj\" " + std::string(name) +
+                                             "=\";\"/><scannerSettings scanFreq_hz=\"20\"/></leg>");
     const SurveySettings other = read_text(text).survey;
     CHECK(other.legs.at(0).platform.trajectory->separator == ';');
     CHECK_FALSE(other.legs.at(0).platform.trajectory->columns);
@@ -250,20 +252,24 @@ TEST_CASE("settings that a program makes are written and read") {
   SurveySettings survey;
   survey.name = "study <&> \"1\"";
   survey.seed = std::numeric_limits<std::uint64_t>::max();
-  survey.scanner = {.id = "s",
-                    .name = "of our own",
-                    .pulse_rates = {1000},
-                    .channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1, .returns_kept = KeptReturns::strongest}}};
+  survey.scanner = {
+      .id = "s",
+      .name = "of our own",
+      .pulse_rates = {1000},
+      .channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1, .returns_kept = KeptReturns::strongest}}};
   survey.platform.id = "p";
   survey.scene.id = "c";
-  survey.scene.parts = {{.id = "a b", .source = ObjSource{.files = {data / "materials.obj", data / "surveys" / "points.xyz"}}}};
+  survey.scene.parts = {
+      {.id = "a b", .source = ObjSource{.files = {data / "materials.obj", data / "surveys" / "points.xyz"}}}};
   survey.scene.parts[0].swaps = {
       {.source = VoxelSource{.files = {data / "crown.vox"}, .leaf_angles = data / "spherical.txt"}},
-      {.source = MeshSource{.files = {data / "materials.obj"}, .up = MeshUp::y, .unit = 0.01, .materials = data / "materials.mtl"}}};
+      {.source = MeshSource{
+           .files = {data / "materials.obj"}, .up = MeshUp::y, .unit = 0.01, .materials = data / "materials.mtl"}}};
   survey.scene.parts[0].attributes = {{"age", 80}, {"leaf or wood", 0.1}};
   survey.scene.light = {{.passages = 3, .least_share = 0.01, .orders = 2, .paths = 20, .field_of_view = radians(20)}};
-  survey.scene.media = {{.absorption = 0.5},
-                        {.absorption = 0.1, .scattering = 0.2, .backscatter = 0.01, .min = Vec3{0, 1, 2}, .max = Vec3{3, 4, 5}}};
+  survey.scene.media = {
+      {.absorption = 0.5},
+      {.absorption = 0.1, .scattering = 0.2, .backscatter = 0.01, .min = Vec3{0, 1, 2}, .max = Vec3{3, 4, 5}}};
   survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 1000, .scan_frequency = 10, .scan_angle = 0.3}}};
   write_survey(folder / "own.xml", survey);
   const SurveySettings again = read_survey(folder / "own.xml").survey;
@@ -301,9 +307,13 @@ TEST_CASE("a survey is never written that would not be read") {
   refused([](SurveySettings& s) { s.scene.parts[0].transform.scale = 1e-31; }, "part '': scale is 1e-31");
   refused([](SurveySettings& s) { s.scene.parts[0].transform.translation.x = 2e9; }, "part '': offset is 2e+09");
   refused([](SurveySettings& s) { s.scene.dynamic_interval = 1e7; }, "dynTimeStep is 1e+07 s");
-  refused([](SurveySettings& s) { s.scene.parts[0].motions = {{.id = "a", .next = "b"}}; }, "part '': next=\"b\": there is no such");
-  refused([](SurveySettings& s) { s.scene.parts[0].motions = {{.id = "a", .motions = {{.kind = ReflectionMotion{.normal = {}}}}}}; },
-          "ortho is too short");
+  refused([](SurveySettings& s) { s.scene.parts[0].motions = {{.id = "a", .next = "b"}}; },
+          "part '': next=\"b\": there is no such");
+  refused(
+      [](SurveySettings& s) {
+        s.scene.parts[0].motions = {{.id = "a", .motions = {{.kind = ReflectionMotion{.normal = {}}}}}};
+      },
+      "ortho is too short");
   refused([](SurveySettings& s) { s.scanner.pulse_rates = {1e-9}; }, "pulseFreqs_Hz is 1e-09 Hz");
   refused([](SurveySettings& s) { s.scanner.channels[0].head_axis = {}; }, "headRotateAxis has no direction");
 }
@@ -315,24 +325,31 @@ TEST_CASE("a survey without a name has that of its file") {
 }
 
 TEST_CASE("a value that equals the default can be set against a template") {
-  const std::string templates = R"(<scannerSettings id="t" active="false" beamDivergence_rad="0.001" headRotateStart_deg="5"/>)";
+  const std::string templates =
+      R"(<scannerSettings id="t" active="false" beamDivergence_rad="0.001" headRotateStart_deg="5"/>)";
   const SurveySettings survey =
-      read_text(survey_text("", leg(R"(template="t" active="true" beamDivergence_rad="0.003" headRotateStart_deg="0")"), templates)).survey;
+      read_text(survey_text("", leg(R"(template="t" active="true" beamDivergence_rad="0.003" headRotateStart_deg="0")"),
+                            templates))
+          .survey;
   CHECK(survey.legs[0].scanner.active);
   CHECK(survey.legs[0].scanner.divergence == 0.003);
   CHECK(survey.legs[0].scanner.head_start == 0);
 }
 
 TEST_CASE("the seed may be a number or a time") {
-  const auto seed = [](const char* text) { return read_text(survey_text("seed=\"" + std::string(text) + "\"", leg(""))).survey.seed; };
+  const auto seed = [](const char* text) {
+    return read_text(survey_text("seed=\"" + std::string(text) + "\"", leg(""))).survey.seed;
+  };
   CHECK_FALSE(seed("AUTO"));
   CHECK(seed("7") == 7);
   CHECK(seed("7.9") == 7);
   CHECK(seed("1971-01-01 00:00:02") == 31104000 + 2592000 + 86400 + 2);
   CHECK(seed("-3") == 3);
   for (const char* odd : {"7.9", "-3"}) {
-    const std::vector<std::string> warnings = read_text(survey_text("seed=\"" + std::string(odd) + "\"", leg(""))).warnings;
-    CHECK(any_contains(warnings, "survey.xml:3:9: seed=\"" + std::string(odd) + "\" is taken as " + (odd[0] == '7' ? "7" : "3")));
+    const std::vector<std::string> warnings =
+        read_text(survey_text("seed=\"" + std::string(odd) + "\"", leg(""))).warnings;
+    CHECK(any_contains(warnings,
+                       "survey.xml:3:9: seed=\"" + std::string(odd) + "\" is taken as " + (odd[0] == '7' ? "7" : "3")));
   }
   CHECK(read_text(survey_text(R"(seed="7.0")", leg(""))).warnings.empty());
   CHECK(contains(faults_of(survey_text(R"(seed="often")", leg(""))), "seed=\"often\""));
@@ -342,31 +359,37 @@ TEST_CASE("a leg has the scanner's first rate, and resolutions give rates") {
   SurveySettings survey = read_text(survey_text("", leg(""))).survey;
   CHECK(survey.legs[0].scanner.pulse_rate == 2000);
   CHECK_FALSE(survey.legs[0].scanner.scan_angle);
-  survey = read_text(survey_text("", R"(<leg><platformSettings/><scannerSettings pulseFreq_hz="20000" verticalResolution_deg="0.24"
+  survey =
+      read_text(
+          survey_text("", R"(<leg><platformSettings/><scannerSettings pulseFreq_hz="20000" verticalResolution_deg="0.24"
       horizontalResolution_deg="0.5" headRotateStop_deg="90"/></leg>)"))
-               .survey;
+          .survey;
   CHECK(survey.legs[0].scanner.scan_frequency == support::relative(20000 * 0.24 / 240, 1e-12));
   CHECK(survey.legs[0].scanner.head_speed == support::relative(radians(10), 1e-12));
-  CHECK(contains(faults_of(survey_text("", leg(R"(pulseFreq_hz="1e8" verticalResolution_deg="180" horizontalResolution_deg="1")"))),
+  CHECK(contains(faults_of(survey_text(
+                     "", leg(R"(pulseFreq_hz="1e8" verticalResolution_deg="180" horizontalResolution_deg="1")"))),
                  "these resolutions need a scan frequency"));
 }
 
 TEST_CASE("bins that pulses fall between, or that are too many, are limited") {
   const auto read = [](const char* bin, double taken) {
-    const SurveyDocument document = read_text(survey_text("", R"(<FWFSettings binSize_ns=")" + std::string(bin) + "\"/>" + leg("")));
+    const SurveyDocument document =
+        read_text(survey_text("", R"(<FWFSettings binSize_ns=")" + std::string(bin) + "\"/>" + leg("")));
     CHECK(document.survey.scanner.channels.at(0).waveform.bin_size == support::relative(taken, 1e-12));
     return document.warnings;
   };
-  CHECK(any_contains(read("9", 5e-9),
-                     "survey.xml:4:2: binSize_ns is 9 ns, and pulses are 5 ns long: it is limited to 5 ns; expected bins "
-                     "from 0.0005 ns to 5 ns"));
+  CHECK(
+      any_contains(read("9", 5e-9),
+                   "survey.xml:4:2: binSize_ns is 9 ns, and pulses are 5 ns long: it is limited to 5 ns; expected bins "
+                   "from 0.0005 ns to 5 ns"));
   CHECK(any_contains(read("0.0003", 0.0005e-9), "binSize_ns is 0.0003 ns"));
   CHECK(read("5", 5e-9).empty());
   CHECK(read("0.0005", 0.0005e-9).empty());
 }
 
 TEST_CASE("names that become those of files have no slashes and no control characters") {
-  const auto document = read_text(survey_text(R"(name="../../else\where")", R"(<leg stripId="a/b">)" + leg("").substr(5)));
+  const auto document =
+      read_text(survey_text(R"(name="../../else\where")", R"(<leg stripId="a/b">)" + leg("").substr(5)));
   CHECK(document.survey.name == ".._.._else_where");
   CHECK(document.survey.legs.at(0).strip == "a_b");
   CHECK(any_contains(document.warnings, "survey.xml:3:9: name=\"../../else\\where\" is taken as '.._.._else_where'"));
@@ -374,7 +397,9 @@ TEST_CASE("names that become those of files have no slashes and no control chara
   CHECK(read_text(survey_text(R"(name="..")", leg(""))).survey.name == "survey");
   CHECK(read_text(survey_text(R"(name="a&#27;[2Jb")", leg(""))).survey.name == "a_[2Jb");
   for (const char* strip : {"a&#10;b", "a&#127;b", "a\\b"})
-    CHECK(read_text(survey_text("", "<leg stripId=\"" + std::string(strip) + "\">" + leg("").substr(5))).survey.legs.at(0).strip == "a_b");
+    CHECK(read_text(survey_text("", "<leg stripId=\"" + std::string(strip) + "\">" + leg("").substr(5)))
+              .survey.legs.at(0)
+              .strip == "a_b");
 }
 
 TEST_CASE("what is wrong with a template that no leg names is odd only") {
@@ -382,7 +407,8 @@ TEST_CASE("what is wrong with a template that no leg names is odd only") {
   const auto document = read_text(survey_text("", leg(""), templates));
   CHECK(any_contains(document.warnings, "survey.xml:3:25: scanFreq_hz=\"much\": expected a number"));
   CHECK(any_contains(document.warnings, "survey.xml:4:2: <platformSettings> has no attribute 'id'"));
-  CHECK(contains(faults_of(survey_text("", leg(R"(template="t")"), templates)), "survey.xml:3:25: scanFreq_hz=\"much\""));
+  CHECK(
+      contains(faults_of(survey_text("", leg(R"(template="t")"), templates)), "survey.xml:3:25: scanFreq_hz=\"much\""));
 }
 
 TEST_CASE("a leg that could never end, and rates beyond the device, are refused") {
@@ -401,17 +427,20 @@ TEST_CASE("a leg that could never end, and rates beyond the device, are refused"
   refuses(survey_text("", leg(R"(scanFreq_hz="20")")), "neither platform nor head moves");
   refuses(survey_text("", leg(R"(scanFreq_hz="20" headRotateStop_deg="20")")), "the head does not turn");
   refuses(survey_text("", leg(R"(scanFreq_hz="20" headRotateStop_deg="20" headRotatePerSec_deg="-5")")), "turns away");
-  refuses(
-      survey_text(R"(scanner="surveys/assets.xml#puck")", leg("headRotateStop_deg=\"20\" headRotatePerSec_deg=\"5\" scanFreq_hz=\"5\"")),
-      "headRotatePerSecMax_deg is 0");
+  refuses(survey_text(R"(scanner="surveys/assets.xml#puck")",
+                      leg("headRotateStop_deg=\"20\" headRotatePerSec_deg=\"5\" scanFreq_hz=\"5\"")),
+          "headRotatePerSecMax_deg is 0");
   CHECK(faults_of(survey_text("", leg(R"(scanFreq_hz="20" headRotateStop_deg="20" maxDuration_s="2")"))).empty());
   CHECK(
       faults_of(
           survey_text(
-              "", R"(<leg><platformSettings/><scannerSettings scanFreq_hz="20"><maxDuration_s>2</maxDuration_s></scannerSettings></leg>)"))
+              "",
+              R"(<leg><platformSettings/><scannerSettings scanFreq_hz="20"><maxDuration_s>2</maxDuration_s></scannerSettings></leg>)"))
           .empty());
-  refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="201")")), "scanFreqMax_Hz, 200 Hz");
-  refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="0.5")")), "scanFreqMin_Hz, 1 Hz");
+  refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="201")")),
+          "scanFreqMax_Hz, 200 Hz");
+  refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="0.5")")),
+          "scanFreqMin_Hz, 1 Hz");
   refuses(survey_text("", leg(R"(verticalAngleMin_deg="10" verticalAngleMax_deg="10")")), "no pulse is emitted");
   refuses(survey_text("", ""), "holds no <leg>");
   refuses(survey_text("", "<leg><scannerSettings/></leg>"), "holds no <platformSettings>");
@@ -423,7 +452,9 @@ TEST_CASE("vertical angles that are further apart than the scanner's are limited
   const auto warnings = [](const char* angles) { return read_text(survey_text("", leg(angles))).warnings; };
   const std::vector<std::string> wide = warnings(R"(verticalAngleMin_deg="-60" verticalAngleMax_deg="60")");
   REQUIRE(wide.size() == 1);
-  CHECK(contains(wide[0], "survey.xml:4:109: verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's 100 deg"));
+  CHECK(contains(
+      wide[0],
+      "survey.xml:4:109: verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's 100 deg"));
   CHECK(contains(wide[0], "they are limited to -50 and 50 deg"));
   CHECK(warnings(R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")").empty());
 }
@@ -437,24 +468,28 @@ TEST_CASE("a platform that moves may stay where it is") {
     return all;
   };
   const auto at = [](const std::string& place, const std::string& duration = "") {
-    return "<leg " + duration + "><platformSettings " + place + R"(/><scannerSettings scanFreq_hz="20" pulseFreq_hz="20000"/></leg>)";
+    return "<leg " + duration + "><platformSettings " + place +
+           R"(/><scannerSettings scanFreq_hz="20" pulseFreq_hz="20000"/></leg>)";
   };
-  const std::string last = R"(<leg><platformSettings x="9"/><scannerSettings active="false"/></leg>)", stay = R"(maxDuration_s="2")";
+  const std::string last = R"(<leg><platformSettings x="9"/><scannerSettings active="false"/></leg>)",
+                    stay = R"(maxDuration_s="2")";
   CHECK_FALSE(contains(told(at("")), "maxDuration_s=\"2\""));
   CHECK(contains(told(at("")), "as its destination, or maxDuration_s"));
   CHECK_FALSE(contains(told(at("", stay)), "leg"));
   CHECK_FALSE(contains(told(at("", stay) + at("") + last), "leg"));
   CHECK_FALSE(contains(told(at(R"(movePerSec_m="0")", stay) + at("") + last), "leg"));
   CHECK(contains(told(at("") + at("") + last), "ends at once: maxDuration_s"));
-  CHECK(contains(told(at("") + at(R"(x="9")", stay)), "to stay there for maxDuration_s, expected another <leg> at the same position"));
+  CHECK(contains(told(at("") + at(R"(x="9")", stay)),
+                 "to stay there for maxDuration_s, expected another <leg> at the same position"));
 }
 
 TEST_CASE("a resolution that the scanner is too slow or too fast for is told as such, with one that it can do") {
   const auto at = [](const char* resolution) {
-    return faults_of(
-        survey_text("", leg("maxDuration_s=\"1\" pulseFreq_hz=\"20000\" verticalResolution_deg=\"" + std::string(resolution) + "\"")));
+    return faults_of(survey_text("", leg("maxDuration_s=\"1\" pulseFreq_hz=\"20000\" verticalResolution_deg=\"" +
+                                         std::string(resolution) + "\"")));
   };
-  CHECK(contains(at("5"), "verticalResolution_deg of 5 takes 416.666667 lines a second at 20000 Hz: expected at most 2.4"));
+  CHECK(contains(at("5"),
+                 "verticalResolution_deg of 5 takes 416.666667 lines a second at 20000 Hz: expected at most 2.4"));
   CHECK(contains(at("5"), "for the scanner's scanFreqMax_Hz is 200 Hz"));
   CHECK(contains(at("0.001"), "expected at least"));
   CHECK(at("2.4").empty());
@@ -463,7 +498,8 @@ TEST_CASE("a resolution that the scanner is too slow or too fast for is told as 
 TEST_CASE("the last leg of a platform that moves scans nothing, and is not held against the scanner") {
   const std::string airplane = R"(platform="surveys/assets.xml#airplane")";
   const std::string flies = R"(<leg><platformSettings x="9"/><scannerSettings scanFreq_hz="20"/></leg>)";
-  for (const char* settings : {R"(<scannerSettings scanFreq_hz="0"/>)", R"(<scannerSettings scanFreq_hz="1e5"/>)", ""}) {
+  for (const char* settings :
+       {R"(<scannerSettings scanFreq_hz="0"/>)", R"(<scannerSettings scanFreq_hz="1e5"/>)", ""}) {
     const std::string ends = "<leg><platformSettings/>" + std::string(settings) + "</leg>";
     CHECK(faults_of(survey_text(airplane, flies + ends)).empty());
     CHECK(contains(faults_of(survey_text(airplane, ends + flies)), "scanFreq_hz"));
@@ -471,9 +507,11 @@ TEST_CASE("the last leg of a platform that moves scans nothing, and is not held 
 }
 
 TEST_CASE("what stands on the ground needs some, and what a platform cannot is told") {
-  const std::string grounded = R"(<leg maxDuration_s="1"><platformSettings onGround="true"/><scannerSettings scanFreq_hz="20"/></leg>)";
+  const std::string grounded =
+      R"(<leg maxDuration_s="1"><platformSettings onGround="true"/><scannerSettings scanFreq_hz="20"/></leg>)";
   CHECK(faults_of(survey_text("", grounded)).empty());
-  const std::string scene = R"(<scene id="bare"><part><filter type="xyzloader"><param key="filepath" value="surveys/points.xyz"/>
+  const std::string scene =
+      R"(<scene id="bare"><part><filter type="xyzloader"><param key="filepath" value="surveys/points.xyz"/>
     <param key="separator" value=","/><param key="voxelSize" value="1"/></filter></part></scene>)";
   const std::string bare = survey_text(R"(scene="#bare")", grounded, scene);
   CHECK(contains(faults_of(bare), "survey.xml:5:42: nothing"));
@@ -518,9 +556,11 @@ TEST_CASE("what has no effect, or is unlike what it seems, is told and does not 
   warns(survey_text("", leg(R"(pulseFreq_hz="3000")")), "not one of the scanner's pulse rates");
   warns(survey_text("", leg(R"(scanAngle_deg="0")")), "means the scanner's maximum");
   warns(survey_text("", leg(R"(scanAngle_deg="130")")), "limited to 120");
-  warns(survey_text(
-            "", R"(<leg><platformSettings/><scannerSettings scanFreq_hz="20" headRotatePerSec_deg="720" headRotateStop_deg="9"/></leg>)"),
-        "limited to 360");
+  warns(
+      survey_text(
+          "",
+          R"(<leg><platformSettings/><scannerSettings scanFreq_hz="20" headRotatePerSec_deg="720" headRotateStop_deg="9"/></leg>)"),
+      "limited to 360");
   warns(survey_text("", leg(R"(active="false")")), "no leg is active");
 }
 
@@ -551,9 +591,11 @@ TEST_CASE("several faults are reported together, each with its place and what to
     CHECK(contains(all, "did you mean 'yard'?"));
     CHECK(contains(all, path + ":4:11: scanner=\"surveys/nothing.xml#rotating\" does not exist"));
     CHECK(contains(all, path + ":6:25: z=\"1O\": expected a number from -1000000000 to 1000000000 m"));
-    CHECK(faults.warnings()[0] == path + ":7:24: attribute 'pulseFreq_Hz' of <scannerSettings> is not known; did you mean 'pulseFreq_hz'?");
+    CHECK(faults.warnings()[0] ==
+          path + ":7:24: attribute 'pulseFreq_Hz' of <scannerSettings> is not known; did you mean 'pulseFreq_hz'?");
     CHECK(contains(all, path + ":7:41: scanFreq_hz=\"1,5\": expected a number"));
-    CHECK(faults.warnings()[1] == path + ":8:8: element <scanerSettings> in <leg> is not known; did you mean 'scannerSettings'?");
+    CHECK(faults.warnings()[1] ==
+          path + ":8:8: element <scanerSettings> in <leg> is not known; did you mean 'scannerSettings'?");
   }
 }
 
@@ -561,12 +603,14 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
   const auto document = [](const std::string& first, const std::string& second) {
     return written(
         "channels.xml",
-        "<document>\n  <scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"3000\" scanAngleMax_deg=\"60\">\n    <channels>\n"
+        "<document>\n  <scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"3000\" scanAngleMax_deg=\"60\">\n    "
+        "<channels>\n"
         "      <channel" +
             first + "/>\n      <channel" + second +
             "/>\n    </channels>\n  </scanner>\n"
             "  <survey scanner=\"#s\" platform=\"surveys/assets.xml#tripod\" scene=\"surveys/scenes.xml#yard\">\n"
-            "    <leg maxDuration_s=\"1\"><platformSettings/><scannerSettings scanFreq_hz=\"10\"/></leg>\n  </survey>\n</document>\n");
+            "    <leg maxDuration_s=\"1\"><platformSettings/><scannerSettings scanFreq_hz=\"10\"/></leg>\n  "
+            "</survey>\n</document>\n");
   };
   const XmlOptions with_files{.assets = {data}, .channel_files = true};
   const auto faults = [&](const std::filesystem::path& path) -> std::string {
@@ -579,11 +623,15 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
   };
   CHECK(faults(document(R"( id="a")", R"( id="b")")).empty());
   CHECK(faults(document("", "")).empty());
-  CHECK(contains(faults(document(R"( id="a")", R"( id="a")")), "channels.xml:5:16: channel 1 has the id of channel 0, 'a'"));
+  CHECK(contains(faults(document(R"( id="a")", R"( id="a")")),
+                 "channels.xml:5:16: channel 1 has the id of channel 0, 'a'"));
   CHECK(contains(faults(document(R"( id="1")", "")), "channels.xml:5:8: channel 1 has the id of channel 0, '1'"));
-  CHECK(contains(faults(document(R"( id="1")", R"( id="")")), "channels.xml:5:16: channel 1 has the id of channel 0, '1'"));
-  CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")), "channels.xml:5:16: the id of a channel is part of file names"));
-  CHECK(contains(faults(document(R"( id="a&#10;")", "")), "channels.xml:4:16: the id of a channel is part of file names"));
+  CHECK(contains(faults(document(R"( id="1")", R"( id="")")),
+                 "channels.xml:5:16: channel 1 has the id of channel 0, '1'"));
+  CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")),
+                 "channels.xml:5:16: the id of a channel is part of file names"));
+  CHECK(contains(faults(document(R"( id="a&#10;")", "")),
+                 "channels.xml:4:16: the id of a channel is part of file names"));
 
   CHECK(read_survey(document(R"( id="a")", R"( id="../b")"), options).warnings.empty());
   const SurveyDocument read = read_survey(document(R"( id="1")", ""), options);
@@ -592,9 +640,12 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
 }
 
 TEST_CASE("templates may have templates, but none that is its own") {
-  const std::string two = R"(<scannerSettings id="a" scanFreq_hz="30"/><scannerSettings id="b" template="a" scanAngle_deg="9"/>)";
+  const std::string two =
+      R"(<scannerSettings id="a" scanFreq_hz="30"/><scannerSettings id="b" template="a" scanAngle_deg="9"/>)";
   const SurveySettings survey =
-      read_text(survey_text("", R"(<leg maxDuration_s="1"><platformSettings/><scannerSettings template="b"/></leg>)", two)).survey;
+      read_text(
+          survey_text("", R"(<leg maxDuration_s="1"><platformSettings/><scannerSettings template="b"/></leg>)", two))
+          .survey;
   CHECK(survey.legs[0].scanner.scan_frequency == 30);
   CHECK(survey.legs[0].scanner.scan_angle == radians(9));
   const std::string cycle = R"(<scannerSettings id="a" template="b"/><scannerSettings id="b" template="a"/>)";
@@ -603,8 +654,10 @@ TEST_CASE("templates may have templates, but none that is its own") {
 
 TEST_CASE("the departure's yaw is not inherited, and a smooth turn is no stop") {
   const SurveySettings survey =
-      read_text(survey_text("", R"(<leg maxDuration_s="1"><platformSettings template="t"/><scannerSettings scanFreq_hz="20"/></leg>)",
-                            R"(<platformSettings id="t" yawAtDeparture_deg="5" smoothTurn="true"/>)"))
+      read_text(
+          survey_text(
+              "", R"(<leg maxDuration_s="1"><platformSettings template="t"/><scannerSettings scanFreq_hz="20"/></leg>)",
+              R"(<platformSettings id="t" yawAtDeparture_deg="5" smoothTurn="true"/>)"))
           .survey;
   CHECK_FALSE(survey.legs[0].platform.yaw_at_departure);
   CHECK(survey.legs[0].platform.smooth_turn);
@@ -614,13 +667,14 @@ TEST_CASE("files that match a pattern become parts of their own, if the part has
   for (const char* name : {"a1.xyz", "a2.xyz", "b.txt"}) (void)written(name, "0,0,0\n");
   const std::string filter = R"(<filter type="xyzloader"><param type="string" key="efilepath" value="a[0-9]\.xyz"/>
       <param type="string" key="separator" value=","/><param type="double" key="voxelSize" value="1"/></filter>)";
-  const std::string scene = "<document><scene id=\"s\"><part>" + filter + "</part><part id=\"named\">" + filter + "</part><part>" + filter +
-                            "</part></scene></document>";
+  const std::string scene = "<document><scene id=\"s\"><part>" + filter + "</part><part id=\"named\">" + filter +
+                            "</part><part>" + filter + "</part></scene></document>";
   const AssetDocument assets = read_assets(written("scene.xml", scene));
   REQUIRE(assets.scenes.at(0).parts.size() == 5);
   const std::vector<PartSettings>& parts = assets.scenes[0].parts;
   const std::initializer_list<const char*> ids{"0", "1", "named", "3", "4"};
-  CHECK(std::equal(parts.begin(), parts.end(), ids.begin(), [](const PartSettings& part, const char* id) { return part.id == id; }));
+  CHECK(std::equal(parts.begin(), parts.end(), ids.begin(),
+                   [](const PartSettings& part, const char* id) { return part.id == id; }));
   CHECK(std::get<XyzSource>(parts[1].source).files == std::vector<std::filesystem::path>{folder / "a2.xyz"});
   CHECK(std::get<XyzSource>(parts[2].source).files.size() == 2);
   write_assets(folder / "again.xml", assets);
@@ -630,8 +684,8 @@ TEST_CASE("files that match a pattern become parts of their own, if the part has
 TEST_CASE("a survey may have ten thousand legs") {
   std::string legs;
   for (int i = 0; i < 10'000; ++i)
-    legs += "<leg stripId=\"s" + std::to_string(i) + "\"><platformSettings template=\"p\" x=\"" + std::to_string(i) + "\"/>" +
-            "<scannerSettings template=\"t\" scanAngle_deg=\"" + std::to_string(1 + i % 30) + "\"/></leg>\n";
+    legs += "<leg stripId=\"s" + std::to_string(i) + "\"><platformSettings template=\"p\" x=\"" + std::to_string(i) +
+            "\"/>" + "<scannerSettings template=\"t\" scanAngle_deg=\"" + std::to_string(1 + i % 30) + "\"/></leg>\n";
   const std::string templates = R"(<platformSettings id="p" y="5"/><scannerSettings id="t" scanFreq_hz="20"/>)";
   const SurveyDocument document = read_text(survey_text(R"(platform="surveys/assets.xml#airplane")", legs, templates));
   REQUIRE(document.survey.legs.size() == 10'000);
@@ -646,7 +700,8 @@ TEST_CASE("documents in windows-1252 and ISO-8859-1 become UTF-8, those of other
     return read_text((encoding.empty() ? "" : "<?xml version='1.0' encoding='" + encoding + "'?>") + text);
   };
   const std::size_t usual = read("UTF-8", "munich").warnings.size();
-  const auto is = [&](const std::string& encoding, const std::string& name, const std::string& expected, const std::string& note = "") {
+  const auto is = [&](const std::string& encoding, const std::string& name, const std::string& expected,
+                      const std::string& note = "") {
     CAPTURE(encoding);
     const SurveyDocument document = read(encoding, name);
     CHECK(document.survey.name == expected);
@@ -664,7 +719,8 @@ TEST_CASE("documents in windows-1252 and ISO-8859-1 become UTF-8, those of other
     is(encoding, "\xED\xA0\x80", "\xC3\xAD\xC2\xA0\xE2\x82\xAC", "is no UTF-8");  // a surrogate
   }
   is("Shift_JIS", "munich", "munich");  // in ASCII
-  CHECK(contains(support::file_error([&] { (void)read("Shift_JIS", "m\xFCnchen"); }).problem(), "has the encoding 'shift_jis': expected"));
+  CHECK(contains(support::file_error([&] { (void)read("Shift_JIS", "m\xFCnchen"); }).problem(),
+                 "has the encoding 'shift_jis': expected"));
 }
 
 TEST_CASE("hostile documents are refused at once") {
@@ -711,7 +767,8 @@ TEST_CASE("hundreds of damaged copies are refused or told of, each with file, li
   const support::TemporaryFolder copies;
   for (const char* name : {"tripod", "airplane", "drone", "trajectory", "spinning", "assets", "scenes"}) {
     for (const char* file : {"assets", "scenes"})
-      std::filesystem::copy_file(sample(file), copies / (std::string(file) + ".xml"), std::filesystem::copy_options::overwrite_existing);
+      std::filesystem::copy_file(sample(file), copies / (std::string(file) + ".xml"),
+                                 std::filesystem::copy_options::overwrite_existing);
     const std::filesystem::path path = copies / (std::string(name) + ".xml");
     const bool is_survey = std::find(std::begin(surveys), std::end(surveys), std::string(name)) != std::end(surveys);
     for (const support::Damage& damage : support::damages(support::content(sample(name)))) {
@@ -728,11 +785,15 @@ TEST_CASE("hundreds of damaged copies are refused or told of, each with file, li
       }
       const std::string place = path.string() + ":" + std::to_string(damage.line) + ":";
       const auto is_named = [&](const std::string& told) {
-        return told.starts_with(place) && contains(told, damage.wrong) && (damage.mended.size() < 3 || contains(told, damage.mended));
+        return told.starts_with(place) && contains(told, damage.wrong) &&
+               (damage.mended.size() < 3 || contains(told, damage.mended));
       };
-      const auto is_idle = [&](const std::string& told) { return told.starts_with(place) && contains(told, "has no effect"); };
+      const auto is_idle = [&](const std::string& told) {
+        return told.starts_with(place) && contains(told, "has no effect");
+      };
       const bool is_odd_only = damage.kind == support::DamageKind::attribute_misspelt || damage.wrong.empty();
-      const bool is_told = std::any_of(wrong.begin(), wrong.end(), is_named) || std::any_of(odd.begin(), odd.end(), is_idle) ||
+      const bool is_told = std::any_of(wrong.begin(), wrong.end(), is_named) ||
+                           std::any_of(odd.begin(), odd.end(), is_idle) ||
                            (is_odd_only && std::any_of(odd.begin(), odd.end(), is_named));
       CHECK(is_told);
     }

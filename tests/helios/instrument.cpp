@@ -94,8 +94,10 @@ void require_equal(const Record& a, const Record& b) {
 
 }  // namespace
 
-TEST_CASE("an instrument on one's own trajectory gives the bytes of an XML survey on an equal one, whatever the scanner") {
-  const AssetDocument assets = read_assets(support::data_folder / "surveys/assets.xml", {.assets = {support::data_folder}});
+TEST_CASE(
+    "an instrument on one's own trajectory gives the bytes of an XML survey on an equal one, whatever the scanner") {
+  const AssetDocument assets =
+      read_assets(support::data_folder / "surveys/assets.xml", {.assets = {support::data_folder}});
   REQUIRE(assets.scanners.size() >= 6);
   const support::TemporaryFolder folder;
   std::ofstream(folder / "ground.obj") << "v -400 -400 0\nv 400 -400 0\nv 400 400 0\nv -400 400 0\nf 1 2 3\nf 1 3 4\n";
@@ -112,12 +114,14 @@ TEST_CASE("an instrument on one's own trajectory gives the bytes of an XML surve
 
     const LegPlatformSettings &from = survey.legs[0].platform, &to = survey.legs[1].platform;
     const StraightLine line{from.position, to.position, from.speed};
-    const Mount mount{.lever_arm = survey.platform.mount.position, .boresight = survey.platform.mount.rotation.rotation()};
-    const Instrument instrument(survey.scanner, survey.legs[0].scanner, line.duration().seconds(), {.boresight = mount.boresight});
+    const Mount mount{.lever_arm = survey.platform.mount.position,
+                      .boresight = survey.platform.mount.rotation.rotation()};
+    const Instrument instrument(survey.scanner, survey.legs[0].scanner, line.duration().seconds(),
+                                {.boresight = mount.boresight});
     const SurveyScene scene(SceneBuilder(survey.scene, {}).parts(), {.to = 1});
     Record by_hand;
-    run(Survey{Platform{line, mount, instrument}, receivers_of<GaussianFit>(survey.scanner, {.noise = true}), scene, 5}, {},
-        [&](const EchoBatch& batch) { by_hand(batch); });
+    run(Survey{Platform{line, mount, instrument}, receivers_of<GaussianFit>(survey.scanner, {.noise = true}), scene, 5},
+        {}, [&](const EchoBatch& batch) { by_hand(batch); });
     require_equal(by_xml, by_hand);
   }
 }
@@ -125,7 +129,8 @@ TEST_CASE("an instrument on one's own trajectory gives the bytes of an XML surve
 TEST_CASE("beams leave from where the trajectory and the beam origin are, and the head turns them") {
   ScannerSettings scanner = ahead();
   scanner.channels[0].beam_origin.position = {0, 0, 0.5};
-  const Platform still{Tripod{.position = {1, 2, 3}}, Mount{.lever_arm = {0, 0, 1}}, Instrument(scanner, {.head_speed = radians(90)}, 2)};
+  const Platform still{Tripod{.position = {1, 2, 3}}, Mount{.lever_arm = {0, 0, 1}},
+                       Instrument(scanner, {.head_speed = radians(90)}, 2)};
   CHECK(still.size() == 2000);
   CHECK(still.duration().seconds() == 2);
   CHECK(length(still.pulse(0)->origin() - Vec3{1, 2, 4.5}) < 1e-12);
@@ -155,14 +160,17 @@ TEST_CASE("errors by formulas are reported by platforms, whatever wraps the inst
   const Instrument exact(ahead(), {}, 1), errs(ahead({.range = "0.5"}), {}, 1);
   const Mount mount{.lever_arm = {0, 0, 1}};
   const Vec3 moved{0, 0.5, 1};
-  const auto reported = [&](const auto& source, PulseIndex i) { return Platform{Tripod{}, mount, source}.pulse(i)->reported; };
+  const auto reported = [&](const auto& source, PulseIndex i) {
+    return Platform{Tripod{}, mount, source}.pulse(i)->reported;
+  };
   CHECK_FALSE(reported(exact, 3).has_value());
   CHECK(length(reported(errs, 3)->position - moved) < 1e-12);
   CHECK(length(Platform{Tripod{}, mount, errs}.pulse(3)->origin() - Vec3{0, 0, 1}) < 1e-12);
 
   using Any = AnySource<Instrument, Deflector<FixedBeam, Scanner>>;
   static_assert(MeasuresBeam<Any> && MeasuresBeam<Channels<Any>> && !MeasuresBeam<Deflector<FixedBeam, Scanner>>);
-  const auto any = std::make_unique<const Any>(errs), other = std::make_unique<const Any>(Deflector{FixedBeam{}, Scanner{}});
+  const auto any = std::make_unique<const Any>(errs),
+             other = std::make_unique<const Any>(Deflector{FixedBeam{}, Scanner{}});
   CHECK(length(any->measured(3, {})->position - Vec3{0, 0.5, 0}) < 1e-12);
   CHECK_FALSE(other->measured(3, {}).has_value());
   const Channels both{std::vector{exact, errs}};
@@ -200,7 +208,8 @@ TEST_CASE("instruments that cannot be are refused with the attribute") {
   CHECK_THROWS_WITH_AS(Instrument(scanner, {}, 1), doctest::Contains("pulseFreq_hz"), SettingError);
   CHECK_NOTHROW(Instrument(scanner, {.pulse_rate = 10}, 1));
   scanner.channels[0].scan_frequency_max = 50;
-  CHECK_THROWS_WITH_AS(Instrument(scanner, {.pulse_rate = 10, .scan_frequency = 60}, 1), doctest::Contains("scanFreq_hz"), SettingError);
+  CHECK_THROWS_WITH_AS(Instrument(scanner, {.pulse_rate = 10, .scan_frequency = 60}, 1),
+                       doctest::Contains("scanFreq_hz"), SettingError);
   CHECK_NOTHROW(Instrument(scanner, {.active = false, .pulse_rate = 10, .scan_frequency = 60}, 1));
 }
 

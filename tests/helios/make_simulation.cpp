@@ -45,7 +45,8 @@ SurveySettings survey() {
 
 /// A square of 200 m at z = 0.
 Simulation::Mesh plane() {
-  return {.data = {.vertices = {{-100, -100, 0}, {100, -100, 0}, {100, 100, 0}, {-100, 100, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}},
+  return {.data = {.vertices = {{-100, -100, 0}, {100, -100, 0}, {100, 100, 0}, {-100, 100, 0}},
+                   .triangles = {{0, 1, 2}, {0, 2, 3}}},
           .object = 7};
 }
 
@@ -96,7 +97,8 @@ TEST_CASE("samples and counts are those of a run") {
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const EchoBatch batch = samples[k].batch();
     REQUIRE(batch.echoes.size() == blocks[k].end - blocks[k].from);
-    for (std::size_t i = 0; i < batch.echoes.size(); ++i) CHECK(batch.echoes[i].range == cloud.echoes[blocks[k].from + i].range);
+    for (std::size_t i = 0; i < batch.echoes.size(); ++i)
+      CHECK(batch.echoes[i].range == cloud.echoes[blocks[k].from + i].range);
   }
 }
 
@@ -150,8 +152,10 @@ TEST_CASE("a repetition draws noise of its own, and a receiver without rings has
 TEST_CASE("waveform noise has a quarter of the least received power as its deviation") {
   SurveySettings s = survey();
   s.legs[0].duration_max = 0.1;
-  const auto simulation = make_simulation(s, {.seed = 3, .waveforms = true, .waveform_noise = true, .meshes = {plane()}});
-  const double probable_error = 0.6745 * 0.25 * s.scanner.channels[0].received_power_min;  // half of normal draws are within it
+  const auto simulation =
+      make_simulation(s, {.seed = 3, .waveforms = true, .waveform_noise = true, .meshes = {plane()}});
+  const double probable_error =
+      0.6745 * 0.25 * s.scanner.channels[0].received_power_min;  // half of normal draws are within it
   std::size_t all = 0, within = 0;
   simulation->run({}, [&](const EchoBatch& batch) {
     all += batch.samples.size();
@@ -170,7 +174,8 @@ TEST_CASE("waveforms are sampled and cut as LAS can hold them, with a warning fo
   CHECK(odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}})[0] ==
         "survey 'plane': binSize_ns is 0.2505, and samples in LAS are whole picoseconds apart: it is taken as 0.25");
   s.scanner.channels[0].waveform.bin_size = 0.01e-9;
-  const std::vector<std::string> cut = odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}, .place = "a.xml:9:3"});
+  const std::vector<std::string> cut =
+      odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}, .place = "a.xml:9:3"});
   REQUIRE(cut.size() == 1);
   CHECK(cut[0].starts_with("a.xml:9:3: waveforms are cut after "));
   CHECK(cut[0].find("the maximum of LAS") != std::string::npos);
@@ -182,7 +187,8 @@ TEST_CASE("channels of different bins are sampled by the smallest") {
   s.scanner.channels[1].waveform.bin_size = 0.5e-9;
   const auto simulation = make_simulation(s, {.meshes = {plane()}});
   REQUIRE(simulation->warnings().size() == 1);
-  CHECK(simulation->warnings()[0] == "scanner 'mirror': its channels have bins of different size; all are sampled by the smallest");
+  CHECK(simulation->warnings()[0] ==
+        "scanner 'mirror': its channels have bins of different size; all are sampled by the smallest");
   CHECK(run(*simulation).size() == 4000);
 }
 
@@ -216,10 +222,10 @@ TEST_CASE("a provider may give parts that were made before, and what it gives co
 
 TEST_CASE("light goes on from what passes it on, if the scene or the program says so, and else does not") {
   // a clear pane a metre above the plane
-  Simulation::Mesh pane{
-      .data = {.vertices = {{-100, -100, 1}, {100, -100, 1}, {100, 100, 1}, {-100, 100, 1}}, .triangles = {{0, 1, 2}, {0, 2, 3}}},
-      .material = {.reflectance = 0, .smooth = SmoothInterface::pane()},
-      .object = 8};
+  Simulation::Mesh pane{.data = {.vertices = {{-100, -100, 1}, {100, -100, 1}, {100, 100, 1}, {-100, 100, 1}},
+                                 .triangles = {{0, 1, 2}, {0, 2, 3}}},
+                        .material = {.reflectance = 0, .smooth = SmoothInterface::pane()},
+                        .object = 8};
   const auto through = [](const Cloud& cloud) {
     return std::count_if(cloud.echoes.begin(), cloud.echoes.end(),
                          [](const Echo& e) { return e.object == 7 && e.kind == ReflectionKind::glass; });
@@ -239,7 +245,9 @@ TEST_CASE("light goes on from what passes it on, if the scene or the program say
   CHECK_THROWS_AS((void)make_simulation(foggy, {.meshes = {plane()}}), SettingError);
 }
 
-TEST_CASE("haze dims the ground by its transmittance and hides none of it, with one echo of the air at most, on any number of threads") {
+TEST_CASE(
+    "haze dims the ground by its transmittance and hides none of it, with one echo of the air at most, on any number "
+    "of threads") {
   // an airplane's height: farther than an atmosphere of a few thousand samples
   SurveySettings clear = survey();
   clear.legs[0].platform.position.z = 1000;

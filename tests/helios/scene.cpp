@@ -34,9 +34,11 @@ using support::TemporaryFolder;
 struct Files {
   TemporaryFolder folder;
   Files() {
-    std::ofstream(folder / "m.mtl") << "newmtl ground\nKd 1 1 1\nhelios_reflectance 0.4\nhelios_isGround true\nhelios_classification 2\n"
-                                       "newmtl wall\nKd 1 1 1\nhelios_reflectance 0.8\nhelios_classification 6\n";
-    std::ofstream(folder / "plane.obj") << "mtllib m.mtl\nusemtl ground\nv -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 1 2 3 4\n";
+    std::ofstream(folder / "m.mtl")
+        << "newmtl ground\nKd 1 1 1\nhelios_reflectance 0.4\nhelios_isGround true\nhelios_classification 2\n"
+           "newmtl wall\nKd 1 1 1\nhelios_reflectance 0.8\nhelios_classification 6\n";
+    std::ofstream(folder / "plane.obj")
+        << "mtllib m.mtl\nusemtl ground\nv -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 1 2 3 4\n";
     std::ofstream(folder / "cube.obj")
         << "mtllib m.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\n"
            "v -1 1 2\nf 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -83,7 +85,8 @@ TEST_CASE("parts are turned, scaled and moved, and keep their ids and materials"
   CHECK(ground.range == relative(100, 1e-12));
   CHECK(ground.classification == 2);
   CHECK(scene.ground_height({10, 5}) == 0);
-  cube.transform.rotations = {{.turns = {{Axis::x, pi / 2}}}, {.turns = {{Axis::z, pi / 2}}}};  // up lies down, and then aside
+  cube.transform.rotations = {{.turns = {{Axis::x, pi / 2}}},
+                              {.turns = {{Axis::z, pi / 2}}}};  // up lies down, and then aside
   const Similarity twice = SceneBuilder(scene_of({cube}), {}).parts()[0].placement;
   CHECK(std::fabs((twice.rotation * axis::up).x) == relative(1, 1e-12));
 }
@@ -111,7 +114,9 @@ TEST_CASE("named numbers of a part go to its points by their object") {
   const Files files;
   PartSettings cube = files.part("cube.obj", "17");
   cube.attributes = {{"age", 80}, {"species", 3}};
-  const auto simulation = [&](std::vector<PartSettings> parts) { return SceneBuilder(scene_of(std::move(parts)), {}).parts(); };
+  const auto simulation = [&](std::vector<PartSettings> parts) {
+    return SceneBuilder(scene_of(std::move(parts)), {}).parts();
+  };
   const std::vector<SurveyPart> parts = simulation({files.part("plane.obj", "0"), cube});
   const ObjectAttributes all{std::span<const SurveyPart>(parts)};
   CHECK(all.names() == std::vector<std::string>{"age", "species"});
@@ -139,7 +144,8 @@ TEST_CASE("a part is let down onto the ground") {
   cube.transform.translation = {3, 3, 8};
   cube.transform.on_ground = 1;
   CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 3, 3).range == relative(98, 1e-9));
-  std::ofstream(files.folder / "plane.obj") << "mtllib m.mtl\nusemtl ground\nv -50 -50 -5\nv 50 -50 5\nv 50 50 5\nv -50 50 -5\nf 1 2 3 4\n";
+  std::ofstream(files.folder / "plane.obj")
+      << "mtllib m.mtl\nusemtl ground\nv -50 -50 -5\nv 50 -50 5\nv 50 50 5\nv -50 50 -5\nf 1 2 3 4\n";
   cube.transform.translation = {0, 3, 8};
   CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 0, 3).range == relative(98, 1e-9));
   cube.transform.on_ground = -1;  // no part of it below the slope
@@ -159,7 +165,9 @@ TEST_CASE("without incidence, surfaces send back the same from everywhere") {
   CHECK(hits[0].backscatter == relative(0.4, 1e-12));
 }
 
-MotionSequenceSettings sequence(std::string id, int loop, MotionSettings motion) { return {std::move(id), loop, {}, {motion}}; }
+MotionSequenceSettings sequence(std::string id, int loop, MotionSettings motion) {
+  return {std::move(id), loop, {}, {motion}};
+}
 
 TEST_CASE("motions go on from step to step, at the pulse rate") {
   const Files files;
@@ -176,7 +184,8 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
   }
   SUBCASE("every other step only, for a second, and then back for ever") {
     cube.dynamic_step = 2;
-    cube.motions = {sequence("go", 500, {TranslationMotion{{0.01, 0, 0}}}), sequence("back", 0, {TranslationMotion{{0, 0.01, 0}}})};
+    cube.motions = {sequence("go", 500, {TranslationMotion{{0.01, 0, 0}}}),
+                    sequence("back", 0, {TranslationMotion{{0, 0.01, 0}}})};
     cube.motions[0].next = "back";
     const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(scene, 5.995, 0, 1).object == 1);
@@ -184,7 +193,8 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
     CHECK(below(scene, 6.1, 4.5, 2).object == 0);
   }
   SUBCASE("there once, and then up and down for ever") {
-    cube.motions = {sequence("go", 100, {TranslationMotion{{0.01, 0, 0}}}), sequence("up", 100, {TranslationMotion{{0, 0.01, 0}}}),
+    cube.motions = {sequence("go", 100, {TranslationMotion{{0.01, 0, 0}}}),
+                    sequence("up", 100, {TranslationMotion{{0, 0.01, 0}}}),
                     sequence("down", 100, {TranslationMotion{{0, -0.01, 0}}})};
     cube.motions[0].next = cube.motions[2].next = "up";
     cube.motions[1].next = "down";
@@ -235,7 +245,8 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
     const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(orbit, 0, 10, 1).object == 1);
     CHECK(below(orbit, 10, 0, 1).object == 0);
-    cube.motions = {sequence("turn", 0, {RotoreflectionMotion{.axis = axis::up, .angle = half, .center = Vec3{0, 0, 1}}})};
+    cube.motions = {
+        sequence("turn", 0, {RotoreflectionMotion{.axis = axis::up, .angle = half, .center = Vec3{0, 0, 1}}})};
     cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
     const SurveyScene same = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(same, 0, 10, 1).object == 1);
@@ -256,7 +267,8 @@ TEST_CASE("swaps take a part's place in later runs") {
   const std::vector<double> tops{98, 94, 94, 100};
   for (int run = 0; run < 4; ++run) {
     CAPTURE(run);
-    CHECK(below(SurveyScene(builder.parts(run), {.to = 1}), 0, 0).range == relative(tops[static_cast<std::size_t>(run)], 1e-12));
+    CHECK(below(SurveyScene(builder.parts(run), {.to = 1}), 0, 0).range ==
+          relative(tops[static_cast<std::size_t>(run)], 1e-12));
   }
 }
 
@@ -267,9 +279,13 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   out << "5.5 0.5 0.5\n";
   out.close();
   PartSettings cloud{
-      "3", XyzSource{.files = {files.folder / "cloud.xyz"}, .material = {files.folder / "m.mtl", "wall"}, .estimate_normals = 1},
-      {},  1,
-      {},  {},
+      "3",
+      XyzSource{
+          .files = {files.folder / "cloud.xyz"}, .material = {files.folder / "m.mtl", "wall"}, .estimate_normals = 1},
+      {},
+      1,
+      {},
+      {},
       {}};
   const SurveyScene scene = built(scene_of({cloud}));
   CHECK(below(scene, 0.5, 0.5).object == 3);
@@ -284,7 +300,9 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK(bare.parts().size() == 1);
   const std::vector<std::string>& told = bare.warnings();
   CHECK(std::any_of(told.begin(), told.end(), [](const std::string& text) {
-    return text.find("few.xyz: has no voxel of three points or more, as required by estimateNormals, and is left out") != std::string::npos;
+    return text.find(
+               "few.xyz: has no voxel of three points or more, as required by estimateNormals, and is left out") !=
+           std::string::npos;
   }));
   std::ofstream(files.folder / "none.mtl") << "# nothing\n";
   PartSettings plain = cloud;
@@ -296,16 +314,20 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   }));
   CHECK(undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
   std::get<XyzSource>(cloud.source).material.name = "brick";
-  CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})),
+                       doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }
 
-/// Writes a GeoTIFF of 8 bits with a colour table, whose entry n is (n, 255 - n, 255), in pixels of 1 m from (0, rows - 1) on.
-void write_palette(const std::filesystem::path& path, std::uint32_t columns, std::uint32_t rows, std::vector<std::uint8_t> codes) {
+/// Writes a GeoTIFF of 8 bits with a colour table, whose entry n is (n, 255 - n, 255), in pixels of 1 m from (0, rows -
+/// 1) on.
+void write_palette(const std::filesystem::path& path, std::uint32_t columns, std::uint32_t rows,
+                   std::vector<std::uint8_t> codes) {
   TIFF* tiff = TIFFOpen(path.c_str(), "w");
   REQUIRE(tiff != nullptr);
-  static const std::vector<TIFFFieldInfo> fields{{33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
-                                                 {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
-                                                 {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")}};
+  static const std::vector<TIFFFieldInfo> fields{
+      {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
+      {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
+      {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
   std::vector<std::uint16_t> red(256), green(256), blue(256, 65535);
   for (std::size_t i = 0; i < 256; ++i) {
@@ -336,7 +358,13 @@ TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
   std::ofstream(folder / "dem.asc") << "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n7 7 7\n7 7 7\n";
   std::ofstream(folder / "land.ASC") << "ncols 2\nnrows 2\nxllcorner -0.5\nyllcorner -2.5\ncellsize 2\n6 2\n6 9\n";
   SceneSettings scene =
-      scene_of({{"1", GeoTiffSource{.files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}}, {}, 1, {}, {}, {}}});
+      scene_of({{"1",
+                 GeoTiffSource{.files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}},
+                 {},
+                 1,
+                 {},
+                 {},
+                 {}}});
   const auto class_at = [&](double x, double y) { return below(built(scene), x, y).classification; };
   CHECK(below(built(scene), 0.25, 0.75).range == relative(93, 1e-12));
   CHECK(class_at(0.25, 0.9) == 2);
@@ -361,19 +389,23 @@ TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
   SceneBuilder told(scene, {});
   CHECK(told.parts().size() == 1);
   REQUIRE(told.warnings().size() == 1);
-  CHECK(told.warnings()[0].find("land.ASC: 2 of 6 pixels have no class with a material, and get 'ground'") != std::string::npos);
+  CHECK(told.warnings()[0].find("land.ASC: 2 of 6 pixels have no class with a material, and get 'ground'") !=
+        std::string::npos);
 }
 
 TEST_CASE("a builder tells each file that it looked for, by whatever name, and those that are missing, too") {
   const Files files;
   const TemporaryFolder& folder = files.folder;
-  const auto put = [&](const std::string& name, const std::string& text) { std::ofstream(folder / name, std::ios::binary) << text; };
+  const auto put = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  };
   using Names = std::set<std::string>;
   const auto told = [&](const PartSource& source) {
     SceneBuilder builder(scene_of({{.id = "1", .source = source}}), {});
     (void)builder.parts();
     Names names;
-    for (const std::filesystem::path& path : builder.files()) names.insert(path.lexically_relative(folder.path()).string());
+    for (const std::filesystem::path& path : builder.files())
+      names.insert(path.lexically_relative(folder.path()).string());
     return names;
   };
   put("leaf.png", grey_png(1, 1, 8, {0}));
@@ -388,34 +420,45 @@ TEST_CASE("a builder tells each file that it looked for, by whatever name, and t
   gltf.mesh("lid");
   gltf.material(R"("name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
   gltf.node(R"("mesh":0)");
-  for (const auto& names : {std::pair("b.bin", "b.bin"), std::pair("b.dat", "b.dat"), std::pair("b", "b"),
-                            std::pair("b.buffer", "b.buffer"), std::pair("b'c.bin", "b'c.bin"), std::pair("b\\u00e4.bin", "b\xC3\xA4.bin")})
+  for (const auto& names :
+       {std::pair("b.bin", "b.bin"), std::pair("b.dat", "b.dat"), std::pair("b", "b"),
+        std::pair("b.buffer", "b.buffer"), std::pair("b'c.bin", "b'c.bin"), std::pair("b\\u00e4.bin", "b\xC3\xA4.bin")})
     for (const std::string picture : {"sky.hdr", "sky.pic", "sky.jfif", "sky"}) {
       const char *const uri = names.first, *const buffer = names.second;
       CAPTURE(uri);
       put(buffer, gltf.buffer());
       gltf.more = R"("images":[{"uri":")" + picture + R"("}],"textures":[{"source":0}],)";
       put("a.gltf", gltf.text(uri));
-      CHECK(told(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) == Names{"a.gltf", buffer, picture, "m.mtl"});
+      CHECK(told(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) ==
+            Names{"a.gltf", buffer, picture, "m.mtl"});
     }
 
   put("dem.png", grey_png(2, 2, 16, {1, 1, 1, 1}));
   put("class.asc", "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n2 2\n2 2\n");
-  const Names ground = told(GeoTiffSource{
-      .files = {folder / "dem.png"}, .material = {folder / "m.mtl", "ground"}, .classes = folder / "class.asc", .pixel_size = 1});
+  const Names ground = told(GeoTiffSource{.files = {folder / "dem.png"},
+                                          .material = {folder / "m.mtl", "ground"},
+                                          .classes = folder / "class.asc",
+                                          .pixel_size = 1});
   for (const char* name : {"dem.png", "dem.pgw", "dem.pngw", "dem.wld", "dem.WLD", "m.mtl", "class.asc"})
     CHECK_MESSAGE(ground.contains(name), name);
 
   put("p.xyz", "0 0 0\n1 1 1\n");
-  CHECK(told(XyzSource{.files = {folder / "p.xyz"}, .material = {folder / "m.mtl", "wall"}, .voxel_size = 1}) == Names{"p.xyz", "m.mtl"});
+  CHECK(told(XyzSource{.files = {folder / "p.xyz"}, .material = {folder / "m.mtl", "wall"}, .voxel_size = 1}) ==
+        Names{"p.xyz", "m.mtl"});
 }
 
 TEST_CASE("a raster of heights may be a PNG file, with scale, offset and a number for what is missing") {
   const Files files;
   const TemporaryFolder& folder = files.folder;
   std::ofstream(folder / "dem.png", std::ios::binary) << grey_png(3, 2, 16, {1000, 1000, 1000, 1000, 1000, 0});
-  SceneSettings scene = scene_of(
-      {{"1", GeoTiffSource{.files = {folder / "dem.png"}, .height_scale = 0.01, .height_offset = -3, .missing = 0}, {}, 1, {}, {}, {}}});
+  SceneSettings scene =
+      scene_of({{"1",
+                 GeoTiffSource{.files = {folder / "dem.png"}, .height_scale = 0.01, .height_offset = -3, .missing = 0},
+                 {},
+                 1,
+                 {},
+                 {},
+                 {}}});
   GeoTiffSource& source = std::get<GeoTiffSource>(scene.parts[0].source);
   CHECK_THROWS_WITH_AS((void)built(scene), doctest::Contains("has no place: expected a world file"), FileError);
   source.pixel_size = 1;
@@ -441,14 +484,15 @@ TEST_CASE("the colour table of a raster of classes colours the ground, if it is 
   const TemporaryFolder& folder = files.folder;
   std::ofstream(folder / "dem.asc") << "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n7 7 7\n7 7 7\n";
   write_palette(folder / "land.tif", 3, 2, {6, 6, 200, 6, 6, 200});  // pixels of 1 m, the first at (0, 1)
-  SceneSettings scene =
-      scene_of({{"1",
-                 GeoTiffSource{.files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}, .classes = folder / "land.tif"},
-                 {},
-                 1,
-                 {},
-                 {},
-                 {}}});
+  SceneSettings scene = scene_of(
+      {{"1",
+        GeoTiffSource{
+            .files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}, .classes = folder / "land.tif"},
+        {},
+        1,
+        {},
+        {},
+        {}}});
   const auto materials = [&] {
     SceneBuilder builder(scene, {});
     return *builder.parts().at(0).materials;
@@ -458,7 +502,8 @@ TEST_CASE("the colour table of a raster of classes colours the ground, if it is 
   const std::vector<Material> coloured = materials();
   REQUIRE(coloured.back().name == "ground 200");
   CHECK(coloured.back().colour == Vec3{200 / 255.0, 55 / 255.0, 1});
-  const auto wall = std::find_if(coloured.begin() + 1, coloured.end(), [](const Material& one) { return one.classification == 6; });
+  const auto wall =
+      std::find_if(coloured.begin() + 1, coloured.end(), [](const Material& one) { return one.classification == 6; });
   REQUIRE(wall != coloured.end());
   CHECK(wall->colour == Vec3{6 / 255.0, 249 / 255.0, 1});
   CHECK(coloured.front().colour == Vec3{1, 1, 1});
@@ -478,22 +523,25 @@ TEST_CASE("the colour table of a raster of classes colours the ground, if it is 
 
 TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {
   const Files files;
-  std::ofstream(files.folder / "wide.vox") << "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal\n0 0 0 1\n3000000 0 0 1\n";
+  std::ofstream(files.folder / "wide.vox")
+      << "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal\n0 0 0 1\n3000000 0 0 1\n";
   PartSettings wide = files.part("plane.obj", "wide");
   wide.source = VoxelSource{.files = {files.folder / "wide.vox"}};
-  CHECK_THROWS_WITH_AS((void)built(scene_of({wide})), doctest::Contains("wide.vox: VoxelData::cells is 3e+06, but must be within"),
-                       FileError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({wide})),
+                       doctest::Contains("wide.vox: VoxelData::cells is 3e+06, but must be within"), FileError);
 
   PartSettings cube = files.part("cube.obj", "hut");
   cube.transform.scale = 1e-31;
-  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Similarity::scale is 1e-31"), SettingError);
-  cube.transform.scale = 1e19;
-  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), "part 'hut': place is 2e+19 m, but must be within 1e18 m of the origin",
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Similarity::scale is 1e-31"),
                        SettingError);
+  cube.transform.scale = 1e19;
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})),
+                       "part 'hut': place is 2e+19 m, but must be within 1e18 m of the origin", SettingError);
   PartSettings cloud = cube;
   cloud.source = XyzSource{.files = {files.folder / "none.xyz"}, .voxel_size = -1};
   CHECK_THROWS_AS((void)built(scene_of({cloud})), SettingError);
-  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"), SettingError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}),
+                       doctest::Contains("SceneBuildOptions::threads is 1025"), SettingError);
 }
 
 TEST_CASE("nodes of a mesh file are parts of their own, placed in their part, which share their mesh") {
@@ -507,7 +555,9 @@ TEST_CASE("nodes of a mesh file are parts of their own, placed in their part, wh
   gltf.node(R"("mesh":0,"name":"second","translation":[10,0,0],"scale":[3,3,3])");
   gltf.roots = "0,1";
   std::ofstream(files.folder / "crates.gltf") << gltf.text();
-  PartSettings crates{.id = "7", .source = MeshSource{.files = {files.folder / "crates.gltf"}, .materials = files.folder / "crates.mtl"}};
+  PartSettings crates{
+      .id = "7",
+      .source = MeshSource{.files = {files.folder / "crates.gltf"}, .materials = files.folder / "crates.mtl"}};
   crates.transform = {.scale = 2, .translation = {100, 0, 0}, .on_ground = 1};
   SceneBuilder builder(scene_of({files.part("plane.obj", "1"), crates}), {});
   const std::vector<SurveyPart> parts = builder.parts();
@@ -519,7 +569,8 @@ TEST_CASE("nodes of a mesh file are parts of their own, placed in their part, wh
   CHECK(parts[1].geometry == parts[2].geometry);
   CHECK((*parts[1].materials)[0].classification == 64);
   const auto warned = [&](const std::string& text) {
-    return std::any_of(builder.warnings().begin(), builder.warnings().end(), [&](const auto& w) { return w.find(text) != w.npos; });
+    return std::any_of(builder.warnings().begin(), builder.warnings().end(),
+                       [&](const auto& w) { return w.find(text) != w.npos; });
   };
   CHECK(warned("onGround has no effect on a mesh file of several nodes"));
   const SurveyScene scene(parts, {.to = 1});

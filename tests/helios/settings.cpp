@@ -10,8 +10,10 @@ using namespace pulsecast;
 using namespace pulsecast::helios;
 
 TEST_CASE("turns about fixed axes and about moving axes are composed as the reference's golden numbers say") {
-  // Mount list (x -90, z 90), heading 30 degrees to the left, deflector 10 degrees up: HELIOS++ behaviour reference, appendix A8.
-  const RotationList fixed{.turns = {{Axis::x, radians(-90)}, {Axis::z, radians(90)}}}, moving{.turns = fixed.turns, .local = true};
+  // Mount list (x -90, z 90), heading 30 degrees to the left, deflector 10 degrees up: HELIOS++ behaviour reference,
+  // appendix A8.
+  const RotationList fixed{.turns = {{Axis::x, radians(-90)}, {Axis::z, radians(90)}}},
+      moving{.turns = fixed.turns, .local = true};
   const Rotation heading = rotation_about(axis::up, radians(30)), deflection = rotation_about(axis::right, radians(10));
   const Vec3 by_fixed = heading * fixed.rotation() * deflection * axis::forward,
              by_moving = heading * moving.rotation() * deflection * axis::forward;
@@ -21,7 +23,9 @@ TEST_CASE("turns about fixed axes and about moving axes are composed as the refe
 
 TEST_CASE("no turns are no rotation, and every axis is its own") {
   CHECK(RotationList{}.rotation() == no_rotation);
-  const auto turned = [](Axis axis, const Vec3& v) { return RotationList{.turns = {{axis, radians(90)}}}.rotation() * v; };
+  const auto turned = [](Axis axis, const Vec3& v) {
+    return RotationList{.turns = {{axis, radians(90)}}}.rotation() * v;
+  };
   CHECK(length(turned(Axis::x, axis::forward) - axis::up) < 1e-15);
   CHECK(length(turned(Axis::y, axis::up) - axis::right) < 1e-15);
   CHECK(length(turned(Axis::z, axis::right) - axis::forward) < 1e-15);
@@ -29,10 +33,11 @@ TEST_CASE("no turns are no rotation, and every axis is its own") {
 
 TEST_CASE("settings are equal if all that they hold is") {
   const auto make = [] {
-    return SurveySettings{.name = "a",
-                          .scanner = {.channels = {{.optic = RisleyOptic{}}}},
-                          .scene = {.parts = {{.source = VoxelSource{}, .motions = {{.motions = {{.kind = RotationMotion{}}}}}}}},
-                          .legs = {{.platform = {.trajectory = TrajectorySettings{}}}}};
+    return SurveySettings{
+        .name = "a",
+        .scanner = {.channels = {{.optic = RisleyOptic{}}}},
+        .scene = {.parts = {{.source = VoxelSource{}, .motions = {{.motions = {{.kind = RotationMotion{}}}}}}}},
+        .legs = {{.platform = {.trajectory = TrajectorySettings{}}}}};
   };
   const SurveySettings survey = make();
   CHECK(survey == make());
@@ -45,7 +50,8 @@ TEST_CASE("settings are equal if all that they hold is") {
   CHECK(differs([](SurveySettings& s) { s.scanner.channels[0].optic = LineOptic{}; }));
   CHECK(differs([](SurveySettings& s) { std::get<RisleyOptic>(s.scanner.channels[0].optic).prisms[2].angle = 1; }));
   CHECK(differs([](SurveySettings& s) { std::get<VoxelSource>(s.scene.parts[0].source).material.name = "x"; }));
-  CHECK(differs([](SurveySettings& s) { std::get<RotationMotion>(s.scene.parts[0].motions[0].motions[0].kind).glide = 0; }));
+  CHECK(differs(
+      [](SurveySettings& s) { std::get<RotationMotion>(s.scene.parts[0].motions[0].motions[0].kind).glide = 0; }));
   CHECK(differs([](SurveySettings& s) { s.legs[0].platform.trajectory->columns.emplace(); }));
   CHECK(differs([](SurveySettings& s) { s.platform.attitude_noise[1].emplace(); }));
   CHECK(differs([](SurveySettings& s) { s.legs[0].scanner.divergence = 0; }));

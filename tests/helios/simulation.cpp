@@ -32,7 +32,8 @@ TEST_CASE("what can be checked without a scene is") {
   SUBCASE("a leg that scans faster than the device can") {
     s.scanner.channels[0].scan_frequency_max = 5;
     CHECK_THROWS_WITH_AS((void)check_without_scene(s), doctest::Contains("leg 0: scanFreq_hz"), SettingError);
-    CHECK_THROWS_WITH_AS((void)check_without_scene(s, {"a.xml:3:5"}), doctest::Contains("a.xml:3:5: leg 0: scanFreq_hz"), SettingError);
+    CHECK_THROWS_WITH_AS((void)check_without_scene(s, {"a.xml:3:5"}),
+                         doctest::Contains("a.xml:3:5: leg 0: scanFreq_hz"), SettingError);
   }
   SUBCASE("a receiver that cannot be") {
     s.scanner.channels[0].receiver_diameter = -1;

@@ -93,8 +93,8 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SUBCASE("nor faster than a laser can be") {
     s.legs[1].scanner.pulse_rate = 1e13;
     s.legs[1].duration_max = 1;
-    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is 1e+13 Hz, but must be from 0 to 1"),
-                         SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat),
+                         doctest::Contains("leg 1: pulseFreq_hz is 1e+13 Hz, but must be from 0 to 1"), SettingError);
     s.legs[1].scanner.pulse_rate = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
   }
@@ -103,7 +103,8 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
     s.legs[1].scanner.head_stop = 1;
-    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg: the leg never ends"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat),
+                         doctest::Contains("leg 1: headRotateStop_deg: the leg never ends"), SettingError);
     s.legs[1].scanner.head_speed = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
   }
@@ -127,7 +128,8 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
     const CompiledSurvey waits = compile_survey(s, flat);
     CHECK(waits.legs[0].duration.seconds() == 10);
     REQUIRE(waits.warnings.size() == 1);
-    CHECK(waits.warnings[0].find("leg 0: the platform arrives after 5 s, and stays for 5 s until the head has turned") == 0);
+    CHECK(waits.warnings[0].find(
+              "leg 0: the platform arrives after 5 s, and stays for 5 s until the head has turned") == 0);
     s.legs[0].scanner.head_stop = 0;  // turns all the way
     CHECK(compile_survey(s, flat).legs[0].duration.seconds() == 5);
     CHECK(compile_survey(s, flat).warnings.empty());
@@ -140,7 +142,8 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
     s.legs[1].platform.speed = 0;
     SurveyBuildOptions options;
     options.leg_places = {"a.xml:3:5", "a.xml:7:5", "a.xml:9:5"};
-    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:7:5: leg 1: movePerSec_m"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:7:5: leg 1: movePerSec_m"),
+                         SettingError);
   }
   SUBCASE("the last leg says where the way ends, whatever the scanner could do there") {
     for (ChannelSettings& channel : s.scanner.channels) channel.scan_frequency_min = 5;
@@ -164,26 +167,33 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
 TEST_CASE("a multicopter that stops is at each place when its leg begins; one that turns smoothly passes there") {
   SurveySettings s = survey_of(PlatformKind::multicopter, {{-60, 0, 40}, {0, 0, 40}, {0, 60, 40}}, 8);
   const CompiledSurvey stops = compile_survey(s, flat);
-  for (std::size_t k = 0; k < 2; ++k) CHECK(length(stops.source.legs()[k].path().at({}).position - s.legs[k].platform.position) < 1e-6);
+  for (std::size_t k = 0; k < 2; ++k)
+    CHECK(length(stops.source.legs()[k].path().at({}).position - s.legs[k].platform.position) < 1e-6);
   CHECK(length(stops.source.legs()[1].path().at({}).direction(axis::forward) - axis::forward) < 1e-6);
 
   for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
   const CompiledSurvey smooth = compile_survey(s, flat);
   double nearest = 1e9;
   for (double t = 0; t < smooth.legs[0].duration.seconds(); t += 0.01)
-    nearest = std::min(nearest, length(smooth.source.legs()[0].path().at(Tick::of_seconds(t)).position - s.legs[1].platform.position));
+    nearest = std::min(
+        nearest, length(smooth.source.legs()[0].path().at(Tick::of_seconds(t)).position - s.legs[1].platform.position));
   CHECK(nearest < 0.15);
-  const auto end = smooth.source.legs()[0].path().at(smooth.legs[0].duration), begin = smooth.source.legs()[1].path().at({});
+  const auto end = smooth.source.legs()[0].path().at(smooth.legs[0].duration),
+             begin = smooth.source.legs()[1].path().at({});
   CHECK(length(end.position - begin.position) < 0.02);  // one flight; legs end with a whole slot
-  CHECK(length(smooth.source.legs()[1].path().at(smooth.legs[1].duration).position - s.legs[2].platform.position) < 0.02);
+  CHECK(length(smooth.source.legs()[1].path().at(smooth.legs[1].duration).position - s.legs[2].platform.position) <
+        0.02);
 }
 
 TEST_CASE("a vehicle drives over the ground from leg to leg") {
   const SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 40, 0}}, 5);
   const CompiledSurvey compiled = compile_survey(s, flat);
-  const auto at = [&](std::size_t k, double t) { return compiled.source.legs()[k].path().at(Tick::of_seconds(t)).position; };
+  const auto at = [&](std::size_t k, double t) {
+    return compiled.source.legs()[k].path().at(Tick::of_seconds(t)).position;
+  };
   CHECK(length(at(0, 0) - Vec3{0, 0, 7}) < 1e-6);
-  CHECK(length(at(1, 0) - Vec3{40, 0, 7}) == relative((std::sqrt(2.0) - 1) * GroundVehicleSettings{}.turn_radius, 0.01));  // cut corner
+  CHECK(length(at(1, 0) - Vec3{40, 0, 7}) ==
+        relative((std::sqrt(2.0) - 1) * GroundVehicleSettings{}.turn_radius, 0.01));  // cut corner
   CHECK(length(at(1, compiled.legs[1].duration.seconds()) - Vec3{40, 40, 7}) < 0.1);
   CHECK(compiled.legs[2].end == compiled.legs[2].first);
   SUBCASE("where there is none, at the height of the leg") {
@@ -193,12 +203,15 @@ TEST_CASE("a vehicle drives over the ground from leg to leg") {
 }
 
 TEST_CASE("a vehicle passes below a bridge from leg to leg, and notes what no vehicle drives over") {
-  const auto bridge = [](const Vec2& p, double near = std::numeric_limits<double>::infinity()) -> std::optional<double> {
+  const auto bridge = [](const Vec2& p,
+                         double near = std::numeric_limits<double>::infinity()) -> std::optional<double> {
     return p.x > 20 && p.x < 60 && near > 3 ? 6 : 0;
   };
-  SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 0, 0}, {80, 0, 0}, {99, 0, 0}}, 5);
-  s.legs[3].platform.speed = 4;                                                                        // a drive of its own
-  const SurveyBuildOptions read{.leg_places = std::vector<std::string>(s.legs.size(), "survey.xml")};  // whose other notes its reader has
+  SurveySettings s =
+      survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 0, 0}, {80, 0, 0}, {99, 0, 0}}, 5);
+  s.legs[3].platform.speed = 4;  // a drive of its own
+  const SurveyBuildOptions read{
+      .leg_places = std::vector<std::string>(s.legs.size(), "survey.xml")};  // whose other notes its reader has
   const CompiledSurvey compiled = compile_survey(s, bridge, read);
   for (const auto& leg : compiled.legs)
     for (const double t : {0.0, 0.3, 0.6, 1.0}) {
@@ -213,12 +226,15 @@ TEST_CASE("a vehicle passes below a bridge from leg to leg, and notes what no ve
   const auto wall = notes([](const Vec2& p) -> std::optional<double> { return p.x < 60 ? 0 : 9; });
   REQUIRE(wall.size() == 1);
   CHECK(wall[0].find("leg 2: ground steeper than 45 degrees") != std::string::npos);
-  const auto sawtooth = notes([](const Vec2& p) -> std::optional<double> { return std::fmod(p.x + 100, 2) < 1 ? 0 : 5; });
+  const auto sawtooth =
+      notes([](const Vec2& p) -> std::optional<double> { return std::fmod(p.x + 100, 2) < 1 ? 0 : 5; });
   CHECK(std::any_of(sawtooth.begin(), sawtooth.end(),
                     [](const auto& w) { return w.find("leg 0: the vehicle takes ") != std::string::npos; }));
 }
 
-TEST_CASE("a platform that moves stays where the next leg begins at the same place, for as long as it may, and looks as it came") {
+TEST_CASE(
+    "a platform that moves stays where the next leg begins at the same place, for as long as it may, and looks as it "
+    "came") {
   const std::vector<Vec3> places{{0, 0, 40}, {0, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 30, 40}};
   for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle})
     for (const bool smooth : {false, true}) {
@@ -239,8 +255,9 @@ TEST_CASE("a platform that moves stays where the next leg begins at the same pla
       for (std::size_t k = 0; k < 5; ++k) {
         CAPTURE(k);
         const auto end = at(k, compiled.legs[k].duration.seconds()), begin = at(k + 1, 0);
-        CHECK(length(end.position - begin.position) < 0.01);             // legs end with a whole slot
-        const bool jumps = kind != PlatformKind::multicopter && k == 3;  // it cannot turn on the spot, and leaves as if it had
+        CHECK(length(end.position - begin.position) < 0.01);  // legs end with a whole slot
+        const bool jumps =
+            kind != PlatformKind::multicopter && k == 3;  // it cannot turn on the spot, and leaves as if it had
         CHECK((jumps || length(end.direction(axis::forward) - begin.direction(axis::forward)) < 0.01));
       }
     }
@@ -252,8 +269,8 @@ TEST_CASE("a place is finite, whatever the platform, and may get its height from
     for (const double bad : {std::nan(""), HUGE_VAL}) {
       CAPTURE(static_cast<int>(kind));
       CAPTURE(bad);
-      CHECK_THROWS_WITH_AS(LegPaths(survey_of(kind, {{0, 0, 9}, {bad, 0, 9}}), flat, {}), doctest::Contains("leg 1: position"),
-                           SettingError);
+      CHECK_THROWS_WITH_AS(LegPaths(survey_of(kind, {{0, 0, 9}, {bad, 0, 9}}), flat, {}),
+                           doctest::Contains("leg 1: position"), SettingError);
     }
   SurveySettings s = survey_of(PlatformKind::stationary, {{0, 0, std::nan("")}});
   s.legs[0].platform.on_ground = true;
@@ -261,7 +278,8 @@ TEST_CASE("a place is finite, whatever the platform, and may get its height from
 }
 
 TEST_CASE("a multicopter that hovers before, between and after ways looks along them, or where it is told to") {
-  SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}, {0, 0, 40}, {40, 0, 40}, {40, 0, 40}, {40, -40, 40}}, 5);
+  SurveySettings s =
+      survey_of(PlatformKind::multicopter, {{0, 0, 40}, {0, 0, 40}, {40, 0, 40}, {40, 0, 40}, {40, -40, 40}}, 5);
   const SurveyBuildOptions options;
   const auto looks = [&](std::size_t k) { return LegPaths(s, flat, options)[k].path.at({}).direction(axis::forward); };
   CHECK(length(looks(0) - axis::right) < 1e-9);
@@ -287,7 +305,8 @@ TEST_CASE("documents may give angles of many turns") {
     for (LegSettings& leg : s.legs) leg.scanner.head_start = leg.scanner.head_stop = radians(50) + more;
     const CompiledSurvey compiled = compile_survey(s, flat);
     std::vector<Vec3> all;
-    for (PulseIndex i = 0; i < compiled.source.size(); i += 10) all.push_back(compiled.source.pulse(i).value().direction());
+    for (PulseIndex i = 0; i < compiled.source.size(); i += 10)
+      all.push_back(compiled.source.pulse(i).value().direction());
     return all;
   };
   const std::vector<Vec3> right = directions(0);
@@ -328,13 +347,15 @@ TEST_CASE("a flight of smooth turns goes from place to place, however often its 
 }
 
 TEST_CASE("a vehicle parks as it came, or as it will leave, on the ground") {
-  const SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {0, 0, 0}, {0, 30, 0}, {0, 30, 0}, {0, 90, 0}}, 5);
+  const SurveySettings s =
+      survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {0, 0, 0}, {0, 30, 0}, {0, 30, 0}, {0, 90, 0}}, 5);
   const auto slope = [](const Vec2& at) -> std::optional<double> { return 0.1 * at.y; };
   const SurveyBuildOptions options;
   const LegPaths paths(s, slope, options);
   for (const std::size_t k : {0U, 2U}) {
     CAPTURE(k);
-    const auto pose = paths[k].path.at({}), later = paths[k].path.at(Tick::of_seconds(9)), leaves = paths[k + 1].path.at({});
+    const auto pose = paths[k].path.at({}), later = paths[k].path.at(Tick::of_seconds(9)),
+               leaves = paths[k + 1].path.at({});
     CHECK(pose.position == later.position);
     CHECK(length(pose.position - leaves.position) < 0.01);
     CHECK(std::fabs(pose.position.z - (k == 0 ? 0 : 3)) < 0.05);
@@ -376,17 +397,21 @@ TEST_CASE("an interpolated platform follows its file, with the columns that the 
   CHECK(length(origin(compiled, 0) - Vec3{110, 200, 50}) < 1e-9);
   CHECK(length(compiled.source.pulse(0)->direction() - axis::right) < 1e-9);
   s.legs[0].platform.trajectory->columns->roll = 0;
-  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0: TrajectoryFormat::columns"), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0: TrajectoryFormat::columns"),
+                       SettingError);
   s.legs[0].platform.trajectory.reset();
   CHECK_THROWS_AS((void)compile_survey(s, flat), SettingError);
 }
 
-TEST_CASE("what one leg says of the columns of a file, and what separates them, holds for all that follow it; others do not count") {
+TEST_CASE(
+    "what one leg says of the columns of a file, and what separates them, holds for all that follow it; others do not "
+    "count") {
   const TemporaryFolder folder;
   std::ofstream(folder / "way.trj") << "100,200,50,0,1;5,fixed\n120,200,50,1,1;5,fixed\n140,200,50,2,1;5,float\n";
   SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}});
   const TrajectoryIndices columns{.time = 3, .x = 0, .y = 1, .z = 2};
-  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .position_only = true};
+  for (LegSettings& leg : s.legs)
+    leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .position_only = true};
   s.legs[0].platform.trajectory->columns = columns;
   s.legs[0].platform.trajectory->separator = ',';
   s.legs[1].platform.trajectory->start = 1;
@@ -401,7 +426,8 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
   const TemporaryFolder folder;
   std::ofstream(folder / "way.trj") << "0,0,0,0,0,0,9\n2,0,0,0,20,0,9\n2,0,0,0,500,0,9\n4,0,0,0,500,20,9\n";
   SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}, {}});
-  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  for (LegSettings& leg : s.legs)
+    leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   for (const bool position_only : {false, true}) {
     for (LegSettings& leg : s.legs) leg.platform.trajectory->position_only = position_only;
     s.legs[0].platform.trajectory->end = 2;
@@ -420,10 +446,12 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
       return std::count_if(compiled.warnings.begin(), compiled.warnings.end(),
                            [&](const std::string& w) { return w.find(what) != std::string::npos; });
     };
-    CHECK(notes("way.trj, line 3: repeats the time of the previous pose at another pose, the first of 1: a jump of the platform") == 1);
+    CHECK(notes("way.trj, line 3: repeats the time of the previous pose at another pose, the first of 1: a jump of the "
+                "platform") == 1);
     CHECK(notes("a jump of the platform") == 1);
     if (!position_only) continue;
-    CHECK(length(at(0, 2).direction(axis::forward) - axis::right) < 1e-12);  // it looks where it goes, and not where it jumps
+    CHECK(length(at(0, 2).direction(axis::forward) - axis::right) <
+          1e-12);  // it looks where it goes, and not where it jumps
     CHECK(length(at(1, 0).direction(axis::forward) - axis::forward) < 1e-12);
   }
 }
@@ -447,15 +475,19 @@ TEST_CASE("with the clock of a file, each leg has the time that the file gives i
     s.legs[0].platform.trajectory->sync_clock = true;
     return s;
   };
-  const auto off = [&](const CompiledSurvey& compiled) {  // largest difference of a pulse's time and that of its place in the file [s]
+  const auto off = [&](const CompiledSurvey&
+                           compiled) {  // largest difference of a pulse's time and that of its place in the file [s]
     double most = 0;
     for (const auto& leg : compiled.legs) {
       const auto pulse = compiled.source.pulse(leg.first).value();
-      most = std::fmax(most, std::fabs(*compiled.clock_start + pulse.tick.seconds() - start - pulse.pose.position.y / 50));
+      most =
+          std::fmax(most, std::fabs(*compiled.clock_start + pulse.tick.seconds() - start - pulse.pose.position.y / 50));
       CHECK(pulse.tick == leg.start);
       const auto& source = compiled.source.legs()[leg.number];
-      const double end = source.path().at(source.recorded()).position.y / 50;  // also of the last record of a trajectory
-      most = std::fmax(most, std::fabs(*compiled.clock_start + (leg.start + source.recorded()).seconds() - start - end));
+      const double end =
+          source.path().at(source.recorded()).position.y / 50;  // also of the last record of a trajectory
+      most =
+          std::fmax(most, std::fabs(*compiled.clock_start + (leg.start + source.recorded()).seconds() - start - end));
     }
     return most;
   };
@@ -476,7 +508,8 @@ TEST_CASE("a leg of whole slots has no slot more by the rounding of large times"
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     support::Generator random(seed);
-    const double rate = 1000.0 * static_cast<double>(1 + random.whole(300)), start = std::round(random.log_uniform(1, 604800) * 10) / 10;
+    const double rate = 1000.0 * static_cast<double>(1 + random.whole(300)),
+                 start = std::round(random.log_uniform(1, 604800) * 10) / 10;
     const double slots = 100.0 * static_cast<double>(1 + random.whole(30)), extra = random.coin() ? 0.5 : 0;
     SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
     s.scanner.pulse_rates = {rate};
@@ -497,7 +530,8 @@ TEST_CASE("a flight or drive goes on in the next leg where it was when the last 
     const CompiledSurvey compiled = compile_survey(s, flat);
     for (std::size_t k = 1; k < 4; ++k) {
       const auto& before = compiled.source.legs()[k - 1].path();
-      const Vec3 end = before.at(compiled.legs[k - 1].duration).position, begin = compiled.source.legs()[k].path().at({}).position;
+      const Vec3 end = before.at(compiled.legs[k - 1].duration).position,
+                 begin = compiled.source.legs()[k].path().at({}).position;
       CHECK(length(end - begin) < 1e-12);
     }
   }
@@ -513,7 +547,8 @@ TEST_CASE("a gap in the rows of a file gets a note, within the legs that fly ove
   s.legs[0].platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   const CompiledSurvey compiled = compile_survey(s, flat);
   REQUIRE(compiled.warnings.size() == 1);
-  CHECK(compiled.warnings[0].find("way.trj: no pose between 0.9 s and 100 s, the longest of 1 gaps") != std::string::npos);
+  CHECK(compiled.warnings[0].find("way.trj: no pose between 0.9 s and 100 s, the longest of 1 gaps") !=
+        std::string::npos);
   CHECK(compiled.warnings[0].find("tStart, tEnd") != std::string::npos);
   s.legs[0].platform.trajectory->end = 0.9;
   CHECK(compile_survey(s, flat).warnings.empty());
@@ -524,7 +559,8 @@ TEST_CASE("the optic of a leg that teleports starts anew, as after a leg that is
   std::ofstream(folder / "way.trj") << "0,0,0,0,0,0,9\n1.015,0,0,0,0,0,9\n";
   SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}});
   s.scanner.channels[0].optic = ConicOptic{};
-  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  for (LegSettings& leg : s.legs)
+    leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   const auto turned = [&] {
     const CompiledSurvey compiled = compile_survey(s, flat);
     return length(compiled.source.pulse(compiled.legs[1].first)->direction() - compiled.source.pulse(0)->direction());
@@ -540,7 +576,8 @@ TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses a
   s.legs[1].scanner.trajectory_interval = 1e-9;
   const SurveyBuildOptions options{.leg_places = {"a.xml:3:5", "a.xml:4:5"}};
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options),
-                       doctest::Contains("a.xml:4:5: leg 1: trajectoryTimeInterval_s (records) is 1e+15"), SettingError);
+                       doctest::Contains("a.xml:4:5: leg 1: trajectoryTimeInterval_s (records) is 1e+15"),
+                       SettingError);
   s.legs[1].scanner.active = false;
   CHECK_NOTHROW((void)compile_survey(s, flat, options));
   s.legs[1].scanner.active = true;
@@ -548,7 +585,8 @@ TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses a
   CHECK(compile_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
   s.legs[1].duration_max = 1e9;
   s.legs[1].scanner.pulse_rate = 1e8;
-  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+17"), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+17"),
+                       SettingError);
 }
 
 TEST_CASE("settings of a program have the limits of a document's") {
@@ -563,7 +601,8 @@ TEST_CASE("settings of a program have the limits of a document's") {
   const auto scanner = [](SurveySettings& o) -> LegScannerSettings& { return o.legs[1].scanner; };
   const auto device = [](SurveySettings& o) -> ChannelSettings& { return o.scanner.channels[0]; };
   refused([&](SurveySettings& o) { scanner(o).vertical_angle_min = -40; },
-          "leg 1: verticalAngleMin_deg is -2291.831180523293 deg, but must be from -360 to 360: given in degrees, not radians?");
+          "leg 1: verticalAngleMin_deg is -2291.831180523293 deg, but must be from -360 to 360: given in degrees, not "
+          "radians?");
   refused([&](SurveySettings& o) { scanner(o).pulse_rate = 1e12; }, "leg 1: pulseFreq_hz is 1e+12 Hz");
   refused([&](SurveySettings& o) { scanner(o).scan_frequency = 1e3; },
           "leg 1: scanFreq_hz is 1000 Hz: expected less than pulseFreq_hz, 1000 Hz");
@@ -572,17 +611,22 @@ TEST_CASE("settings of a program have the limits of a document's") {
   refused([&](SurveySettings& o) { o.legs[0].platform.position.y = 2e9; },
           "leg 0: y is 2e+09 m, but must be from -1000000000 to 1000000000");
   refused([&](SurveySettings& o) { device(o).efficiency = 1.5; }, "opticalEfficiency is 1.5, but must be from 0 to 1");
-  refused([&](SurveySettings& o) { device(o).range_min = device(o).range_max = 5; }, "rangeMax_m is not beyond rangeMin_m");
-  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 1 + (device(o).scan_frequency_max = 8); }, "scanFreqMax_Hz is below");
-  refused([&](SurveySettings& o) { device(o).errors.range = "1/0*THETA"; }, "expr=\"1/0*THETA\" is not finite for any THETA");
-  refused([&](SurveySettings& o) { o.scanner.channels.emplace_back(device(o)).wavelength = 1; }, "channel 1: wavelength_nm is 1e+09 nm");
+  refused([&](SurveySettings& o) { device(o).range_min = device(o).range_max = 5; },
+          "rangeMax_m is not beyond rangeMin_m");
+  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 1 + (device(o).scan_frequency_max = 8); },
+          "scanFreqMax_Hz is below");
+  refused([&](SurveySettings& o) { device(o).errors.range = "1/0*THETA"; },
+          "expr=\"1/0*THETA\" is not finite for any THETA");
+  refused([&](SurveySettings& o) { o.scanner.channels.emplace_back(device(o)).wavelength = 1; },
+          "channel 1: wavelength_nm is 1e+09 nm");
   refused([](SurveySettings& o) { o.platform.position_noise[1] = NoiseSettings{.clipped = true, .clip_low = 2}; },
           "clipMax is below clipMin");
   refused([](SurveySettings& o) { o.leg_offset = LegOffsetSettings{.deviation = -1}; }, "legRandomOffsetStdev is -1 m");
   refused([](SurveySettings& o) { o.scanner.channels.clear(); }, "scanner: channels (number) is 0");
 }
 
-TEST_CASE("settings of a program get the notes of a document's, but those that were read from one do not get them again") {
+TEST_CASE(
+    "settings of a program get the notes of a document's, but those that were read from one do not get them again") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}});
   s.legs[0].duration_max = 0.1;
   LegScannerSettings& leg = s.legs[0].scanner;
@@ -593,12 +637,13 @@ TEST_CASE("settings of a program get the notes of a document's, but those that w
   leg.scan_angle = radians(70);
   s.scanner.channels[0].waveform.bin_size = 9e-9;
   const std::vector<std::string> notes = compile_survey(s, flat).warnings;
-  CHECK(notes == std::vector<std::string>{
-                     "binSize_ns is 9 ns, and pulses are 4 ns long: it is limited to 4 ns; expected bins from 0.0004 ns to 4 ns",
-                     "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?",
-                     "leg 0: headRotatePerSec_deg exceeds the scanner's maximum: it is limited to 360",
-                     "leg 0: pulseFreq_hz of 123 Hz is not one of the scanner's pulse rates",
-                     "leg 0: scanAngle_deg exceeds the scanner's maximum: it is limited to 60"});
+  CHECK(notes ==
+        std::vector<std::string>{
+            "binSize_ns is 9 ns, and pulses are 4 ns long: it is limited to 4 ns; expected bins from 0.0004 ns to 4 ns",
+            "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?",
+            "leg 0: headRotatePerSec_deg exceeds the scanner's maximum: it is limited to 360",
+            "leg 0: pulseFreq_hz of 123 Hz is not one of the scanner's pulse rates",
+            "leg 0: scanAngle_deg exceeds the scanner's maximum: it is limited to 60"});
   CHECK(compile_survey(s, flat, {.leg_places = {"a.xml:3:5"}}).warnings.empty());
 }
 
@@ -610,8 +655,8 @@ TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told 
                                     {multicopter, 2e3},
                                     {ground_vehicle, 1e-320},
                                     {ground_vehicle, 2e3}})
-    CHECK_THROWS_WITH_AS((void)compile_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat), doctest::Contains("leg 0: movePerSec_m is "),
-                         SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat),
+                         doctest::Contains("leg 0: movePerSec_m is "), SettingError);
   SurveySettings s = survey_of(stationary, {{}});
   s.legs[0].scanner.head_speed = 1e-300;
   s.legs[0].scanner.head_stop = 2;
@@ -641,9 +686,9 @@ TEST_CASE("noise of the platform is reported alone, as the settings say, and can
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}});
   s.legs[0].duration_max = 10;
   s.legs[0].scanner.scan_frequency = 0;
-  s.platform.position_noise = {NoiseSettings{.deviation = 0.1},
-                               NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3},
-                               NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2}};
+  s.platform.position_noise = {
+      NoiseSettings{.deviation = 0.1}, NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3},
+      NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2}};
   const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 4});
   double sum = 0, squares = 0, least = 9, most = -9;
   for (PulseIndex i = 0; i < 10'000; ++i) {
@@ -675,7 +720,8 @@ TEST_CASE("noise of the platform is reported alone, as the settings say, and can
 TEST_CASE("no two legs have the same noise") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}});
   for (LegSettings& leg : s.legs) leg.duration_max = 1;
-  s.platform.position_noise[0] = s.platform.attitude_noise[2] = NoiseSettings{.deviation = 0.1, .lifespan = 100'000};  // as a drift
+  s.platform.position_noise[0] = s.platform.attitude_noise[2] =
+      NoiseSettings{.deviation = 0.1, .lifespan = 100'000};  // as a drift
   const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 4});
   const auto drawn = [&](std::size_t leg, PulseIndex i) {
     const auto p = compiled.source.pulse(compiled.legs[leg].first + i);

@@ -16,14 +16,16 @@
 namespace pulsecast::support {
 
 /// A survey with these attributes of the survey and this inside, on the sample assets.
-inline std::string survey_text(const std::string& attributes, const std::string& inside, const std::string& before = "") {
+inline std::string survey_text(const std::string& attributes, const std::string& inside,
+                               const std::string& before = "") {
   std::string all = attributes;
   const std::pair<const char*, const char*> usual[] = {{"scene=", R"( scene="surveys/scenes.xml#yard")"},
                                                        {"platform=", R"( platform="surveys/assets.xml#tripod")"},
                                                        {"scanner=", R"( scanner="surveys/assets.xml#rotating")"}};
   for (const auto& [name, reference] : usual)
     if (all.find(name) == std::string::npos) all += reference;
-  return "<?xml version=\"1.0\"?>\n<document>\n" + before + "<survey " + all + ">\n" + inside + "\n</survey>\n</document>\n";
+  return "<?xml version=\"1.0\"?>\n<document>\n" + before + "<survey " + all + ">\n" + inside +
+         "\n</survey>\n</document>\n";
 }
 
 /// Reads a text as a survey.

@@ -56,7 +56,8 @@ TEST_CASE("a grid of one line longer than a block is read, words across the ends
     for (int i = 0; i < 500000; ++i) text += ' ' + std::to_string(100000 + i % 99991);
     const AsciiGrid grid = read(text + '\n');
     bool same = true;
-    for (std::size_t i = 0; i < 500000; ++i) same = same && grid.raster.heights[i] == static_cast<float>(100000 + i % 99991);
+    for (std::size_t i = 0; i < 500000; ++i)
+      same = same && grid.raster.heights[i] == static_cast<float>(100000 + i % 99991);
     CHECK(same);
     CHECK(grid.warnings.empty());
     CHECK(support::file_error([&] { (void)read(text + "\n\nx"); }).place() == "line 3");
@@ -64,7 +65,9 @@ TEST_CASE("a grid of one line longer than a block is read, words across the ends
 }
 
 TEST_CASE("a grid that may be in degrees is read with a question") {
-  const auto warnings = [&](const std::string& place) { return read("ncols 2\nnrows 2\n" + place + "\n1 2\n3 4\n").warnings; };
+  const auto warnings = [&](const std::string& place) {
+    return read("ncols 2\nnrows 2\n" + place + "\n1 2\n3 4\n").warnings;
+  };
   const std::vector<std::string> globe = warnings("xllcorner 8.5\nyllcorner 49.4\ncellsize 0.000278");
   REQUIRE(globe.size() == 1);
   CHECK(globe[0].ends_with("is it in degrees? Expected metres"));
@@ -73,13 +76,15 @@ TEST_CASE("a grid that may be in degrees is read with a question") {
 }
 
 TEST_CASE("counts that the file cannot hold are refused before memory is taken") {
-  const FileError error =
-      support::file_error([] { (void)read("ncols 134217728\nnrows 134217728\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"); });
+  const FileError error = support::file_error(
+      [] { (void)read("ncols 134217728\nnrows 134217728\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"); });
   CHECK(error.place() == "line 2");
   CHECK(support::contains(error.problem(), "18014398509481984"));
-  CHECK(support::file_error([] { (void)read("ncols 13421772\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"); }).place() ==
-        "line 2");
-  CHECK(read("ncols 2 nrows 2 dx 1 dy 1 xllcenter 0 yllcenter 0 1 2 3 4").raster.heights.size() == 4);  // the least file
+  CHECK(support::file_error([] {
+          (void)read("ncols 13421772\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n");
+        }).place() == "line 2");
+  CHECK(read("ncols 2 nrows 2 dx 1 dy 1 xllcenter 0 yllcenter 0 1 2 3 4").raster.heights.size() ==
+        4);  // the least file
 }
 
 TEST_CASE("truncated grids are refused, or warn of it") {
@@ -96,7 +101,8 @@ TEST_CASE("truncated grids are refused, or warn of it") {
 }
 
 TEST_CASE("1000 spoilt grids are read, or refused by a FileError") {
-  constexpr const char* words[] = {"nan", "-1", "1e308", "99999999999", "inf", "ncols", "dx 1", "NODATA_value", "\n", ","};
+  constexpr const char* words[] = {"nan",   "-1",   "1e308",        "99999999999", "inf",
+                                   "ncols", "dx 1", "NODATA_value", "\n",          ","};
   int refused = 0, accepted = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     support::Generator random(seed);

@@ -38,7 +38,8 @@ std::string ring(const std::string& positions) {
 }
 std::string polygon(const std::string& id, const std::string& outer, const std::string& inner = "") {
   return "<gml:surfaceMember><gml:Polygon gml:id=\"" + id + "\"><gml:exterior>" + ring(outer) + "</gml:exterior>" +
-         (inner.empty() ? "" : "<gml:interior>" + ring(inner) + "</gml:interior>") + "</gml:Polygon></gml:surfaceMember>";
+         (inner.empty() ? "" : "<gml:interior>" + ring(inner) + "</gml:interior>") +
+         "</gml:Polygon></gml:surfaceMember>";
 }
 /// Surfaces of a level of detail of a room of CityGML.
 std::string surfaces(const std::string& room, int lod, const std::string& polygons) {
@@ -54,7 +55,8 @@ std::string element(const std::string& name, const std::string& id, const std::s
 std::string bounded(const std::string& name, const std::string& id, const std::string& polygons, int lod = 2) {
   return "<bldg:boundedBy>" + element("bldg:" + name, id, surfaces("bldg", lod, polygons)) + "</bldg:boundedBy>";
 }
-std::string city(const std::vector<std::string>& members, const std::string& system = "urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783",
+std::string city(const std::vector<std::string>& members,
+                 const std::string& system = "urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783",
                  const std::string& prolog = "") {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + prolog +
                      "<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" "
@@ -78,28 +80,33 @@ const std::string small = "500020 5400000 99 500021 5400000 99 500020 5400001 99
 
 /// A house of 10 m x 8 m with a court of 2 m x 2 m in its roof, in UTM, and another shape of it of less detail.
 std::string house() {
-  return element(
-      "bldg:Building", "house",
-      surfaces("bldg", 1, polygon("p0", small)) +
-          bounded("RoofSurface", "roof",
-                  polygon("p1",
-                          "500000.125 5400000.5 110 500010.125 5400000.5 110 500010.125 5400008.5 110 500000.125 5400008.5 110 500000.125 "
-                          "5400000.5 110",
-                          "500002.125 5400002.5 110 500002.125 5400004.5 110 500004.125 5400004.5 110 500004.125 5400002.5 110 500002.125 "
-                          "5400002.5 110")) +
-          bounded("WallSurface", "wall",
-                  polygon("p2",
-                          "500000.125 5400000.5 100 500010.125 5400000.5 100 500010.125 5400000.5 110 500000.125 5400000.5 110 500000.125 "
-                          "5400000.5 100")) +
-          bounded("ClosureSurface", "gate", polygon("p3", small)) + "<bldg:interiorRoom>" +
-          element("bldg:Room", "room", bounded("CeilingSurface", "ceiling", polygon("p4", small))) + "</bldg:interiorRoom>");
+  return element("bldg:Building", "house",
+                 surfaces("bldg", 1, polygon("p0", small)) +
+                     bounded("RoofSurface", "roof",
+                             polygon("p1",
+                                     "500000.125 5400000.5 110 500010.125 5400000.5 110 500010.125 5400008.5 110 "
+                                     "500000.125 5400008.5 110 500000.125 "
+                                     "5400000.5 110",
+                                     "500002.125 5400002.5 110 500002.125 5400004.5 110 500004.125 5400004.5 110 "
+                                     "500004.125 5400002.5 110 500002.125 "
+                                     "5400002.5 110")) +
+                     bounded("WallSurface", "wall",
+                             polygon("p2",
+                                     "500000.125 5400000.5 100 500010.125 5400000.5 100 500010.125 5400000.5 110 "
+                                     "500000.125 5400000.5 110 500000.125 "
+                                     "5400000.5 100")) +
+                     bounded("ClosureSurface", "gate", polygon("p3", small)) + "<bldg:interiorRoom>" +
+                     element("bldg:Room", "room", bounded("CeilingSurface", "ceiling", polygon("p4", small))) +
+                     "</bldg:interiorRoom>");
 }
 
-/// A tree of one triangle, in a frame of its own, turned by 90 degrees about z and of twice the size; or one that shows the same.
+/// A tree of one triangle, in a frame of its own, turned by 90 degrees about z and of twice the size; or one that shows
+/// the same.
 std::string tree(const std::string& id, const std::string& geometry, const std::string& matrix, const std::string& at) {
   return element("veg:SolitaryVegetationObject", id,
-                 "<veg:lod2ImplicitRepresentation><ImplicitGeometry><transformationMatrix>" + matrix + "</transformationMatrix>" +
-                     geometry + "<referencePoint><gml:Point><gml:pos srsDimension=\"3\">" + at +
+                 "<veg:lod2ImplicitRepresentation><ImplicitGeometry><transformationMatrix>" + matrix +
+                     "</transformationMatrix>" + geometry + "<referencePoint><gml:Point><gml:pos srsDimension=\"3\">" +
+                     at +
                      "</gml:pos></gml:Point></referencePoint></ImplicitGeometry></veg:lod2ImplicitRepresentation>");
 }
 
@@ -116,7 +123,8 @@ double area(const MeshFile& file, std::size_t mesh, const std::string& name) {
 }
 
 const Material& material(const MeshFile& file, const std::string& name) {
-  const auto found = std::find_if(file.materials.begin(), file.materials.end(), [&](const Material& m) { return m.name == name; });
+  const auto found =
+      std::find_if(file.materials.begin(), file.materials.end(), [&](const Material& m) { return m.name == name; });
   REQUIRE(found != file.materials.end());
   return *found;
 }
@@ -173,13 +181,15 @@ TEST_CASE("classes of CityGML have classes of ASPRS") {
   CHECK(of("tran", "Road").ground);
   CHECK_FALSE(of("veg", "PlantCover").ground);
   CHECK(only(element("bldg:Building", "x", bounded("GroundSurface", "g", polygon("p", small)))).classification == 2);
-  const Material relief = only(
-      element("dem:ReliefFeature", "x",
-              "<dem:lod>2</dem:lod><dem:reliefComponent>" +
-                  element("dem:TINRelief", "tin",
-                          "<dem:lod>2</dem:lod><dem:tin><gml:TriangulatedSurface><gml:trianglePatches><gml:Triangle><gml:exterior>" +
-                              ring(small) + "</gml:exterior></gml:Triangle></gml:trianglePatches></gml:TriangulatedSurface></dem:tin>") +
-                  "</dem:reliefComponent>"));
+  const Material relief = only(element(
+      "dem:ReliefFeature", "x",
+      "<dem:lod>2</dem:lod><dem:reliefComponent>" +
+          element("dem:TINRelief", "tin",
+                  "<dem:lod>2</"
+                  "dem:lod><dem:tin><gml:TriangulatedSurface><gml:trianglePatches><gml:Triangle><gml:exterior>" +
+                      ring(small) +
+                      "</gml:exterior></gml:Triangle></gml:trianglePatches></gml:TriangulatedSurface></dem:tin>") +
+          "</dem:reliefComponent>"));
   CHECK(relief.name == "TINRelief");
   CHECK(relief.classification == 2);
   CHECK(relief.ground);
@@ -187,12 +197,14 @@ TEST_CASE("classes of CityGML have classes of ASPRS") {
 
 TEST_CASE("trees of one implicit geometry share it, and a name table gives its material") {
   const Folder folder;
-  const std::string own = "<relativeGMLGeometry><gml:MultiSurface gml:id=\"shape\">" + polygon("p", "0 0 0 1 0 0 0 0 1 0 0 0") +
-                          "</gml:MultiSurface></relativeGMLGeometry>";
-  const auto path = folder.write(
-      "a.gml", city({tree("t1", own, "0 -2 0 1 2 0 0 2 0 0 2 3 0 0 0 1", "500020 5400000 100"),
-                     tree("t2", "<relativeGMLGeometry xlink:href=\"#shape\"/>", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "500030 5400000 100")}));
-  const auto table = folder.write("a.mtl", "newmtl SolitaryVegetationObject\nKd 1 1 1\nhelios_reflectance 0.4\nhelios_classification 4\n");
+  const std::string own = "<relativeGMLGeometry><gml:MultiSurface gml:id=\"shape\">" +
+                          polygon("p", "0 0 0 1 0 0 0 0 1 0 0 0") + "</gml:MultiSurface></relativeGMLGeometry>";
+  const auto path =
+      folder.write("a.gml", city({tree("t1", own, "0 -2 0 1 2 0 0 2 0 0 2 3 0 0 0 1", "500020 5400000 100"),
+                                  tree("t2", "<relativeGMLGeometry xlink:href=\"#shape\"/>",
+                                       "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "500030 5400000 100")}));
+  const auto table = folder.write(
+      "a.mtl", "newmtl SolitaryVegetationObject\nKd 1 1 1\nhelios_reflectance 0.4\nhelios_classification 4\n");
   const MeshFile file = read_citygml(path, {.materials = table}).file;
   CHECK(file.meshes.size() == 1);
   REQUIRE(file.placements.size() == 2);
@@ -220,15 +232,20 @@ TEST_CASE("CityGML files that are not for us are explained") {
     return support::file_error([&] { (void)read_citygml(folder.write("a.gml", text)); }).problem();
   };
   CHECK(contains(problem(city({house()}, "urn:ogc:def:crs:EPSG::4326")), "in degrees"));
-  CHECK(contains(problem(city({house()}, "EPSG:25832", "<!DOCTYPE a [<!ENTITY b SYSTEM \"file:///etc/passwd\">]>\n")), "document type"));
-  CHECK(contains(problem(city({house()}, "EPSG:25832", "<!-- " + std::string(std::size_t{1} << 20, ' ') + " -->\n<!DOCTYPE a>\n")),
+  CHECK(contains(problem(city({house()}, "EPSG:25832", "<!DOCTYPE a [<!ENTITY b SYSTEM \"file:///etc/passwd\">]>\n")),
                  "document type"));
+  CHECK(contains(
+      problem(city({house()}, "EPSG:25832", "<!-- " + std::string(std::size_t{1} << 20, ' ') + " -->\n<!DOCTYPE a>\n")),
+      "document type"));
   CHECK(contains(problem(std::string("<\0?\0x\0m\0l\0", 10)), "UTF-8"));
   CHECK(contains(problem("no xml"), "does not begin as XML"));
-  const std::string hidden = "+ADwAIQ-DOCTYPE d SYSTEM +ACI-http://127.0.0.1:1/x.dtd+ACIAPg-";  // a document type in UTF-7
-  CHECK(contains(problem(replaced(city({house()}, "EPSG:25832", hidden), "UTF-8", "UTF-7")), "has the encoding 'UTF-7'"));
+  const std::string hidden =
+      "+ADwAIQ-DOCTYPE d SYSTEM +ACI-http://127.0.0.1:1/x.dtd+ACIAPg-";  // a document type in UTF-7
+  CHECK(
+      contains(problem(replaced(city({house()}, "EPSG:25832", hidden), "UTF-8", "UTF-7")), "has the encoding 'UTF-7'"));
   for (const char* encoding : {"UTF-8", "utf-8", "US-ASCII", "iso-8859-1"})
-    CHECK(read_citygml(folder.write("a.gml", replaced(city({house()}), "UTF-8", encoding))).file.placements.size() == 1);
+    CHECK(read_citygml(folder.write("a.gml", replaced(city({house()}), "UTF-8", encoding))).file.placements.size() ==
+          1);
   CHECK(contains(problem("<a>"), "no CityGML file that can be read"));
   CHECK(contains(problem(""), "is empty"));
   CHECK_THROWS_AS((void)read_citygml(folder / "a.gml", {.max_lod = 5}), SettingError);
@@ -238,10 +255,11 @@ TEST_CASE("CityGML files that are not for us are explained") {
 
 TEST_CASE("CityGML files that are cut off or spoilt are read or explained") {
   const Folder folder;
-  const std::string sound =
-      city({house(), tree("t", "<relativeGMLGeometry xlink:href=\"#p1\"/>", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "0 0 0")});
-  const std::array<const char*, 12> words{"nan",  "1e999", "-1",        "99999999999999999999", "<",       "</gml:Polygon>", "&lt;",
-                                          "&#0;", "]]>",   "<![CDATA[", "xlink:href=\"#p1\"",   "\xFF\xFE"};
+  const std::string sound = city(
+      {house(), tree("t", "<relativeGMLGeometry xlink:href=\"#p1\"/>", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "0 0 0")});
+  const std::array<const char*, 12> words{
+      "nan",  "1e999", "-1",        "99999999999999999999", "<",       "</gml:Polygon>", "&lt;",
+      "&#0;", "]]>",   "<![CDATA[", "xlink:href=\"#p1\"",   "\xFF\xFE"};
   int read = 0, explained = 0;
   const auto tally = [&](const std::string& text) {
     const auto path = folder.write("a.gml", text);
@@ -267,7 +285,8 @@ TEST_CASE("CityGML files that are cut off or spoilt are read or explained") {
   CHECK(read + explained == 76);
   CHECK(explained > 20);
   std::string deep;
-  for (int i = 0; i < 5000; ++i) deep += "<bldg:Building><bldg:consistsOfBuildingPart><bldg:BuildingPart><bldg:consistsOfBuildingPart>";
+  for (int i = 0; i < 5000; ++i)
+    deep += "<bldg:Building><bldg:consistsOfBuildingPart><bldg:BuildingPart><bldg:consistsOfBuildingPart>";
   tally(city({deep}));
   rusage used{};
   REQUIRE(::getrusage(RUSAGE_CHILDREN, &used) == 0);

@@ -23,7 +23,9 @@ TEST_CASE("black is no light, white is one, and middle grey is a fifth") {
   CHECK(from_srgb({119, 119, 119}).y == doctest::Approx(0.184).epsilon(0.005));  // L* = 50, CIE 1976
 }
 
-TEST_CASE("what a screen cannot show becomes the nearest that it can") { CHECK(to_srgb({-1, 0.5, 7}) == Srgb{0, 188, 255}); }
+TEST_CASE("what a screen cannot show becomes the nearest that it can") {
+  CHECK(to_srgb({-1, 0.5, 7}) == Srgb{0, 188, 255});
+}
 
 TEST_CASE("a scale runs through its entries and stays at its ends") {
   CHECK(to_srgb(along(viridis, 0)) == viridis.front());
@@ -35,7 +37,9 @@ TEST_CASE("a scale runs through its entries and stays at its ends") {
 }
 
 TEST_CASE("the scales grow lighter all the way") {
-  const auto luminance = [](const Colour& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; };  // source: IEC 61966-2-1
+  const auto luminance = [](const Colour& c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+  };  // source: IEC 61966-2-1
   for (int k = 0; k < 100; ++k) {
     CAPTURE(k);
     CHECK(luminance(along(viridis, (k + 1) / 100.0)) > luminance(along(viridis, k / 100.0)));

@@ -40,7 +40,8 @@ using Points = std::vector<Vec3>;
 using Writer = detail::LasFileWriter<detail::CopcRecords>;
 
 /// Sizes at which a few thousand points take many runs, blocks and pages.
-constexpr detail::CopcSizes small{.leaf_points = 100, .block_points = 1000, .run_bytes = 30'000, .most_cells = 300, .page_nodes = 4};
+constexpr detail::CopcSizes small{
+    .leaf_points = 100, .block_points = 1000, .run_bytes = 30'000, .most_cells = 300, .page_nodes = 4};
 
 /// Writes a pulse straight down to each point, one after another in time, with what `look` makes of its echo.
 template <class Sink>
@@ -56,8 +57,11 @@ void write(Sink writer, const Points& points, std::size_t at_once = 1000, const 
                      .channel = static_cast<std::uint8_t>(i % 5),
                      .first_echo = static_cast<std::uint32_t>(echoes.size()),
                      .echoes = 1});
-    echoes.push_back(
-        {.range = 0, .amplitude = 1e-9 * static_cast<double>(1 + i % 1000), .reflectance = 0.3, .object = ObjectId(i % 50), .number = 1});
+    echoes.push_back({.range = 0,
+                      .amplitude = 1e-9 * static_cast<double>(1 + i % 1000),
+                      .reflectance = 0.3,
+                      .object = ObjectId(i % 50),
+                      .number = 1});
     if (look) look(echoes.back());
     if (shots.size() < at_once && i + 1 < points.size()) continue;
     writer(EchoBatch{shots, echoes, {}, 0});
@@ -202,7 +206,8 @@ TEST_CASE("a file without points has a root without points") {
 }
 
 TEST_CASE("one point is a file, wherever it is") {
-  for (const Vec3& point : {Vec3(0, 0, 0), Vec3(-1e5, 2e5, 3), Vec3(4e5, 5.6e6, 200)}) CHECK(checked({point}).nodes.size() == 1);
+  for (const Vec3& point : {Vec3(0, 0, 0), Vec3(-1e5, 2e5, 3), Vec3(4e5, 5.6e6, 200)})
+    CHECK(checked({point}).nodes.size() == 1);
 }
 
 TEST_CASE("any number of points in one place is divided down to nodes of 128 steps, where a leaf takes the rest") {
@@ -285,7 +290,8 @@ TEST_CASE("colours, near infrared, attributes and kinds of light are those of th
     ObjectId object = 7;
     Attributes attributes = pulsecast::attributes({{"age", 80}});
   } tree;
-  LasSettings settings{.light_kinds = true, .attributes = std::make_shared<const ObjectAttributes>(std::span<const Tree>(&tree, 1))};
+  LasSettings settings{.light_kinds = true,
+                       .attributes = std::make_shared<const ObjectAttributes>(std::span<const Tree>(&tree, 1))};
   settings.colours = [](const EchoBatch&, const Shot& shot, const Echo&) -> std::optional<PointColour> {
     if (shot.index % 7 == 0) return std::nullopt;
     return PointColour{static_cast<std::uint16_t>(shot.index * 3), static_cast<std::uint16_t>(shot.index), 9, 500};
@@ -302,9 +308,10 @@ TEST_CASE("intensities that are scaled to the greatest amplitude are those of th
 
 TEST_CASE("formats that are not compressed, and waveforms, are refused before there is a file") {
   const TemporaryFolder folder;
-  CHECK_THROWS_WITH_AS(CopcWriter(folder / "a", {.format = LasFormat::las_1_4_legacy}), doctest::Contains("LasSettings::format"),
+  CHECK_THROWS_WITH_AS(CopcWriter(folder / "a", {.format = LasFormat::las_1_4_legacy}),
+                       doctest::Contains("LasSettings::format"), SettingError);
+  CHECK_THROWS_WITH_AS(CopcWriter(folder / "a", {.waveforms = true}), doctest::Contains("LasSettings::waveforms"),
                        SettingError);
-  CHECK_THROWS_WITH_AS(CopcWriter(folder / "a", {.waveforms = true}), doctest::Contains("LasSettings::waveforms"), SettingError);
   CHECK(folder.empty());
 }
 
@@ -351,8 +358,8 @@ TEST_CASE("the reader of the tests notices what is not by the rules") {
   CHECK_NOTHROW(static_cast<void>(read_copc(good)));
   const std::size_t extended = support::detail::laz_whole(good, 235, 8);
   for (const std::size_t at :
-       {std::size_t{375 + 54 + 7}, std::size_t{375 + 54 + 45}, std::size_t{375 + 54 + 60}, std::size_t{375 + 54 + 100}, std::size_t{250},
-        extended + 60 + 4, extended + 60 + 28, extended + 60 + 24, good.size() - 32 + 16}) {
+       {std::size_t{375 + 54 + 7}, std::size_t{375 + 54 + 45}, std::size_t{375 + 54 + 60}, std::size_t{375 + 54 + 100},
+        std::size_t{250}, extended + 60 + 4, extended + 60 + 28, extended + 60 + 24, good.size() - 32 + 16}) {
     CAPTURE(at);
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ 0x40);

@@ -55,10 +55,13 @@ std::string geojson(const Run& run, const GeoJsonSettings& settings = {}) {
 }
 
 /// File without a reference system that holds these features.
-std::string collection(const std::string& features) { return "{\"type\":\"FeatureCollection\",\"features\":[" + features + "\n]}\n"; }
+std::string collection(const std::string& features) {
+  return "{\"type\":\"FeatureCollection\",\"features\":[" + features + "\n]}\n";
+}
 
 std::string trajectory(const std::string& properties, const std::string& geometry) {
-  return "\n{\"type\":\"Feature\",\"properties\":{\"kind\":\"trajectory\"," + properties + "},\"geometry\":" + geometry + "}";
+  return "\n{\"type\":\"Feature\",\"properties\":{\"kind\":\"trajectory\"," + properties +
+         "},\"geometry\":" + geometry + "}";
 }
 
 std::string footprint(const std::string& properties, const std::string& ring) {
@@ -77,27 +80,33 @@ std::string between(const std::string& file, const std::string& first, const std
 
 std::string ring_of(const std::string& file) { return between(file, "\"Polygon\",\"coordinates\":[[", "]]}"); }
 
-TEST_CASE("a leg that moves is a line of its pulses at the interval with the first and the last, above the hull of its points") {
+TEST_CASE(
+    "a leg that moves is a line of its pulses at the interval with the first and the last, above the hull of its "
+    "points") {
   Run run;
   run.pulse(3, 10, {0, 0, 5}, {5}).pulse(3, 10.5, {1, 0, 5}, {4, 5}).pulse(3, 11, {1, 1, 5}, {5});
   run.pulse(3, 11.25, {0.5, 0.5, 5}, {1}).pulse(3, 11.75, {0, 1, 5.0004}, {5});
-  CHECK(geojson(run) == collection(footprint("\"leg\":3,\"start\":10,\"end\":11.75,\"points\":6,\"area\":1",
-                                             "[0.000,0.000],[1.000,0.000],[1.000,1.000],[0.000,1.000],[0.000,0.000]") +
-                                   "," +
-                                   trajectory("\"leg\":3,\"start\":10,\"end\":11.75,\"pulses\":5,\"points\":6",
-                                              "{\"type\":\"LineString\",\"coordinates\":[[0.000,0.000,5.000],[1.000,1.000,5.000],"
-                                              "[0.000,1.000,5.000]]}")));
+  CHECK(geojson(run) ==
+        collection(footprint("\"leg\":3,\"start\":10,\"end\":11.75,\"points\":6,\"area\":1",
+                             "[0.000,0.000],[1.000,0.000],[1.000,1.000],[0.000,1.000],[0.000,0.000]") +
+                   "," +
+                   trajectory("\"leg\":3,\"start\":10,\"end\":11.75,\"pulses\":5,\"points\":6",
+                              "{\"type\":\"LineString\",\"coordinates\":[[0.000,0.000,5.000],[1.000,1.000,5.000],"
+                              "[0.000,1.000,5.000]]}")));
 }
 
 TEST_CASE("a run without pulses is a collection without features") { CHECK(geojson({}) == collection("")); }
 
 TEST_CASE("a code of EPSG is named") {
   CHECK(geojson({}, {.epsg = 25832}) ==
-        "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:EPSG::25832\"}},"
+        "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:EPSG::"
+        "25832\"}},"
         "\"features\":[\n]}\n");
 }
 
-TEST_CASE("a leg that moves by less than the resolution is a point, also on both sides of zero, and one without points has no footprint") {
+TEST_CASE(
+    "a leg that moves by less than the resolution is a point, also on both sides of zero, and one without points has "
+    "no footprint") {
   const Run run = Run().pulse(0, 0, {-0.0001, 7, 2}).pulse(0, 1, {0.0001, 7, 2}).pulse(0, 2, {0, 7, 2.0003});
   CHECK(geojson(run) == collection(trajectory("\"leg\":0,\"start\":0,\"end\":2,\"pulses\":3,\"points\":0",
                                               "{\"type\":\"Point\",\"coordinates\":[0.000,7.000,2.000]}")));
@@ -105,7 +114,8 @@ TEST_CASE("a leg that moves by less than the resolution is a point, also on both
 
 TEST_CASE("a line that returns to its start keeps the way between, and a stop in it is one point") {
   const Run run = Run().pulse(0, 0, {0, 0, 0}).pulse(0, 1, {4, 0, 0}).pulse(0, 2, {4, 0, 0}).pulse(0, 3, {0, 0, 0});
-  CHECK(between(geojson(run), "\"LineString\",\"coordinates\":", "}") == "[[0.000,0.000,0.000],[4.000,0.000,0.000],[0.000,0.000,0.000]]");
+  CHECK(between(geojson(run), "\"LineString\",\"coordinates\":", "}") ==
+        "[[0.000,0.000,0.000],[4.000,0.000,0.000],[0.000,0.000,0.000]]");
 }
 
 TEST_CASE("a leg ends when another begins, one that comes back is new, and batches may divide it anywhere") {
@@ -132,17 +142,20 @@ TEST_CASE("a leg ends when another begins, one that comes back is new, and batch
 TEST_CASE("each interval since the start of a leg has its footprint, and intervals without points have none") {
   Run run;
   for (const double start : {5.0, 7.0, 11.0})
-    run.pulse(0, start, {start, 0, 1}, {1}).pulse(0, start + 0.5, {start + 2, 0, 1}, {1}).pulse(0, start + 1, {start, 1, 1}, {1});
+    run.pulse(0, start, {start, 0, 1}, {1})
+        .pulse(0, start + 0.5, {start + 2, 0, 1}, {1})
+        .pulse(0, start + 1, {start, 1, 1}, {1});
   run.pulse(0, 14, {0, 0, 1});
   const std::string file = geojson(run, {.footprint_interval = 2});
-  for (const auto* const part :
-       {"5,\"end\":6,\"points\":3,\"area\":1}", "7,\"end\":8,\"points\":3,\"area\":1}", "11,\"end\":12,\"points\":3,\"area\":1}"})
+  for (const auto* const part : {"5,\"end\":6,\"points\":3,\"area\":1}", "7,\"end\":8,\"points\":3,\"area\":1}",
+                                 "11,\"end\":12,\"points\":3,\"area\":1}"})
     CHECK(file.find(std::string("\"footprint\",\"leg\":0,\"start\":") + part) != std::string::npos);
   CHECK(std::count(file.begin(), file.end(), '\n') == 1 + 3 + 1 + 1);
 }
 
 TEST_CASE("points on a line, or fewer than three, have no footprint") {
-  CHECK(geojson(Run().pulse(0, 0, {0, 0, 1}, {1}).pulse(0, 1, {5, 5, 1}, {1, 2, 3})).find("Polygon") == std::string::npos);
+  CHECK(geojson(Run().pulse(0, 0, {0, 0, 1}, {1}).pulse(0, 1, {5, 5, 1}, {1, 2, 3})).find("Polygon") ==
+        std::string::npos);
   Run run;
   for (int i = 0; i < 100; ++i) run.pulse(0, 0.01 * i, {500'000 + 0.3 * i, 5'400'000 + 0.1 * i, 1}, {1});
   CHECK(geojson(run).find("Polygon") == std::string::npos);
@@ -152,14 +165,17 @@ TEST_CASE("points on a line, or fewer than three, have no footprint") {
 
 TEST_CASE("origins and points that are not finite are left out, while their pulses count") {
   Run run;
-  run.pulse(0, 0, {infinite, 0, 1}, {1}).pulse(0, 1, {0, 0, 1}, {1}).pulse(0, 2, {2, 0, 1}, {1, infinite}).pulse(0, 3, {0, 2, 1}, {1});
+  run.pulse(0, 0, {infinite, 0, 1}, {1})
+      .pulse(0, 1, {0, 0, 1}, {1})
+      .pulse(0, 2, {2, 0, 1}, {1, infinite})
+      .pulse(0, 3, {0, 2, 1}, {1});
   run.pulse(0, 4, {0, std::nan(""), 1}, {1}).pulse(0, 5, {1e308, 0, 1});
-  CHECK(geojson(run) ==
-        collection(footprint("\"leg\":0,\"start\":1,\"end\":3,\"points\":3,\"area\":2",
-                             "[0.000,0.000],[2.000,0.000],[0.000,2.000],[0.000,0.000]") +
-                   "," +
-                   trajectory("\"leg\":0,\"start\":0,\"end\":5,\"pulses\":6,\"points\":6",
-                              "{\"type\":\"LineString\",\"coordinates\":[[0.000,0.000,1.000],[2.000,0.000,1.000],[0.000,2.000,1.000]]}")));
+  CHECK(geojson(run) == collection(footprint("\"leg\":0,\"start\":1,\"end\":3,\"points\":3,\"area\":2",
+                                             "[0.000,0.000],[2.000,0.000],[0.000,2.000],[0.000,0.000]") +
+                                   "," +
+                                   trajectory("\"leg\":0,\"start\":0,\"end\":5,\"pulses\":6,\"points\":6",
+                                              "{\"type\":\"LineString\",\"coordinates\":[[0.000,0.000,1.000],[2.000,0."
+                                              "000,1.000],[0.000,2.000,1.000]]}")));
   CHECK(geojson(Run().pulse(0, 0, {infinite, 0, 0})) == collection(""));
   Run far;
   for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(1e300, 0, 0), Vec3(0, 1e300, 0)}) far.pulse(0, 0, origin, {1});
@@ -177,12 +193,13 @@ std::vector<Vec2> hull_by_edges(const std::vector<Vec2>& points) {
       return side > 0 || (side == 0 && along <= 0);
     });
   };
-  const auto first =
-      std::min_element(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  const auto first = std::min_element(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
+  });
   corners.push_back(*first);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto next =
-        std::find_if(points.begin(), points.end(), [&](const Vec2& b) { return b != corners.back() && is_edge(corners.back(), b); });
+    const auto next = std::find_if(points.begin(), points.end(),
+                                   [&](const Vec2& b) { return b != corners.back() && is_edge(corners.back(), b); });
     REQUIRE(next != points.end());
     if (*next == corners.front()) break;
     corners.push_back(*next);
@@ -245,7 +262,9 @@ TEST_CASE("without close there is no file") {
 
 TEST_CASE("settings out of range are refused") {
   const TemporaryFolder folder;
-  const auto refused = [&](const GeoJsonSettings& settings) { return refused_field([&] { GeoJsonWriter(folder / "a", settings); }); };
+  const auto refused = [&](const GeoJsonSettings& settings) {
+    return refused_field([&] { GeoJsonWriter(folder / "a", settings); });
+  };
   CHECK(refused({.epsg = -1}) == "GeoJsonSettings::epsg");
   CHECK(refused({.epsg = 32'767}) == "GeoJsonSettings::epsg");
   CHECK(refused({.epsg = 32'766}).empty());

@@ -91,16 +91,18 @@ void put_sample(std::vector<unsigned char>& bytes, const Form& form, double valu
 
 using Heights = std::function<double(std::uint32_t, std::uint32_t, std::uint16_t)>;
 
-void write(const std::filesystem::path& path, const Form& form = {}, const Place& place = {}, const Heights& heights = height) {
+void write(const std::filesystem::path& path, const Form& form = {}, const Place& place = {},
+           const Heights& heights = height) {
   TIFF* tiff = TIFFOpen(path.c_str(), form.mode);
   REQUIRE(tiff != nullptr);
   TIFFSetWarningHandler(nullptr);  // it warns of the older number for deflate
-  static const std::vector<TIFFFieldInfo> fields{{33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
-                                                 {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
-                                                 {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("matrix")},
-                                                 {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
-                                                 {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("metadata")},
-                                                 {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
+  static const std::vector<TIFFFieldInfo> fields{
+      {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
+      {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
+      {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("matrix")},
+      {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
+      {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("metadata")},
+      {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
   const std::uint32_t all_rows = rows + form.padding;
@@ -112,14 +114,16 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric);
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
   if (!form.red.empty()) TIFFSetField(tiff, TIFFTAG_COLORMAP, form.red.data(), form.green.data(), form.blue.data());
-  if (form.compression == COMPRESSION_LZMA) TIFFSetField(tiff, TIFFTAG_LZMAPRESET, 0);  // without 100 MB of memory for each strip
+  if (form.compression == COMPRESSION_LZMA)
+    TIFFSetField(tiff, TIFFTAG_LZMAPRESET, 0);  // without 100 MB of memory for each strip
   if (form.compression == COMPRESSION_ZSTD) TIFFSetField(tiff, TIFFTAG_ZSTD_LEVEL, 1);
   if (form.predictor != 1) TIFFSetField(tiff, TIFFTAG_PREDICTOR, form.predictor);
   if (!place.scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(place.scale.size()), place.scale.data());
   if (!place.ties.empty()) TIFFSetField(tiff, 33922, static_cast<int>(place.ties.size()), place.ties.data());
   if (!place.matrix.empty()) TIFFSetField(tiff, 34264, static_cast<int>(place.matrix.size()), place.matrix.data());
   if (!place.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(place.keys.size()), place.keys.data());
-  if (!form.extra.empty()) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(form.extra.size()), form.extra.data());
+  if (!form.extra.empty())
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(form.extra.size()), form.extra.data());
   if (!place.metadata.empty()) TIFFSetField(tiff, 42112, place.metadata.c_str());
   if (!place.nodata.empty()) TIFFSetField(tiff, 42113, place.nodata.c_str());
   const std::uint32_t wide = form.tiled ? 16 : columns, high = form.tiled ? 16 : 5;
@@ -137,11 +141,13 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
           for (std::uint32_t c = west; c < west + wide; ++c)
             for (std::uint16_t s = 0; s < (apart ? 1 : form.samples); ++s)
               put_sample(bytes, form, heights(std::min(c, columns - 1), std::min(r, all_rows - 1), apart ? plane : s));
-        if (form.predictor == PREDICTOR_FLOATINGPOINT && std::string_view(form.mode).ends_with('b'))  // libtiff 4.5 writes these wrongly:
+        if (form.predictor == PREDICTOR_FLOATINGPOINT &&
+            std::string_view(form.mode).ends_with('b'))  // libtiff 4.5 writes these wrongly:
           for (auto at = bytes.begin(); at != bytes.end(); at += form.bits / 8)
             std::reverse(at, at + form.bits / 8);  // turned once too often
         const auto size = static_cast<tmsize_t>(bytes.size());
-        const std::uint32_t chunk = form.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
+        const std::uint32_t chunk =
+            form.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
         if (form.left_out.count(chunk) != 0) continue;
         REQUIRE((form.tiled ? TIFFWriteEncodedTile(tiff, chunk, bytes.data(), size)
                             : TIFFWriteEncodedStrip(tiff, chunk, bytes.data(), size)) == size);
@@ -177,7 +183,8 @@ struct File {
   }
 
   /// What the refusal says; empty if the file is read.
-  [[nodiscard]] std::string refusal(const Form& form = {}, const Place& place = {}, const GeoTiffSettings& settings = {}) const {
+  [[nodiscard]] std::string refusal(const Form& form = {}, const Place& place = {},
+                                    const GeoTiffSettings& settings = {}) const {
     write(path, form, place);
     return refusal_of(settings);
   }
@@ -231,8 +238,9 @@ TEST_CASE("a raster is read as it was written, whatever its samples, layout, com
   std::size_t forms = 0;
   for (const std::uint16_t format : Codes{SAMPLEFORMAT_IEEEFP, SAMPLEFORMAT_INT, SAMPLEFORMAT_UINT})
     for (const std::uint16_t bits : Codes{8, 16, 32, 64})
-      for (const std::uint16_t compression : Codes{COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS, COMPRESSION_ADOBE_DEFLATE,
-                                                   COMPRESSION_DEFLATE, COMPRESSION_ZSTD, COMPRESSION_LZMA, COMPRESSION_LERC})
+      for (const std::uint16_t compression :
+           Codes{COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS, COMPRESSION_ADOBE_DEFLATE,
+                 COMPRESSION_DEFLATE, COMPRESSION_ZSTD, COMPRESSION_LZMA, COMPRESSION_LERC})
         for (const std::uint16_t predictor : Codes{PREDICTOR_NONE, PREDICTOR_HORIZONTAL, PREDICTOR_FLOATINGPOINT})
           for (const bool tiled : {false, true})
             for (const char* mode : {"wl", "wb", "w8l", "w8b"}) {
@@ -240,9 +248,11 @@ TEST_CASE("a raster is read as it was written, whatever its samples, layout, com
               if (real && bits == 8) continue;
               if (predictor == PREDICTOR_FLOATINGPOINT && !real) continue;
               if (predictor != PREDICTOR_NONE &&
-                  (compression == COMPRESSION_NONE || compression == COMPRESSION_PACKBITS || compression == COMPRESSION_LERC))
+                  (compression == COMPRESSION_NONE || compression == COMPRESSION_PACKBITS ||
+                   compression == COMPRESSION_LERC))
                 continue;
-              if (compression == COMPRESSION_LERC && (bits == 64 || bits == 16) && (!real || bits == 16)) continue;  // not known to it
+              if (compression == COMPRESSION_LERC && (bits == 64 || bits == 16) && (!real || bits == 16))
+                continue;  // not known to it
               if (TIFFIsCODECConfigured(compression) == 0) continue;
               CAPTURE(format);
               CAPTURE(bits);
@@ -250,8 +260,12 @@ TEST_CASE("a raster is read as it was written, whatever its samples, layout, com
               CAPTURE(predictor);
               CAPTURE(tiled);
               CAPTURE(std::string(mode));
-              const GeoTiff found = file.read(
-                  {.format = format, .bits = bits, .compression = compression, .predictor = predictor, .tiled = tiled, .mode = mode});
+              const GeoTiff found = file.read({.format = format,
+                                               .bits = bits,
+                                               .compression = compression,
+                                               .predictor = predictor,
+                                               .tiled = tiled,
+                                               .mode = mode});
               CHECK(wrong(found.raster, height) == 0);
               CHECK(found.warnings.empty());
               ++forms;
@@ -262,10 +276,12 @@ TEST_CASE("a raster is read as it was written, whatever its samples, layout, com
 TEST_CASE("whole numbers of 8 and 16 bits may stay packed, with the heights that they have otherwise") {
   const File file;
   const auto same = [](const Raster& a, const Raster& b) {
-    return a.heights.size() == b.heights.size() && std::memcmp(a.heights.data(), b.heights.data(), sizeof(float) * a.heights.size()) == 0 &&
+    return a.heights.size() == b.heights.size() &&
+           std::memcmp(a.heights.data(), b.heights.data(), sizeof(float) * a.heights.size()) == 0 &&
            a.first == b.first && a.pixel == b.pixel;
   };
-  const auto packed_like = [&](const std::optional<double>& scale, const std::optional<double>& missing, bool expected) {
+  const auto packed_like = [&](const std::optional<double>& scale, const std::optional<double>& missing,
+                               bool expected) {
     const Raster wide = read_geotiff(file.path, {.vertical_scale = scale, .missing = missing}).raster;
     const Raster packed = read_geotiff(file.path, {.vertical_scale = scale, .missing = missing, .packed = true}).raster;
     CHECK_FALSE(wide.is_packed());
@@ -282,7 +298,8 @@ TEST_CASE("whole numbers of 8 and 16 bits may stay packed, with the heights that
             CAPTURE(format);
             CAPTURE(bits);
             const Form form{.format = format, .bits = bits, .samples = samples, .tiled = tiled, .mode = mode};
-            write(file.path, form, {.scale = {}, .ties = {}, .matrix = {-2, 0, 0, 1000, 0, 3, 0, 900, 0, 0, 0, 0, 0, 0, 0, 1}}, hills);
+            write(file.path, form,
+                  {.scale = {}, .ties = {}, .matrix = {-2, 0, 0, 1000, 0, 3, 0, 900, 0, 0, 0, 0, 0, 0, 0, 1}}, hills);
             packed_like({}, {}, bits < 32);
             packed_like(0.1, {}, bits < 32);
             packed_like(1.0 / 3, 21, bits < 32);
@@ -297,7 +314,8 @@ TEST_CASE("whole numbers of 8 and 16 bits may stay packed, with the heights that
   packed_like(0.01, {}, true);
   for (const std::uint16_t bits : Codes{8, 16})
     for (const std::string nodata : {"", "50"}) {  // two tiles are left out
-      write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = bits, .tiled = true, .left_out = {1, 3}}, {.nodata = nodata}, height);
+      write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = bits, .tiled = true, .left_out = {1, 3}},
+            {.nodata = nodata}, height);
       packed_like({}, {}, bits == 8 || !nodata.empty());
     }
   const Heights all_missing = [](std::uint32_t, std::uint32_t, std::uint16_t) { return 7.0; };
@@ -315,7 +333,11 @@ TEST_CASE("a picture with a colour table is a raster of its numbers, with the co
           CAPTURE(bits);
           CAPTURE(most);
           const std::size_t count = std::size_t{1} << bits;
-          Form form{.format = SAMPLEFORMAT_UINT, .bits = bits, .photometric = PHOTOMETRIC_PALETTE, .tiled = tiled, .mode = mode};
+          Form form{.format = SAMPLEFORMAT_UINT,
+                    .bits = bits,
+                    .photometric = PHOTOMETRIC_PALETTE,
+                    .tiled = tiled,
+                    .mode = mode};
           form.red.resize(count, 0);
           form.green.resize(count, 0);
           form.blue.resize(count, 0);
@@ -340,7 +362,8 @@ TEST_CASE("a picture with a colour table is a raster of its numbers, with the co
 TEST_CASE("heights pass through lossy JPEG with little change") {
   if (TIFFIsCODECConfigured(COMPRESSION_JPEG) == 0) return;
   const File file;
-  const GeoTiff found = file.read({.format = SAMPLEFORMAT_UINT, .bits = 8, .compression = COMPRESSION_JPEG, .tiled = true});
+  const GeoTiff found =
+      file.read({.format = SAMPLEFORMAT_UINT, .bits = 8, .compression = COMPRESSION_JPEG, .tiled = true});
   for (std::uint32_t i = 0; i < columns * rows; ++i)
     CHECK(std::fabs(static_cast<double>(found.raster.heights[i]) - height(i % columns, i / columns, 0)) < 8);
 }
@@ -353,7 +376,8 @@ TEST_CASE("one band is chosen of several, side by side or one after the other") 
       for (const std::uint16_t bits : Codes{16, 32})
         for (const std::uint16_t band : Codes{1, 2, 3}) {
           const Form form{.bits = bits, .compression = COMPRESSION_LZW, .samples = 3, .planes = planes, .tiled = tiled};
-          CHECK(wrong(file.read(form, {}, heights, {.band = band}).raster, heights, static_cast<std::uint16_t>(band - 1)) == 0);
+          CHECK(wrong(file.read(form, {}, heights, {.band = band}).raster, heights,
+                      static_cast<std::uint16_t>(band - 1)) == 0);
         }
   CHECK(contains(file.refusal({.samples = 3}, {}, {.band = 4}), "has 3 bands: expected 4"));
 }
@@ -367,7 +391,8 @@ TEST_CASE("halves are read to the last bit") {
     if (exponent == 31)
       CHECK((fraction == 0 ? std::isinf(value) && std::signbit(value) == (sign < 0) : std::isnan(value)));
     else
-      CHECK(static_cast<double>(value) == sign * (exponent == 0 ? std::ldexp(fraction, -14) : std::ldexp(1 + fraction, exponent - 15)));
+      CHECK(static_cast<double>(value) ==
+            sign * (exponent == 0 ? std::ldexp(fraction, -14) : std::ldexp(1 + fraction, exponent - 15)));
   }
 }
 
@@ -503,7 +528,8 @@ TEST_CASE("a vertical system tells the unit of the heights, where no key does, a
     CHECK(found.warnings.size() == (c.unit == 1 ? 1 : 2));
     CHECK(contains(found.warnings[0], "vertical system " + std::to_string(c.system)));
     CHECK(contains(found.warnings[0], "metres are assumed") == (c.unit == 1));
-    CHECK_FALSE(contains(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).warnings.at(0), "metres are assumed"));
+    CHECK_FALSE(
+        contains(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).warnings.at(0), "metres are assumed"));
     CHECK(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).raster.heights[0] == 60);
   }
   CHECK(contains(file.refusal({}, in({4096, 0, 1, 5715})), "has depths, by its vertical system EPSG:5715"));
@@ -513,9 +539,12 @@ TEST_CASE("a vertical system tells the unit of the heights, where no key does, a
 TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike") {
   const File file;
   const auto item = [](const std::string& role, const std::string& value, int band = 0) {
-    return "  <Item name=\"" + role + "\" sample=\"" + std::to_string(band) + "\" role=\"" + role + "\">" + value + "</Item>\n";
+    return "  <Item name=\"" + role + "\" sample=\"" + std::to_string(band) + "\" role=\"" + role + "\">" + value +
+           "</Item>\n";
   };
-  const auto told = [](const std::string& items) { return Place{.metadata = "<GDALMetadata>\n" + items + "</GDALMetadata>\n"}; };
+  const auto told = [](const std::string& items) {
+    return Place{.metadata = "<GDALMetadata>\n" + items + "</GDALMetadata>\n"};
+  };
   struct Case {
     std::string items;
     double scale = 1, offset = 0;
@@ -536,20 +565,25 @@ TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike
     for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP}) {
       CAPTURE(c.items);
       const Form form{.format = format, .bits = 16};
-      const auto expected = [&](std::uint32_t x, std::uint32_t y, std::uint16_t s) { return c.offset + c.scale * height(x, y, s); };
+      const auto expected = [&](std::uint32_t x, std::uint32_t y, std::uint16_t s) {
+        return c.offset + c.scale * height(x, y, s);
+      };
       const GeoTiff found = file.read(form, told(c.items));
       for (std::uint32_t x = 0; x < columns; ++x)
         CHECK(static_cast<double>(found.raster.heights[x]) == support::relative(expected(x, 0, 0), 1e-6));
       CHECK(found.warnings.size() == c.notes);
       const Raster packed = read_geotiff(file.path, {.packed = true}).raster.unpacked();
-      CHECK(std::memcmp(packed.heights.data(), found.raster.heights.data(), sizeof(float) * packed.heights.size()) == 0);
+      CHECK(std::memcmp(packed.heights.data(), found.raster.heights.data(), sizeof(float) * packed.heights.size()) ==
+            0);
     }
   const Place centimetres = told(item("scale", "0.01"));
-  CHECK(file.read({}, centimetres, height, {.vertical_scale = 2}).raster.heights[0] == 120);  // of the numbers as they are
+  CHECK(file.read({}, centimetres, height, {.vertical_scale = 2}).raster.heights[0] ==
+        120);  // of the numbers as they are
   Place hole = centimetres;
   hole.nodata = "60";  // a number, not a height
   CHECK(std::isnan(file.read({}, hole).raster.heights[0]));
-  for (const char* bad : {"0", "one", "1e400"}) CHECK(contains(file.refusal({}, told(item("scale", bad))), "of heights: expected"));
+  for (const char* bad : {"0", "one", "1e400"})
+    CHECK(contains(file.refusal({}, told(item("scale", bad))), "of heights: expected"));
 }
 
 TEST_CASE("a mask, an alpha band, colours and numbers that may be missing heights are noted") {
@@ -563,9 +597,12 @@ TEST_CASE("a mask, an alpha band, colours and numbers that may be missing height
   CHECK(contains(note({.mask = true}), "has a mask, which is not applied"));
   CHECK(contains(note({.samples = 2, .extra = {EXTRASAMPLE_UNASSALPHA}}), "has an alpha band"));
   CHECK(note({.samples = 2, .extra = {EXTRASAMPLE_UNSPECIFIED}}) == "0 notes");
-  CHECK(contains(note({.format = SAMPLEFORMAT_UINT, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB}), "is a picture of colours"));
+  CHECK(contains(note({.format = SAMPLEFORMAT_UINT, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB}),
+                 "is a picture of colours"));
   for (const double number : {-9999.0, -32768.0}) {
-    const auto holed = [number](std::uint32_t c, std::uint32_t r, std::uint16_t) { return c == 3 ? number : height(c, r, 0); };
+    const auto holed = [number](std::uint32_t c, std::uint32_t r, std::uint16_t) {
+      return c == 3 ? number : height(c, r, 0);
+    };
     CHECK(contains(note(plain, holed), "23 heights are a number that often marks missing ones"));
     CHECK(read_geotiff(file.path, {.packed = true}).warnings.size() == 1);
     CHECK(read_geotiff(file.path, {.missing = number}).warnings.empty());
@@ -575,9 +612,12 @@ TEST_CASE("a mask, an alpha band, colours and numbers that may be missing height
 }
 
 TEST_CASE("a strip with more rows than the raster needs gives the raster's heights") {
-  const auto steps = [](std::uint32_t, std::uint32_t r, std::uint16_t) { return r < 20 ? 50.0 : 7.0; };  // long runs: long matches
+  const auto steps = [](std::uint32_t, std::uint32_t r, std::uint16_t) {
+    return r < 20 ? 50.0 : 7.0;
+  };  // long runs: long matches
   const File file;
-  for (const std::uint16_t compression : Codes{COMPRESSION_NONE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_LZW})
+  for (const std::uint16_t compression :
+       Codes{COMPRESSION_NONE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_LZW})
     for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP})
       for (const std::uint32_t padding : {1U, 2U}) {
         CAPTURE(compression);
@@ -613,7 +653,9 @@ TEST_CASE("a world file places a raster without tags; pixels that may be in degr
 TEST_CASE("what is missing is NaN: by GDAL_NODATA, by the setting, by being none") {
   const File file;
   const auto with = [](double missing) {
-    return [missing](std::uint32_t c, std::uint32_t r, std::uint16_t) { return (c + r) % 5 == 0 ? missing : height(c, r, 0); };
+    return [missing](std::uint32_t c, std::uint32_t r, std::uint16_t) {
+      return (c + r) % 5 == 0 ? missing : height(c, r, 0);
+    };
   };
   struct Case {
     double missing;
@@ -709,7 +751,8 @@ TEST_CASE("a header that claims more than the file can hold is refused, and noth
     std::vector<std::array<std::uint32_t, 4>> entries{{256, 4, 1, claim.wide}, {257, 4, 1, claim.high}, {258, 3, 1, 32},
                                                       {259, 3, 1, 1},          {262, 3, 1, 1},          {277, 3, 1, 1}};
     if (claim.tile != 0)
-      entries.insert(entries.end(), {{322, 4, 1, claim.tile}, {323, 4, 1, claim.tile}, {324, 4, 1, 8}, {325, 4, 1, 64}});
+      entries.insert(entries.end(),
+                     {{322, 4, 1, claim.tile}, {323, 4, 1, claim.tile}, {324, 4, 1, 8}, {325, 4, 1, 64}});
     else
       entries.insert(entries.end(), {{273, 4, 1, 8}, {278, 4, 1, claim.strip_rows}, {279, 4, 1, 64}});
     std::sort(entries.begin(), entries.end());

@@ -21,7 +21,8 @@ using support::content;
 using support::Generator;
 using support::TemporaryFolder;
 
-/// What one gzip member holds; throws if there is anything wrong with it, its checksum and length too, or anything behind it.
+/// What one gzip member holds; throws if there is anything wrong with it, its checksum and length too, or anything
+/// behind it.
 std::string unzipped(const std::string& bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) throw std::runtime_error("no memory");
@@ -66,7 +67,8 @@ TEST_CASE("whatever is written reads back, at every level and in pieces of every
     std::string expected;
     for (int i = 0; i < 12; ++i) {
       std::string piece(static_cast<std::size_t>(random.log_uniform(1, 3e6)), ' ');
-      for (char& c : piece) c = static_cast<char>(seed % 2 == 0 ? random.whole(256) : '0' + random.whole(10));  // hardly and well
+      for (char& c : piece)
+        c = static_cast<char>(seed % 2 == 0 ? random.whole(256) : '0' + random.whole(10));  // hardly and well
       file.write(piece);
       expected += piece;
     }

@@ -102,16 +102,20 @@ TEST_CASE("the rest of a file comes whole, without a byte order mark at its begi
 TEST_CASE("a line that is longer than a block is refused") {
   const std::string longest(InputFile::block_size - 1, 'a');
   CHECK(lines(longest + "\n" + longest) == std::vector<std::string>{longest, longest});
-  CHECK_THROWS_WITH_AS(lines("b\n" + longest + "aa\n"), doctest::Contains("line 2: is longer than 1048576 bytes"), FileError);
+  CHECK_THROWS_WITH_AS(lines("b\n" + longest + "aa\n"), doctest::Contains("line 2: is longer than 1048576 bytes"),
+                       FileError);
 }
 
 TEST_CASE("what is no file is refused, and says what was expected") {
   const TemporaryFolder folder;
-  CHECK_THROWS_WITH_AS(InputFile(folder / "none", "a cloud"), doctest::Contains("none: does not exist: expected a cloud"), FileError);
-  CHECK_THROWS_WITH_AS(InputFile(folder.path(), "a cloud"), doctest::Contains("is a directory or device: expected a cloud"), FileError);
+  CHECK_THROWS_WITH_AS(InputFile(folder / "none", "a cloud"),
+                       doctest::Contains("none: does not exist: expected a cloud"), FileError);
+  CHECK_THROWS_WITH_AS(InputFile(folder.path(), "a cloud"),
+                       doctest::Contains("is a directory or device: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/dev/zero", "a cloud"), doctest::Contains("is a directory or device"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem", "a cloud"), doctest::Contains("cannot be read"), FileError);
-  CHECK_THROWS_WITH_AS(InputFile(put(folder, ""), "a cloud"), doctest::Contains("is empty: expected a cloud"), FileError);
+  CHECK_THROWS_WITH_AS(InputFile(put(folder, ""), "a cloud"), doctest::Contains("is empty: expected a cloud"),
+                       FileError);
 }
 
 TEST_CASE("errors name the line or the byte") {
@@ -124,9 +128,13 @@ TEST_CASE("errors name the line or the byte") {
   CHECK_THROWS_WITH_AS(file.fail_at_byte(7, "is odd"), doctest::Contains("a, byte 7: is odd"), FileError);
 }
 
-void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
-std::string text_of(const MappedFile& file) { return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()}; }
+std::string text_of(const MappedFile& file) {
+  return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+}
 
 TEST_CASE("a file stands in memory as it is, at the beginning of a page") {
   const TemporaryFolder folder;
@@ -165,8 +173,8 @@ TEST_CASE("what cannot be mapped is an error that says why") {
 
 TEST_CASE("too little memory for a file is an error that names it") {
   CHECK(reading("a.obj", [] { return 3; }) == 3);
-  CHECK_THROWS_WITH_AS(reading("a.obj", [] { throw std::bad_alloc(); }), doctest::Contains("a.obj: takes more memory than there is"),
-                       FileError);
+  CHECK_THROWS_WITH_AS(reading("a.obj", [] { throw std::bad_alloc(); }),
+                       doctest::Contains("a.obj: takes more memory than there is"), FileError);
 }
 
 }  // namespace

@@ -50,10 +50,11 @@ SensorPose facing_west(Tick t) { return {rotation_about(axis::up, 90_deg), {100,
 
 /// Echoes in the scans that begin at 0 s and 0.1 s, a scan at 0.3 s that has a pulse without echoes, and none at 0.2 s.
 struct ThreeScans {
-  std::array<Shot, 4> shots{{{.tick = {0, 0}, .origin = {100, 0, 2}, .direction = -axis::right, .echoes = 1},
-                             {.tick = {0, 0.05}, .origin = {100, 0.5, 2}, .direction = axis::forward, .first_echo = 1, .echoes = 2},
-                             {.tick = {0, 0.1}, .origin = {100, 1, 2}, .direction = axis::up, .first_echo = 3, .echoes = 1},
-                             {.tick = {0, 0.375}, .origin = {100, 3.75, 2}, .direction = axis::up, .first_echo = 4}}};
+  std::array<Shot, 4> shots{
+      {{.tick = {0, 0}, .origin = {100, 0, 2}, .direction = -axis::right, .echoes = 1},
+       {.tick = {0, 0.05}, .origin = {100, 0.5, 2}, .direction = axis::forward, .first_echo = 1, .echoes = 2},
+       {.tick = {0, 0.1}, .origin = {100, 1, 2}, .direction = axis::up, .first_echo = 3, .echoes = 1},
+       {.tick = {0, 0.375}, .origin = {100, 3.75, 2}, .direction = axis::up, .first_echo = 4}}};
   std::array<Echo, 4> echoes{{{.range = 8, .reflectance = 0.25, .object = 7, .classification = 2},
                               {.range = 4, .reflectance = 3, .object = 65'535, .classification = 6},
                               {.range = 16, .reflectance = -1, .object = 65'536 * 9 + 5, .classification = 64},
@@ -85,7 +86,8 @@ TEST_CASE("a label is the object, modulo 65536, above the class by the table, wh
   KittiSettings settings{.points = {.sensor = facing_west}};
   settings.classes[64] = 252;
   write(folder / "00", ThreeScans().batch(), settings);
-  CHECK((numbers<std::uint32_t>(folder / "00/labels/000000.label") == std::vector<std::uint32_t>{0x0007'0048, 0xFFFF'0032, 0x0005'00FC}));
+  CHECK((numbers<std::uint32_t>(folder / "00/labels/000000.label") ==
+         std::vector<std::uint32_t>{0x0007'0048, 0xFFFF'0032, 0x0005'00FC}));
   CHECK((numbers<std::uint32_t>(folder / "00/labels/000001.label") == std::vector<std::uint32_t>{0x0001'0000}));
   CHECK(content(folder / "00/labels/000002.label").empty());
 }
@@ -116,7 +118,9 @@ TEST_CASE("poses bring the points of undistorted scans of any motion into the fr
     const Vec3 start = random.point(1e3), speed = random.point(30), spin = random.unit();
     const Rotation turned = random.rotation();
     const double rate = random.uniform(-3, 3);
-    const auto sensor = [=](Tick t) { return SensorPose{turned * rotation_about(spin, rate * t.seconds()), start + speed * t.seconds()}; };
+    const auto sensor = [=](Tick t) {
+      return SensorPose{turned * rotation_about(spin, rate * t.seconds()), start + speed * t.seconds()};
+    };
     const RandomPulses pulses(500, seed);
     const TemporaryFolder folder;
     write(folder.path(), pulses.batch(), {.points = {.sensor = sensor, .distortion = MotionDistortion::removed}});
@@ -147,8 +151,10 @@ TEST_CASE("poses bring the points of undistorted scans of any motion into the fr
 
 TEST_CASE("the table knows ground, vegetation, buildings, roads and noise") {
   const KittiClasses classes = kitti_classes();
-  CHECK((classes.at(2) == 72 && classes.at(3) == 70 && classes.at(5) == 70 && classes.at(6) == 50 && classes.at(11) == 40));
-  CHECK((classes.at(7) == 1 && classes.at(18) == 1 && classes.count(0) == 0 && classes.count(1) == 0 && classes.count(9) == 0));
+  CHECK((classes.at(2) == 72 && classes.at(3) == 70 && classes.at(5) == 70 && classes.at(6) == 50 &&
+         classes.at(11) == 40));
+  CHECK((classes.at(7) == 1 && classes.at(18) == 1 && classes.count(0) == 0 && classes.count(1) == 0 &&
+         classes.count(9) == 0));
 }
 
 TEST_CASE("a scan rate of its own divides scans") {
@@ -166,7 +172,8 @@ TEST_CASE("without close there are no times and poses, and scans of a former seq
   }
   CHECK(std::filesystem::exists(folder / "velodyne/000001.bin"));
   CHECK_FALSE(std::filesystem::exists(folder / "velodyne/000002.bin"));  // it could still go on
-  for (const char* const name : {"times.txt", "poses.txt", "calib.txt"}) CHECK_FALSE(std::filesystem::exists(folder / name));
+  for (const char* const name : {"times.txt", "poses.txt", "calib.txt"})
+    CHECK_FALSE(std::filesystem::exists(folder / name));
   const FileError error = file_error([&] { KittiWriter(folder.path(), {.points = {.sensor = facing_west}}); });
   CHECK(error.path() == (folder / "velodyne").string());
   CHECK(support::contains(error.problem(), "without scans"));
@@ -176,7 +183,9 @@ TEST_CASE("without close there are no times and poses, and scans of a former seq
 
 TEST_CASE("settings out of range are refused, and leave no folder") {
   const TemporaryFolder folder;
-  const auto refused = [&](const KittiSettings& settings) { return refused_field([&] { KittiWriter(folder / "00", settings); }); };
+  const auto refused = [&](const KittiSettings& settings) {
+    return refused_field([&] { KittiWriter(folder / "00", settings); });
+  };
   CHECK(refused({}) == "PointSettings::sensor (poses)");
   CHECK(refused({.scan_rate = 0, .points = {.sensor = facing_west}}) == "KittiSettings::scan_rate");
   const double infinity = std::numeric_limits<double>::infinity();

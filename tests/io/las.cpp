@@ -98,7 +98,8 @@ struct Survey {
       const auto echoes = survey.batch().echoes_of(shot);
       shot.waveform_start = echoes.empty() ? 1e-6 : 2 * echoes[0].range / speed_of_light - random.uniform(0, 1e-8);
       const double peak = random.log_uniform(1e-11, 1e-3);
-      for (std::uint32_t i = 0; i < shot.samples; ++i) survey.samples.push_back(static_cast<float>(peak * random.uniform()));
+      for (std::uint32_t i = 0; i < shot.samples; ++i)
+        survey.samples.push_back(static_cast<float>(peak * random.uniform()));
     }
     return survey;
   }
@@ -173,7 +174,8 @@ TEST_CASE("the header says who wrote the file and how, and nothing of the day un
 TEST_CASE("the values beyond the standard ones are named and described") {
   const LasFile file = Survey{}.written();
   std::string all;
-  for (const auto& extra : file.extras) all += extra.name + ' ' + std::to_string(extra.type) + ' ' + extra.description + '\n';
+  for (const auto& extra : file.extras)
+    all += extra.name + ' ' + std::to_string(extra.type) + ' ' + extra.description + '\n';
   CHECK(all ==
         "Range 10 from the instrument [m]\n"
         "Amplitude 9 received power at peak [dB]\n"
@@ -198,13 +200,14 @@ TEST_CASE("colours make point format 7, with near infrared 8; an unknown colour 
   const Survey survey = Survey::random(7, 200, 1e3);
   const LasFile without = survey.written({.light_kinds = true});
   for (const bool near_infrared : {false, true}) {
-    const LasFile file = survey.written({.light_kinds = true,
-                                         .colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
-                                           if (echo.object % 2 == 0) return std::nullopt;
-                                           const auto low = static_cast<std::uint16_t>(echo.object);
-                                           return PointColour{low, 65535, echo.number, static_cast<std::uint16_t>(echo.object >> 16)};
-                                         },
-                                         .near_infrared = near_infrared});
+    const LasFile file =
+        survey.written({.light_kinds = true,
+                        .colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
+                          if (echo.object % 2 == 0) return std::nullopt;
+                          const auto low = static_cast<std::uint16_t>(echo.object);
+                          return PointColour{low, 65535, echo.number, static_cast<std::uint16_t>(echo.object >> 16)};
+                        },
+                        .near_infrared = near_infrared});
     CHECK(file.format == (near_infrared ? 8 : 7));
     CHECK(file.global_encoding == 17);
     REQUIRE(file.points.size() == without.points.size());
@@ -221,13 +224,16 @@ TEST_CASE("colours make point format 7, with near infrared 8; an unknown colour 
 }
 
 TEST_CASE("attributes of objects follow the other extra values, by the object of the echo; NaN where unknown") {
-  const std::string long_name(40, 'n'), umlaut = std::string(30, 'u') + "\u00e4";  // cut within a character of two bytes
-  const auto known = attributes_of({{3, attributes({{"age", 80}, {long_name, -1.5}})}, {5, attributes({{"age", 12}, {umlaut, 1e300}})}});
+  const std::string long_name(40, 'n'),
+      umlaut = std::string(30, 'u') + "\u00e4";  // cut within a character of two bytes
+  const auto known = attributes_of(
+      {{3, attributes({{"age", 80}, {long_name, -1.5}})}, {5, attributes({{"age", 12}, {umlaut, 1e300}})}});
   for (const LasSettings& settings :
        {LasSettings{.attributes = known}, LasSettings{.waveforms = true, .light_kinds = true, .attributes = known},
         LasSettings{.format = LasFormat::las_1_0, .attributes = known}}) {
     Survey survey;
-    for (const ObjectId object : {3U, 4U, 5U}) survey.add({.direction = {0, 0, 1}}, {Echo{.range = 1, .object = object}});
+    for (const ObjectId object : {3U, 4U, 5U})
+      survey.add({.direction = {0, 0, 1}}, {Echo{.range = 1, .object = object}});
     const LasFile file = survey.written(settings);
     REQUIRE(file.points.size() == 3);
     REQUIRE(file.extras.size() == (settings.light_kinds ? 10 : 9));
@@ -257,13 +263,16 @@ TEST_CASE("colours that the format has no room for, and names of attributes that
   refused({.attributes = attributes_of({{1, attributes({{"Range", 1}})}})}, "'Range'");
   refused({.attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
   refused({.attributes = attributes_of({{1, std::make_shared<const std::vector<Attribute>>(1)}})}, "''");
-  refused({.attributes = attributes_of({{1, attributes({{std::string(31, 'a') + "b", 1}, {std::string(31, 'a') + "c", 2}})}})}, "aaac'");
+  refused({.attributes =
+               attributes_of({{1, attributes({{std::string(31, 'a') + "b", 1}, {std::string(31, 'a') + "c", 2}})}})},
+          "aaac'");
   std::vector<Attribute> many;
   for (int i = 0; i < 335; ++i) many.push_back({std::to_string(i), 1});
   refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of names");
   CHECK(folder.empty());
   many.pop_back();
-  CHECK(Survey::of_points({{1, 2, 3}}).written({.attributes = attributes_of({{1, attributes(many)}})}).extras.size() == 340);
+  CHECK(Survey::of_points({{1, 2, 3}}).written({.attributes = attributes_of({{1, attributes(many)}})}).extras.size() ==
+        340);
 }
 
 TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {
@@ -290,8 +299,8 @@ TEST_CASE("a code of UTM is written as well-known text, with its zone's meridian
     const LasFile file = Survey::of_points({{1, 2, 3}}).written({.epsg = zone.epsg});
     CHECK(file.global_encoding == 17);
     CHECK(file.wkt.starts_with("PROJCS[\"" + zone.name + "\",GEOGCS["));
-    for (const std::string& part :
-         {"DATUM[\"" + zone.datum + "\"", "[\"central_meridian\"," + zone.meridian + "]", "[\"false_northing\"," + zone.northing + "]"})
+    for (const std::string& part : {"DATUM[\"" + zone.datum + "\"", "[\"central_meridian\"," + zone.meridian + "]",
+                                    "[\"false_northing\"," + zone.northing + "]"})
       CHECK(file.wkt.find(part) != file.wkt.npos);
     CHECK(file.wkt.ends_with("NORTH],AUTHORITY[\"EPSG\",\"" + std::to_string(zone.epsg) + "\"]]"));
     CHECK(std::count(file.wkt.begin(), file.wkt.end(), '[') == std::count(file.wkt.begin(), file.wkt.end(), ']'));
@@ -300,7 +309,8 @@ TEST_CASE("a code of UTM is written as well-known text, with its zone's meridian
 }
 
 TEST_CASE("any other code is written as GeoTIFF keys, without the WKT bit; well-known text comes first") {
-  for (const std::uint16_t epsg : {std::uint16_t{2056}, std::uint16_t{25827}, std::uint16_t{25839}, std::uint16_t{32766}}) {
+  for (const std::uint16_t epsg :
+       {std::uint16_t{2056}, std::uint16_t{25827}, std::uint16_t{25839}, std::uint16_t{32766}}) {
     const LasFile file = Survey::of_points({{1, 2, 3}}).written({.epsg = epsg});
     CHECK(file.epsg == epsg);
     CHECK(file.global_encoding == 1);
@@ -312,8 +322,9 @@ TEST_CASE("any other code is written as GeoTIFF keys, without the WKT bit; well-
 }
 
 TEST_CASE("coordinates are rounded to the nearest step on both sides of zero") {
-  const LasFile file = Survey::of_points({{0.00014, 0.00016, 0.00024}, {-0.00014, -0.00016, -0.00024}, {0.00004, -0.00004, 0}})
-                           .written({.offset = Vec3{0, 0, 0}});
+  const LasFile file =
+      Survey::of_points({{0.00014, 0.00016, 0.00024}, {-0.00014, -0.00016, -0.00024}, {0.00004, -0.00004, 0}})
+          .written({.offset = Vec3{0, 0, 0}});
   CHECK(file.points[0].stored == std::array<std::int32_t, 3>{1, 2, 2});
   CHECK(file.points[1].stored == std::array<std::int32_t, 3>{-1, -2, -2});
   CHECK(file.points[2].stored == std::array<std::int32_t, 3>{0, 0, 0});
@@ -344,7 +355,8 @@ TEST_CASE("coordinates use all of 32 bits, and one that needs more is an error t
     for (const LasSettings& either : {settings, LasSettings{.offset = {}}}) {
       const Survey survey = Survey::of_points({{1, 2, 3}, {4, 5, 6}, misfit});
       LasWriter writer(folder / "points.las", either);
-      CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), doctest::Contains("does not fit 32 bits"), FileError);
+      CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
+                           doctest::Contains("does not fit 32 bits"), FileError);
       CHECK_THROWS_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), FileError);
       CHECK_THROWS_AS(writer.close(), FileError);
     }
@@ -355,9 +367,9 @@ TEST_CASE("coordinates use all of 32 bits, and one that needs more is an error t
   LasWriter writer(folder / "points.las", settings);
   CHECK_THROWS_WITH(
       writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
-      ((folder / "points.las").string() +
-       ", point 2: y is -300000 m, which does not fit 32 bits; expected 0 m +- "
-       "214748.3647 m (offset, and 2^31 steps of 0.0001 m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)")
+      ((folder / "points.las").string() + ", point 2: y is -300000 m, which does not fit 32 bits; expected 0 m +- "
+                                          "214748.3647 m (offset, and 2^31 steps of 0.0001 m; a greater scale, by "
+                                          "LasSettings::scale or --lasScale, reaches farther)")
           .c_str());
 }
 
@@ -365,7 +377,8 @@ TEST_CASE("a first point without a place is an error, too") {
   const TemporaryFolder folder;
   const Survey survey = Survey::of_points({{nan, 2, 3}});
   LasWriter writer(folder / "points.las");
-  CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), doctest::Contains("expected 0 m +- 214748"), FileError);
+  CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
+                       doctest::Contains("expected 0 m +- 214748"), FileError);
   CHECK(folder.empty());
 }
 
@@ -420,7 +433,8 @@ TEST_CASE("whatever is written reads back, field by field, and its header is exa
     Generator random(seed + 1000);
     const Survey survey = Survey::random(seed, 100, random.log_uniform(1, 1e7));
     const bool kinds = seed % 2 == 1;
-    LasSettings settings{.light_kinds = kinds, .scale = random.log_uniform(1e-5, 1e-2), .start_time = random.uniform(0, 6e5)};
+    LasSettings settings{
+        .light_kinds = kinds, .scale = random.log_uniform(1e-5, 1e-2), .start_time = random.uniform(0, 6e5)};
     const LasFile file = survey.written(settings);  // checks numbers and bounds against the points
     REQUIRE(file.points.size() == survey.echoes.size());
     std::size_t i = 0;
@@ -470,7 +484,8 @@ TEST_CASE("the bytes of a file do not depend on how the pulses are cut into batc
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------- formats
+// ----------------------------------------------------------------------------------------------------------------
+// formats
 
 TEST_CASE("points of legacy formats hold what they can, and headers say which they are") {
   const Shot sideways{.direction = {0, 0, -1}, .scan_angle = pi, .channel = 77};
@@ -482,7 +497,8 @@ TEST_CASE("points of legacy formats hold what they can, and headers say which th
     CHECK(p.classification == 31);
     CHECK(p.scan_angle_deg == 90);
     CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 77));
-    CHECK(one({.direction = {0, 0, -1}, .scan_angle = radians(-12.6)}, {.range = 1}, {.format = format}).point.scan_angle_deg == -13);
+    CHECK(one({.direction = {0, 0, -1}, .scan_angle = radians(-12.6)}, {.range = 1}, {.format = format})
+              .point.scan_angle_deg == -13);
     Survey survey;
     std::vector<Echo> echoes(7);
     for (std::uint8_t n = 1; n <= 7; ++n) echoes[n - 1U].number = n;
@@ -524,7 +540,8 @@ TEST_CASE("every format reads back, and tells the same places and times") {
         CHECK(p.classification == std::min(q.classification, 31U));
         CHECK(std::fabs(p.scan_angle_deg - std::clamp(q.scan_angle_deg, -90.0, 90.0)) <= 0.51);
         CHECK((p.return_number == std::min(q.return_number, 5U) && p.returns == std::min(q.returns, 5U)));
-        for (const char* name : {"PulseIndex", "ObjectId"}) CHECK(las_whole(file, p, name) == las_whole(expected, q, name));
+        for (const char* name : {"PulseIndex", "ObjectId"})
+          CHECK(las_whole(file, p, name) == las_whole(expected, q, name));
         for (const char* name : {"Range", "Amplitude", "Reflectance", "EchoWidth"})
           CHECK(las_real(file, p, name) == las_real(expected, q, name));
       }
@@ -532,7 +549,8 @@ TEST_CASE("every format reads back, and tells the same places and times") {
   }
 }
 
-// ------------------------------------------------------------------------------------------------------------- intensities
+// -------------------------------------------------------------------------------------------------------------
+// intensities
 
 TEST_CASE("an intensity of amplitude has the full scale that it is given") {
   const Shot shot{.direction = {0, 0, -1}};
@@ -545,7 +563,8 @@ TEST_CASE("an intensity of amplitude has the full scale that it is given") {
 
 TEST_CASE("an intensity normalized by range is that of the same surface at the range that it is given") {
   const Shot shot{.direction = {0, 0, -1}};
-  const LasSettings settings{.intensity = LasIntensity::range_normalized, .intensity_full_scale = 1e-6, .intensity_range = 10};
+  const LasSettings settings{
+      .intensity = LasIntensity::range_normalized, .intensity_full_scale = 1e-6, .intensity_range = 10};
   CHECK(one(shot, {.range = 10, .amplitude = 1e-7}, settings).point.intensity == 6554);
   CHECK(one(shot, {.range = 20, .amplitude = 0.25e-7}, settings).point.intensity == 6554);
   CHECK(one(shot, {.range = 5, .amplitude = 4e-7}, settings).point.intensity == 6554);
@@ -553,10 +572,12 @@ TEST_CASE("an intensity normalized by range is that of the same surface at the r
   CHECK_THROWS_AS((LasSettings{.intensity_range = 0}.validate()), SettingError);
 }
 
-TEST_CASE("without one, the strongest echo of the file has the greatest intensity, and all others theirs in proportion") {
+TEST_CASE(
+    "without one, the strongest echo of the file has the greatest intensity, and all others theirs in proportion") {
   const LasSettings settings{.intensity = LasIntensity::amplitude};
   Survey survey;
-  for (const double amplitude : {1e-8, 4e-8, 2e-8, 0.0}) survey.add({.direction = {0, 0, -1}}, {Echo{.range = 1, .amplitude = amplitude}});
+  for (const double amplitude : {1e-8, 4e-8, 2e-8, 0.0})
+    survey.add({.direction = {0, 0, -1}}, {Echo{.range = 1, .amplitude = amplitude}});
   LasFile file = survey.written(settings);
   CHECK(file.points[0].intensity == 16384);
   CHECK(file.points[1].intensity == 65535);
@@ -582,7 +603,8 @@ TEST_CASE("without one, the strongest echo of the file has the greatest intensit
   }
 }
 
-// --------------------------------------------------------------------------------------------------------------- waveforms
+// ---------------------------------------------------------------------------------------------------------------
+// waveforms
 
 TEST_CASE("two returns of a pulse share one packet, in which their places are found") {
   const double c = speed_of_light;
@@ -612,7 +634,8 @@ TEST_CASE("two returns of a pulse share one packet, in which their places are fo
       CHECK((samples[0] == 0 && samples[1] == 0x1p-30 && samples[2] == 0x1p-31 && samples[3] == 0 && samples[15] == 0));
     }
     const support::LasWavePacket& none = file.points[2].wave;
-    CHECK((none.descriptor == 0 && none.offset == 0 && none.size == 0 && none.location_ps == 0 && none.direction[2] == 0));
+    CHECK((none.descriptor == 0 && none.offset == 0 && none.size == 0 && none.location_ps == 0 &&
+           none.direction[2] == 0));
   }
 }
 
@@ -621,7 +644,8 @@ TEST_CASE("every waveform reads back, and position plus location times direction
     CAPTURE(seed);
     const Survey survey = Survey::random_with_waveforms(seed, 200, 1e6);
     const TemporaryFolder folder;
-    survey.write(folder / "points.las", {.format = seed % 2 == 0 ? LasFormat::las_1_4 : LasFormat::las_1_4_legacy, .waveforms = true}, 7);
+    survey.write(folder / "points.las",
+                 {.format = seed % 2 == 0 ? LasFormat::las_1_4 : LasFormat::las_1_4_legacy, .waveforms = true}, 7);
     const LasFile file = read_las(folder / "points.las");
     const support::WdpFile packets = support::read_wdp(folder / "points.wdp");
     REQUIRE(file.points.size() == survey.echoes.size());
@@ -638,9 +662,11 @@ TEST_CASE("every waveform reads back, and position plus location times direction
         REQUIRE((p.wave.descriptor == 0) == waveform.empty());
         if (waveform.empty()) continue;
         CHECK(p.wave.offset == used);
-        const Vec3 place{p.place[0], p.place[1], p.place[2]}, back{p.wave.direction[0], p.wave.direction[1], p.wave.direction[2]};
+        const Vec3 place{p.place[0], p.place[1], p.place[2]},
+            back{p.wave.direction[0], p.wave.direction[1], p.wave.direction[2]};
         const Vec3 anchor = shot.origin + shot.direction * (speed_of_light / 2 * shot.waveform_start);
-        if (echo.range - echoes[0].range < 300) {  // as long as waveforms are: a location has the seven digits of a float
+        if (echo.range - echoes[0].range <
+            300) {  // as long as waveforms are: a location has the seven digits of a float
           CHECK(length(place + back * p.wave.location_ps - anchor) < 1e-3);
           CHECK(length(anchor - back * p.wave.location_ps - point_of(shot, echo)) < 1e-3);
         }
@@ -657,14 +683,18 @@ TEST_CASE("every waveform reads back, and position plus location times direction
 }
 
 TEST_CASE("what a detector kept peaks in its packet where the locations of its returns say") {
-  const FullWaveform detector{WaveformSettings{.sample_interval = Survey::interval, .timing = EchoTiming::peak, .record_length = 100e-9}};
+  const FullWaveform detector{
+      WaveformSettings{.sample_interval = Survey::interval, .timing = EchoTiming::peak, .record_length = 100e-9}};
   auto workspace = detector.workspace(2);
   std::vector<Reflection> reflections{{.range = 812.3456, .power = 1e-7}, {.range = 815.4321, .power = 3e-8}};
   const Detection detection = support::detect(detector, Laser{}, reflections, workspace);
   REQUIRE(detection.echoes.size() == 2);
   Survey survey;
-  survey.add({.origin = {478412, 5429876, 1000}, .direction = normalize(Vec3{0.3, -0.2, -1}), .waveform_start = detection.waveform_start},
-             {detection.echoes.begin(), detection.echoes.end()}, {detection.waveform.begin(), detection.waveform.end()});
+  survey.add({.origin = {478412, 5429876, 1000},
+              .direction = normalize(Vec3{0.3, -0.2, -1}),
+              .waveform_start = detection.waveform_start},
+             {detection.echoes.begin(), detection.echoes.end()},
+             {detection.waveform.begin(), detection.waveform.end()});
   const TemporaryFolder folder;
   survey.write(folder / "points.las", {.waveforms = true}, 1);
   const LasFile file = read_las(folder / "points.las");
@@ -674,8 +704,8 @@ TEST_CASE("what a detector kept peaks in its packet where the locations of its r
     const std::vector<double> samples = waveform_of(file, packets, p);
     const auto near = static_cast<std::size_t>(std::lround(p.wave.location_ps / 250));
     REQUIRE((near >= 3 && near + 3 < samples.size()));
-    const auto peak =
-        std::max_element(samples.begin() + static_cast<std::ptrdiff_t>(near) - 3, samples.begin() + static_cast<std::ptrdiff_t>(near) + 4);
+    const auto peak = std::max_element(samples.begin() + static_cast<std::ptrdiff_t>(near) - 3,
+                                       samples.begin() + static_cast<std::ptrdiff_t>(near) + 4);
     CHECK(std::fabs(p.wave.location_ps / 250 - static_cast<double>(peak - samples.begin())) <= 0.6);
     CHECK(*peak == support::relative(std::pow(10, las_real(file, p, "Amplitude") / 10) * 1e-9, 0.03));
   }
@@ -697,7 +727,8 @@ TEST_CASE("waveforms change nothing else in a point, and need not be there") {
   CHECK_FALSE(std::filesystem::exists(folder / "plain.wdp"));
 }
 
-TEST_CASE("the bytes of packets do not depend on batches; without close, or with a point without a place, there are none") {
+TEST_CASE(
+    "the bytes of packets do not depend on batches; without close, or with a point without a place, there are none") {
   const TemporaryFolder folder;
   const Survey survey = Survey::random_with_waveforms(2, 1000, 1e3);
   for (const std::size_t at_once : {std::size_t{1}, std::size_t{33}, std::size_t{1000}})
@@ -719,8 +750,8 @@ TEST_CASE("the bytes of packets do not depend on batches; without close, or with
     CHECK_THROWS_AS(writer(bad.batch()), FileError);
     CHECK_THROWS_AS(writer.close(), FileError);
   }
-  CHECK_THROWS_WITH_AS(LasWriter(other / "points.wdp", {.waveforms = true}), doctest::Contains("is the name of its waveform file"),
-                       FileError);
+  CHECK_THROWS_WITH_AS(LasWriter(other / "points.wdp", {.waveforms = true}),
+                       doctest::Contains("is the name of its waveform file"), FileError);
   CHECK(other.empty());
 }
 

@@ -33,8 +33,8 @@ FileError error(const std::string& text) {
 std::string row(double zenith_deg, double g, double azimuth = 0) {
   const double zenith = radians(zenith_deg);
   char text[100];
-  std::snprintf(text, sizeof text, "%.6f,%.6f,%.6f,%.6f\n", std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth),
-                std::cos(zenith), g);
+  std::snprintf(text, sizeof text, "%.6f,%.6f,%.6f,%.6f\n", std::sin(zenith) * std::cos(azimuth),
+                std::sin(zenith) * std::sin(azimuth), std::cos(zenith), g);
   return text;
 }
 
@@ -47,7 +47,8 @@ std::string rows(int from, int to, int step) {
 
 double g(const LeafAngles& leaves, double zenith_deg, double azimuth = 0) {
   const double zenith = radians(zenith_deg);
-  return leaves.projection({std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)});
+  return leaves.projection(
+      {std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)});
 }
 
 TEST_CASE("the table of spherical leaf angles is 1/2 everywhere, as the closed form") {
@@ -74,14 +75,16 @@ TEST_CASE("G is linear in the zenith angle between the rows, whatever their orde
 TEST_CASE("directions of all azimuths and of both hemispheres make one table") {
   std::string text;
   for (int zenith = 0; zenith <= 180; zenith += 5)
-    for (int azimuth = 0; azimuth < 6; ++azimuth) text += row(zenith, 0.3 + 0.004 * (zenith > 90 ? 180 - zenith : zenith), azimuth);
+    for (int azimuth = 0; azimuth < 6; ++azimuth)
+      text += row(zenith, 0.3 + 0.004 * (zenith > 90 ? 180 - zenith : zenith), azimuth);
   CHECK(std::fabs(g(read(text), 37) - (0.3 + 0.004 * 37)) < 2e-6);
 }
 
 TEST_CASE("a table that depends on more than the zenith angle is refused, with both lines") {
   const FileError azimuth = error(rows(0, 90, 5) + row(45, 0.9, 2));
   CHECK(azimuth.place() == "line 20");
-  CHECK(azimuth.problem() == "differs in G from line 10, at the same zenith angle: expected one G for each zenith angle");
+  CHECK(azimuth.problem() ==
+        "differs in G from line 10, at the same zenith angle: expected one G for each zenith angle");
   CHECK(error(row(135, 0.1) + rows(0, 90, 5)).place() == "line 11");
 }
 
@@ -104,7 +107,8 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
   CHECK(error(good + "0,0,1,0.5,1\n").problem() == "has 5 columns: expected x, y, z and G");
   CHECK(error(good + "0,0,nan,0.5\n").place() == "line 20, column 3");
   CHECK(error(good + "0,0,1,nan\n").place() == "line 20, column 4");
-  CHECK(error(good + "0,0,1,-0.1\n").problem() == "'-0.1': expected G, the mean projection of unit leaf area, from 0 to 1");
+  CHECK(error(good + "0,0,1,-0.1\n").problem() ==
+        "'-0.1': expected G, the mean projection of unit leaf area, from 0 to 1");
   CHECK(error(good + "0,0,1,3.1416\n").place() == "line 20, column 4");
   CHECK(error(good + "2,0,0,0.5\n").problem() == "'2': expected a component of a unit direction, from -1 to 1");
   CHECK(error(good + "0,0,0.5,0.5\n").problem() == "the direction has the length 0.5: expected 1, within 1e-3");

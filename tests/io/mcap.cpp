@@ -104,7 +104,8 @@ struct Chunk {
   friend bool operator==(const Chunk&, const Chunk&) = default;
 };
 
-/// Contents of a file, found by a walk over all its records, which requires that all positions and counts in it are right.
+/// Contents of a file, found by a walk over all its records, which requires that all positions and counts in it are
+/// right.
 struct Walk {
   std::string header, file;
   std::map<std::uint16_t, std::string> schemas, channels;  // contents of the records, by number
@@ -149,7 +150,8 @@ struct Walk {
     chunk.times.second = at.number<std::uint64_t>();
     chunk.size = at.number<std::uint64_t>();
     CHECK((at.number<std::uint32_t>() == 0 && at.text().empty() && at.number<std::uint64_t>() == chunk.size));
-    std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> found;  // time and place of each message
+    std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>>
+        found;  // time and place of each message
     Times times{~std::uint64_t{0}, 0};
     for (const Record& record : records_of(at.rest(), 0)) {
       if (record.opcode != 5) {
@@ -194,7 +196,8 @@ struct Walk {
         groups[record.opcode] = {record.start, record.length};
       }
       if (record.opcode == 3 || record.opcode == 4)
-        (record.opcode == 3 ? schema_copies : channel_copies)[Cursor(record.content).number<std::uint16_t>()] = record.content;
+        (record.opcode == 3 ? schema_copies : channel_copies)[Cursor(record.content).number<std::uint16_t>()] =
+            record.content;
       if (record.opcode == 8) chunk_copies.push_back(chunk_index(record));
       if (record.opcode == 11) check_statistics(record);
     }
@@ -240,7 +243,8 @@ struct Walk {
     }
     Cursor at(record.content);
     CHECK((at.number<std::uint64_t>() == messages.size() && at.number<std::uint16_t>() == schemas.size()));
-    CHECK((at.number<std::uint32_t>() == channels.size() && at.number<std::uint64_t>() == 0));  // attachments and metadata
+    CHECK((at.number<std::uint32_t>() == channels.size() &&
+           at.number<std::uint64_t>() == 0));  // attachments and metadata
     CHECK(at.number<std::uint32_t>() == chunks.size());
     CHECK((at.number<std::uint64_t>() == times.first && at.number<std::uint64_t>() == times.second));
     for (Cursor map(at.text()); !map.at_end();) {
@@ -271,7 +275,8 @@ TEST_CASE("files of any channels and messages hold them in order, and every posi
     for (std::uint64_t left = any.whole(200); left > 0; --left) {
       if (sequences.empty() || any.whole(20) == 0) {
         const std::string type = "types/msg/T" + std::to_string(any.whole(3));
-        CHECK(writer.add_channel({.topic = "/t" + std::to_string(sequences.size()), .schema_name = type, .schema = "int8 x"}) ==
+        CHECK(writer.add_channel(
+                  {.topic = "/t" + std::to_string(sequences.size()), .schema_name = type, .schema = "int8 x"}) ==
               sequences.size());
         sequences.push_back(0);
       }
@@ -280,7 +285,8 @@ TEST_CASE("files of any channels and messages hold them in order, and every posi
       m.sequence = sequences[m.channel]++;
       m.log_time = any.whole(1'000'000);
       m.publish_time = any.whole(1'000'000);
-      m.data.resize(any.whole(3) == 0 ? 0 : static_cast<std::size_t>(any.log_uniform(1, 1e4)), static_cast<char>(any.whole(256)));
+      m.data.resize(any.whole(3) == 0 ? 0 : static_cast<std::size_t>(any.log_uniform(1, 1e4)),
+                    static_cast<char>(any.whole(256)));
       writer.write(m.channel, m.log_time, m.publish_time, bytes_of(m.data));
       written.push_back(m);
     }
@@ -297,19 +303,21 @@ TEST_CASE("a header names the profile and the library, and channels of one schem
   const McapChannel points{.topic = "/a", .schema_name = "p/msg/P", .schema = "int8 p"};
   CHECK(writer.add_channel(points) == 0);
   CHECK(writer.add_channel({.topic = "/b", .schema_name = "p/msg/Q", .schema = "int8 p"}) == 1);
-  CHECK(writer.add_channel({.topic = "/c", .schema_name = "p/msg/P", .schema = "int8 p", .metadata = {{"k", "v"}, {"l", ""}}}) == 2);
+  CHECK(writer.add_channel(
+            {.topic = "/c", .schema_name = "p/msg/P", .schema = "int8 p", .metadata = {{"k", "v"}, {"l", ""}}}) == 2);
   CHECK(writer.add_channel({.topic = "/d", .schema_encoding = "", .message_encoding = "json", .metadata = {}}) == 3);
   writer.close();
   const Walk walk(folder / "a.mcap");
   CHECK(walk.header == string_of("x") + string_of("pulsecast " PULSECAST_VERSION));
   const auto id = [](char number) { return std::string{number, '\0'}; };
-  const std::string rest = string_of("ros2msg") + string_of("int8 p"), qos = string_of("offered_qos_profiles") + string_of("");
+  const std::string rest = string_of("ros2msg") + string_of("int8 p"),
+                    qos = string_of("offered_qos_profiles") + string_of("");
   CHECK(walk.schemas == std::map<std::uint16_t, std::string>{{std::uint16_t{1}, id(1) + string_of("p/msg/P") + rest},
                                                              {std::uint16_t{2}, id(2) + string_of("p/msg/Q") + rest}});
   CHECK(walk.channels.at(0) == id(0) + id(1) + string_of("/a") + string_of("cdr") + string_of(qos));
   CHECK(walk.channels.at(1) == id(1) + id(2) + string_of("/b") + string_of("cdr") + string_of(qos));
-  CHECK(walk.channels.at(2) ==
-        id(2) + id(1) + string_of("/c") + string_of("cdr") + string_of(string_of("k") + string_of("v") + string_of("l") + string_of("")));
+  CHECK(walk.channels.at(2) == id(2) + id(1) + string_of("/c") + string_of("cdr") +
+                                   string_of(string_of("k") + string_of("v") + string_of("l") + string_of("")));
   CHECK(walk.channels.at(3) == id(3) + id(0) + string_of("/d") + string_of("json") + string_of(""));
   CHECK((walk.messages.empty() && walk.chunks.empty()));
 }
@@ -342,8 +350,10 @@ TEST_CASE("a channel that does not exist, too many channels, and settings out of
   const TemporaryFolder folder;
   McapWriter writer(folder / "a.mcap");
   CHECK_THROWS_WITH_AS(writer.write(0, 0, 0, {}), doctest::Contains("one that add_channel has returned"), SettingError);
-  for (std::uint32_t id = 0; id < 65'535; ++id) REQUIRE(writer.add_channel({.topic = "/a", .schema_name = "p/msg/P"}) == id);
-  CHECK_THROWS_WITH_AS(static_cast<void>(writer.add_channel({})), doctest::Contains("McapWriter::add_channel"), SettingError);
+  for (std::uint32_t id = 0; id < 65'535; ++id)
+    REQUIRE(writer.add_channel({.topic = "/a", .schema_name = "p/msg/P"}) == id);
+  CHECK_THROWS_WITH_AS(static_cast<void>(writer.add_channel({})), doctest::Contains("McapWriter::add_channel"),
+                       SettingError);
   writer.write(65'534, 0, 0, {});
   writer.close();
   CHECK(Walk(folder / "a.mcap").channels.size() == 65'535);

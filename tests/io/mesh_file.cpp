@@ -56,7 +56,8 @@ std::vector<Vec3> world_corners(const MeshFile& file) {
   std::vector<Vec3> all;
   for (const MeshPlacement& one : file.placements)
     for (const auto& triangle : file.meshes[one.mesh].mesh.triangles)
-      for (const std::uint32_t corner : triangle) all.push_back(one.placement.point(file.meshes[one.mesh].mesh.vertices[corner]));
+      for (const std::uint32_t corner : triangle)
+        all.push_back(one.placement.point(file.meshes[one.mesh].mesh.vertices[corner]));
   return all;
 }
 
@@ -68,7 +69,8 @@ double distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 bool warns(const MeshFile& file, const std::string& text) {
-  return std::any_of(file.warnings.begin(), file.warnings.end(), [&](const std::string& one) { return contains(one, text); });
+  return std::any_of(file.warnings.begin(), file.warnings.end(),
+                     [&](const std::string& one) { return contains(one, text); });
 }
 
 /// A scene of random blobs in a room of 8 m, y up, as an OBJ file.
@@ -86,7 +88,8 @@ std::string blobs(std::uint64_t seed) {
         const Vec3 at = centre + random.point(0.5);
         text += "v " + std::to_string(at.x) + " " + std::to_string(at.y) + " " + std::to_string(at.z) + "\n";
       }
-      text += "f " + std::to_string(vertices + 1) + " " + std::to_string(vertices + 2) + " " + std::to_string(vertices + 3) + "\n";
+      text += "f " + std::to_string(vertices + 1) + " " + std::to_string(vertices + 2) + " " +
+              std::to_string(vertices + 3) + "\n";
       vertices += 3;
     }
   }
@@ -94,7 +97,8 @@ std::string blobs(std::uint64_t seed) {
 }
 
 /// A file by assimp's own exporter.
-std::filesystem::path exported(const std::filesystem::path& from, const std::filesystem::path& to, const std::string& format) {
+std::filesystem::path exported(const std::filesystem::path& from, const std::filesystem::path& to,
+                               const std::string& format) {
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(from.string(), 0);
   REQUIRE(scene != nullptr);
@@ -129,8 +133,8 @@ TEST_CASE("a triangle of a glTF file stands z up, in metres, with the names of i
     CHECK(file.warnings.empty());
     CHECK(file.placements[0].name == "tree/leaf");
     CHECK(distance(world_corners(file), {{1, -3, 2}, {2, -3, 2}, {1, -3, 4}}) < 1e-14);
-    CHECK(distance(world_corners(read_mesh_file(path, {.up = UpAxis::z, .unit = 0.5})), {{0.5, 1, 1.5}, {1, 1, 1.5}, {0.5, 2, 1.5}}) <
-          1e-14);
+    CHECK(distance(world_corners(read_mesh_file(path, {.up = UpAxis::z, .unit = 0.5})),
+                   {{0.5, 1, 1.5}, {1, 1, 1.5}, {0.5, 2, 1.5}}) < 1e-14);
   }
 }
 
@@ -206,9 +210,10 @@ TEST_CASE("instances share a mesh: a thousand trees take the memory of one") {
     for (std::size_t i = 0; i < trees; ++i) {
       const Rotation turn = random.rotation();
       const auto text = [](double number) { return pulsecast::detail::to_text(number); };
-      gltf.node("\"mesh\":0,\"name\":\"tree_" + std::to_string(i) + "\",\"translation\":[" + text(random.uniform(-100, 100)) + ",0," +
-                text(random.uniform(-100, 100)) + "],\"rotation\":[" + text(turn.x) + "," + text(turn.y) + "," + text(turn.z) + "," +
-                text(turn.w) + "],\"scale\":[" + (i % 2 == 0 ? "2.3,2.3,2.3" : "0.7,0.7,0.7") + "]");
+      gltf.node("\"mesh\":0,\"name\":\"tree_" + std::to_string(i) + "\",\"translation\":[" +
+                text(random.uniform(-100, 100)) + ",0," + text(random.uniform(-100, 100)) + "],\"rotation\":[" +
+                text(turn.x) + "," + text(turn.y) + "," + text(turn.z) + "," + text(turn.w) + "],\"scale\":[" +
+                (i % 2 == 0 ? "2.3,2.3,2.3" : "0.7,0.7,0.7") + "]");
       gltf.roots += (i > 0 ? "," : "") + std::to_string(i);
     }
     return read_mesh_file(folder.write("forest" + std::to_string(trees) + ".gltf", gltf.text()));
@@ -244,11 +249,13 @@ TEST_CASE("random nodes place meshes as their matrices do, to single precision")
       const Rotation turn = random.rotation();
       const double scale = random.log_uniform(0.1, 10);
       const Vec3 sizes =
-          similar ? Vec3(scale) : Vec3(scale, random.log_uniform(0.1, 10) * (random.coin() ? 1 : -1), random.log_uniform(0.1, 10));
+          similar ? Vec3(scale)
+                  : Vec3(scale, random.log_uniform(0.1, 10) * (random.coin() ? 1 : -1), random.log_uniform(0.1, 10));
       const Vec3 shift = random.point(30);
       const Matrix3 m = matrix_of(turn);
       place[i] = {Matrix3(m[0] * sizes.x, m[1] * sizes.y, m[2] * sizes.z), shift};
-      node[i] = "\"rotation\":" + list({turn.x, turn.y, turn.z, turn.w}) + ",\"scale\":" + list({sizes.x, sizes.y, sizes.z}) +
+      node[i] = "\"rotation\":" + list({turn.x, turn.y, turn.z, turn.w}) +
+                ",\"scale\":" + list({sizes.x, sizes.y, sizes.z}) +
                 ",\"translation\":" + list({shift.x, shift.y, shift.z});
     }
     Gltf gltf = triangle_file("," + node[0]);
@@ -258,7 +265,9 @@ TEST_CASE("random nodes place meshes as their matrices do, to single precision")
     const io::detail::Affine all = place[1] * place[0];
     std::vector<Vec3> expected;
     for (const Gltf::Place& c : corners) {
-      const Vec3 p = all.linear * Vec3(static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])) + all.shift;
+      const Vec3 p =
+          all.linear * Vec3(static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])) +
+          all.shift;
       expected.push_back({p.x, -p.z, p.y});
     }
     const bool mirrored = dot(all.linear[0], cross(all.linear[1], all.linear[2])) < 0;
@@ -343,13 +352,15 @@ TEST_CASE("materials of glTF: colour, glass, mirrors, facets, and a reflectance 
   CHECK(chrome.smooth.reflectance == doctest::Approx(0.5));  // the rest of the light
   CHECK_FALSE(material(pbr(R"("metallicFactor":1,"roughnessFactor":0.6)")).smooth.passes_light());
 
-  const Material pane = material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)") + R"(,"alphaMode":"BLEND")");
+  const Material pane =
+      material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)") + R"(,"alphaMode":"BLEND")");
   CHECK(pane.smooth.kind == InterfaceKind::dielectric);
   CHECK(pane.smooth.inside.index == SmoothInterface::glass().inside.index);
   CHECK(pane.reflectance == doctest::Approx(0.125));
-  CHECK_FALSE(material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)")).smooth.passes_light());  // opaque by the mode
-  const Material glass =
-      material(pbr(R"("metallicFactor":0)") + R"(,"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}})");
+  CHECK_FALSE(material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)"))
+                  .smooth.passes_light());  // opaque by the mode
+  const Material glass = material(pbr(R"("metallicFactor":0)") +
+                                  R"(,"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}})");
   CHECK(glass.smooth.kind == InterfaceKind::dielectric);
   CHECK(glass.reflectance == 0);
 }
@@ -358,8 +369,8 @@ TEST_CASE("materials of an MTL file take the place of those of the same name") {
   const Folder folder;
   Gltf gltf = triangle_file("", R"(,"material":0)");
   gltf.material(R"("name":"grass","pbrMetallicRoughness":{"baseColorFactor":[0,1,0,1]})");
-  const auto table =
-      folder.write("table.mtl", "newmtl grass\nKd 1 1 1\nhelios_reflectance 0.3\nhelios_classification 2\nhelios_isGround true\n");
+  const auto table = folder.write(
+      "table.mtl", "newmtl grass\nKd 1 1 1\nhelios_reflectance 0.3\nhelios_classification 2\nhelios_isGround true\n");
   const MeshFile file = read_mesh_file(folder.write("a.gltf", gltf.text()), {.materials = table});
   CHECK(file.materials[0].reflectance == 0.3);
   CHECK(file.materials[0].classification == 2);
@@ -381,7 +392,8 @@ TEST_CASE("a picture inside a file colours its points, and its opacity makes hol
     gltf.primitive(corners, one_triangle, R"(,"material":0)", {{0.1F, 0.2F}, {0.9F, 0.2F}, {0.1F, 0.7F}});
     gltf.mesh("leaf");
     gltf.node("\"mesh\":0");
-    gltf.material(R"("name":"leaf","pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" + mode + "\"");
+    gltf.material(R"("name":"leaf","pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" + mode +
+                  "\"");
     const std::string view = gltf.view(targa.data(), targa.size());
     gltf.more = R"("textures":[{"source":0}],"images":[{)" +
                 (outside ? R"("uri":"leaf%20one.tga")" : R"("mimeType":"image/png","bufferView":)" + view) + "}],";
@@ -425,17 +437,19 @@ TEST_CASE("axes and units are those of the file, or of the settings") {
   CHECK(near(first("b.dae", z_up), {0.01, 0.02, 0.03}));
   CHECK(near(first("b.dae", z_up, {.unit = 2}), {2, 4, 6}));
   CHECK(near(first("b.dae", replaced(z_up, {{"meter=\"0.01\"", "meter='0.01'"}}), {.unit = 2}), {2, 4, 6}));
-  CHECK(near(first("b.dae", replaced(z_up, {{"<asset>", "<!-- <unit meter=\"7\"/> --><asset>"}}), {.unit = 2}), {2, 4, 6}));
+  CHECK(near(first("b.dae", replaced(z_up, {{"<asset>", "<!-- <unit meter=\"7\"/> --><asset>"}}), {.unit = 2}),
+             {2, 4, 6}));
   CHECK(near(first("b.dae", z_up, {.up = UpAxis::y}), {0.01, -0.03, 0.02}));
   CHECK(near(first("b.dae", replaced(dae, {{"Y_UP", "X_UP"}})), {-2, -3, 1}));
 
   const std::string fbx = support::content(exported(obj, folder / "a.fbx", "fbxa"));
-  const std::string up = "P: \"UpAxis\", \"int\", \"Integer\", \"\", ", front = "P: \"FrontAxis\", \"int\", \"Integer\", \"\", ",
+  const std::string up = "P: \"UpAxis\", \"int\", \"Integer\", \"\", ",
+                    front = "P: \"FrontAxis\", \"int\", \"Integer\", \"\", ",
                     sign = "P: \"FrontAxisSign\", \"int\", \"Integer\", \"\", ",
                     unit = "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", ";
   CHECK(near(first("b.fbx", fbx), {0.01, -0.03, 0.02}));
-  const auto z_up_fbx =
-      replaced(fbx, {{up + "1", up + "2"}, {front + "2", front + "1"}, {sign + "1", sign + "-1"}, {unit + "1", unit + "100"}});
+  const auto z_up_fbx = replaced(
+      fbx, {{up + "1", up + "2"}, {front + "2", front + "1"}, {sign + "1", sign + "-1"}, {unit + "1", unit + "100"}});
   CHECK(near(first("b.fbx", z_up_fbx), {1, 2, 3}));
   CHECK(near(first("b.fbx", z_up_fbx, {.up = UpAxis::y, .unit = 3}), {3, -9, 6}));
 
@@ -452,7 +466,8 @@ TEST_CASE("files outside the folder of a mesh are refused, unless allowed") {
   folder.write("a.bin", gltf.buffer());
   folder.write("inner/a.bin", gltf.buffer());
   for (const bool isolated : {false, true}) {
-    CHECK(read_mesh_file(folder.write("inner/a.gltf", gltf.text("a.bin")), {.isolated = isolated}).triangle_count() == 1);
+    CHECK(read_mesh_file(folder.write("inner/a.gltf", gltf.text("a.bin")), {.isolated = isolated}).triangle_count() ==
+          1);
     for (const std::string& name : {std::string("../a.bin"), std::string("x/../../a.bin")}) {
       CAPTURE(name);
       const auto path = folder.write("inner/b.gltf", gltf.text(name));
@@ -471,32 +486,41 @@ TEST_CASE("a required extension of glTF is known, or the file is refused; others
     gltf.more = "\"extensionsUsed\":[\"KHR_materials_ior\",\"" + name + "\"]," + list;
     return gltf;
   };
-  const auto required = [&](const std::string& name) { return uses("\"extensionsRequired\" : [ \"" + name + "\" ],", name); };
+  const auto required = [&](const std::string& name) {
+    return uses("\"extensionsRequired\" : [ \"" + name + "\" ],", name);
+  };
   for (const char* known : {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual"})
     CHECK(read_mesh_file(folder.write("a.gltf", required(known).text())).triangle_count() == 1);
-  for (const char* unknown : {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "SOME_thing", "\\u004bHR"}) {
+  for (const char* unknown :
+       {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "SOME_thing", "\\u004bHR"}) {
     CAPTURE(unknown);
     for (const bool isolated : {false, true})
-      for (const auto& path : {folder.write("a.gltf", required(unknown).text()), folder.write("b.glb", required(unknown).binary())})
+      for (const auto& path :
+           {folder.write("a.gltf", required(unknown).text()), folder.write("b.glb", required(unknown).binary())})
         CHECK(contains(support::file_error([&] { (void)read_mesh_file(path, {.isolated = isolated}); }).problem(),
                        std::string("requires the glTF extension '") + unknown + "', which is not supported: expected"));
   }
   for (const char* moving : {"EXT_mesh_gpu_instancing", "CESIUM_RTC"})
-    CHECK(warns(read_mesh_file(folder.write("a.gltf", uses("", moving).text())), std::string(moving) + ", which has no effect"));
+    CHECK(warns(read_mesh_file(folder.write("a.gltf", uses("", moving).text())),
+                std::string(moving) + ", which has no effect"));
   CHECK(read_mesh_file(folder.write("a.gltf", uses("", "KHR_texture_transform").text())).warnings.empty());
   Gltf hidden = triangle_file();
   hidden.more = R"("extensions\u0052equired":["SOME_thing"],)";
-  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", hidden.text())); }).problem(), "without escapes"));
+  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", hidden.text())); }).problem(),
+                 "without escapes"));
 }
 
 TEST_CASE("a mesh compressed by Draco is read, where assimp can") {
   const Folder folder;
   const std::string code =
-      "445241434f02020100000001030100010201010009030000000000803f00000040000040400000004000000040000040400000803f0000804000004040";
+      "445241434f02020100000001030100010201010009030000000000803f00000040000040400000004000000040000040400000803f000080"
+      "4000004040";
   std::string bytes;
-  for (std::size_t i = 0; i < code.size(); i += 2) bytes += static_cast<char>(std::stoi(code.substr(i, 2), nullptr, 16));
+  for (std::size_t i = 0; i < code.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(code.substr(i, 2), nullptr, 16));
   folder.write("a.bin", bytes);
-  const auto path = folder.write("a.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],
+  const auto path =
+      folder.write("a.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],
     "extensionsRequired":["KHR_draco_mesh_compression"],"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[
     {"attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}],
     "accessors":[{"componentType":5126,"type":"VEC3","count":3},{"componentType":5123,"type":"SCALAR","count":3}],
@@ -514,19 +538,24 @@ TEST_CASE("positions that are whole numbers, strips, and meshes without an area 
   whole.replace(whole.find("5126"), 4, "5125");
   CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", whole)); }).problem(),
                  "has positions of the component type 5125 (accessor 0)"));
-  const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string strips =
-      head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
-  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.ply", strips)); }).problem(), "has triangle strips"));
-  const std::string points =
-      head + "element face 2\nproperty list uchar int vertex_indices\nend_header\n5 5 5\n5 5 5\n5 5 5\n5 5 5\n3 0 1 2\n3 1 2 3\n";
+      head +
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
+  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.ply", strips)); }).problem(),
+                 "has triangle strips"));
+  const std::string points = head +
+                             "element face 2\nproperty list uchar int vertex_indices\nend_header\n5 5 5\n5 5 5\n5 5 "
+                             "5\n5 5 5\n3 0 1 2\n3 1 2 3\n";
   CHECK(warns(read_mesh_file(folder.write("a.ply", points)), "1 meshes have triangles, and none with an area"));
 }
 
 TEST_CASE("polygons of any corner first fill what they enclose") {
   const Folder folder;
-  const std::vector<std::array<double, 2>> notched{{-5, -5}, {5, -5}, {5, 5}, {0, 0}, {-5, 5}}, arrow{{0, 0}, {4, -4}, {0, 4}, {-4, -4}},
-      square{{0, 0}, {3, 0}, {3, 2}, {0, 2}}, bow{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  const std::vector<std::array<double, 2>> notched{{-5, -5}, {5, -5}, {5, 5}, {0, 0}, {-5, 5}},
+      arrow{{0, 0}, {4, -4}, {0, 4}, {-4, -4}}, square{{0, 0}, {3, 0}, {3, 2}, {0, 2}},
+      bow{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
   struct Case {
     std::vector<std::array<double, 2>> outline;
     double area;
@@ -536,7 +565,8 @@ TEST_CASE("polygons of any corner first fill what they enclose") {
     for (std::size_t first = 0; first < c.outline.size(); ++first) {
       CAPTURE(first);
       const std::string count = std::to_string(c.outline.size());
-      std::string text = "ply\nformat ascii 1.0\nelement vertex " + count + "\nproperty float x\nproperty float y\nproperty float z\n" +
+      std::string text = "ply\nformat ascii 1.0\nelement vertex " + count +
+                         "\nproperty float x\nproperty float y\nproperty float z\n" +
                          "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
       for (const auto& [x, y] : c.outline) text += std::to_string(x) + " " + std::to_string(y) + " 7\n";
       text += count;
@@ -588,7 +618,8 @@ TEST_CASE("names of files in glTF may have percent codes, and stay in the folder
   folder.write("a.bin", gltf.buffer());
   for (const bool isolated : {false, true}) {
     for (const char* name : {"my%20sc%C3%A4ne.bin", "my%20sc%c3%a4ne.bin", "my sc\xC3\xA4ne.bin", "50%25.bin"})
-      CHECK(read_mesh_file(folder.write("inner/a.gltf", gltf.text(name)), {.isolated = isolated}).triangle_count() == 1);
+      CHECK(read_mesh_file(folder.write("inner/a.gltf", gltf.text(name)), {.isolated = isolated}).triangle_count() ==
+            1);
     const auto outside = folder.write("inner/b.gltf", gltf.text("%2E%2E/a.bin"));
     CHECK(contains(support::file_error([&] { (void)read_mesh_file(outside, {.isolated = isolated}); }).problem(),
                    "expected files in its own folder"));
@@ -597,21 +628,26 @@ TEST_CASE("names of files in glTF may have percent codes, and stay in the folder
 
 TEST_CASE("a mesh file that is missing, empty or unknown is explained, and so are settings") {
   const Folder folder;
-  const auto error = [&](const std::filesystem::path& path) { return support::file_error([&] { (void)read_mesh_file(path); }); };
+  const auto error = [&](const std::filesystem::path& path) {
+    return support::file_error([&] { (void)read_mesh_file(path); });
+  };
   CHECK(contains(error(folder / "none.ply").problem(), "does not exist"));
   const std::string begin = "ply\nformat ascii 1.0\n";
   std::string comments;
   while (comments.size() < 3'300'000) comments += "comment so it goes on\n";
-  for (const std::string& rest : {comments, std::string(40'000'000, 'x'), "element vertex 3" + std::string(70'000, '\n') + "end_header\n"})
-    CHECK(contains(error(folder.write("a.ply", begin + rest)).problem(), "its PLY header has no end_header within 64 KiB"));
+  for (const std::string& rest :
+       {comments, std::string(40'000'000, 'x'), "element vertex 3" + std::string(70'000, '\n') + "end_header\n"})
+    CHECK(contains(error(folder.write("a.ply", begin + rest)).problem(),
+                   "its PLY header has no end_header within 64 KiB"));
   CHECK(contains(error(folder.write("a.ply", "")).problem(), "is empty"));
   CHECK(contains(error(folder.write("a.xyz", "hello")).problem(), "no mesh file that can be read"));
   CHECK(error(folder.write("b.ply", "ply\nformat")).path() == (folder / "b.ply").string());
   CHECK_THROWS_AS((void)read_mesh_file(folder / "none.ply", {.unit = -1}), SettingError);
   CHECK_THROWS_AS((void)read_mesh_file(folder / "none.ply", {.limits = {.time = 0}}), SettingError);
-  const MeshFile points = read_mesh_file(folder.write(
-      "c.ply",
-      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n4 5 6\n"));
+  const MeshFile points =
+      read_mesh_file(folder.write("c.ply",
+                                  "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float "
+                                  "y\nproperty float z\nend_header\n1 2 3\n4 5 6\n"));
   CHECK(points.placements.empty());
   CHECK(warns(points, "points and lines are left out: 2 in all"));
   CHECK(warns(points, "holds no triangle"));

@@ -27,14 +27,17 @@ using namespace pulsecast::literals;
 using support::content;
 using support::TemporaryFolder;
 
-/// A bright plate of 4 m by 4 m, 10 m in front of the scanner, a black one 10 m behind it, and a bright one 600 m to its right.
+/// A bright plate of 4 m by 4 m, 10 m in front of the scanner, a black one 10 m behind it, and a bright one 600 m to
+/// its right.
 Scene<TriangleMesh<>> plates() {
   const auto plate = [](const Vec3& centre, const Vec3& a, const Vec3& b) {
-    const MeshData data{.vertices = {centre - a - b, centre + a - b, centre + a + b, centre - a + b}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    const MeshData data{.vertices = {centre - a - b, centre + a - b, centre + a + b, centre - a + b},
+                        .triangles = {{0, 1, 2}, {0, 2, 3}}};
     return std::make_shared<const TriangleMesh<>>(data);
   };
   return Scene<TriangleMesh<>>(
-      {{.geometry = plate({0, 10, 0}, {2, 0, 0}, {0, 0, 2}), .materials = material_table({{.reflectance = 0.8, .classification = 6}})},
+      {{.geometry = plate({0, 10, 0}, {2, 0, 0}, {0, 0, 2}),
+        .materials = material_table({{.reflectance = 0.8, .classification = 6}})},
        {.geometry = plate({0, -10, 0}, {2, 0, 0}, {0, 0, 2}), .materials = material_table({{.reflectance = 0}})},
        {.geometry = plate({600, 0, 0}, {0, 90, 0}, {0, 0, 90}), .materials = material_table({{.reflectance = 0.8}})}});
 }
@@ -43,7 +46,8 @@ Scene<TriangleMesh<>> plates() {
 auto scan(const Scene<TriangleMesh<>>& scene) {
   const PolygonMirror mirror{.lines_per_second = 97, .angle_min = -0.3, .angle_max = 0.3};
   return Survey{Platform{Tripod{}, Mount{},
-                         Deflector{RotatingHead{.rate = 2 * pi}, Deflector{mirror, Scanner{.pulse_rate = 20e3, .pulses = 20'000}}}},
+                         Deflector{RotatingHead{.rate = 2 * pi},
+                                   Deflector{mirror, Scanner{.pulse_rate = 20e3, .pulses = 20'000}}}},
                 SingleRay{}, scene, Receiver{.range_max = 500}, FirstHit{}};
 }
 
@@ -58,8 +62,8 @@ struct Row {
 std::vector<Row> rows_of(const std::string& text) {
   std::istringstream in(text);
   std::vector<Row> rows;
-  for (Row r; in >> r.pulse >> r.time >> r.origin.x >> r.origin.y >> r.origin.z >> r.direction.x >> r.direction.y >> r.direction.z >>
-              r.fate >> r.leg >> r.device;)
+  for (Row r; in >> r.pulse >> r.time >> r.origin.x >> r.origin.y >> r.origin.z >> r.direction.x >> r.direction.y >>
+              r.direction.z >> r.fate >> r.leg >> r.device;)
     rows.push_back(r);
   return rows;
 }
@@ -154,7 +158,8 @@ TEST_CASE("batches with several echoes, waveforms and subrays keep them") {
     subrays.resize(subrays.size() + 2);
   }
   const std::vector<float> samples(600, 1.F);
-  const EchoBatch batch{.shots = shots, .echoes = echoes, .samples = samples, .sample_interval = 1e-9, .subrays = subrays};
+  const EchoBatch batch{
+      .shots = shots, .echoes = echoes, .samples = samples, .sample_interval = 1e-9, .subrays = subrays};
   MissPoints points({.range = 5});
   for (int time = 0; time < 2; ++time) {
     const EchoBatch all = points(batch);
@@ -203,7 +208,8 @@ TEST_CASE("a sink with misses reads empty shots, whatever the other sink does, a
 }
 
 TEST_CASE("ranges that cannot be are refused") {
-  CHECK_THROWS_WITH_AS(MissPoints({.range = -1}), "MissSettings::range is -1 m, but must be from 0 to 1e+09", SettingError);
+  CHECK_THROWS_WITH_AS(MissPoints({.range = -1}), "MissSettings::range is -1 m, but must be from 0 to 1e+09",
+                       SettingError);
   CHECK_THROWS_AS(MissTextWriter("nowhere/misses.txt"), FileError);
 }
 

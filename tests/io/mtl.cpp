@@ -50,7 +50,8 @@ TEST_CASE("every key of an MTL file that counts is read") {
 }
 
 TEST_CASE("what is neither true nor false is no ground, with a warning") {
-  const MaterialLibrary library = mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
+  const MaterialLibrary library =
+      mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
   for (const char* name : {"a", "b", "c"}) CHECK_FALSE(library.materials.at(name).ground);
   REQUIRE(library.warnings.size() == 1);
   CHECK(contains(library.warnings[0], ", line 2: material 'a' has helios_isGround 'yes', expected true or false"));
@@ -90,8 +91,9 @@ TEST_CASE("laws of the library's own have keys of its own") {
   CHECK(library.materials.at("sign").retroreflection_half_angle == support::relative(pi / 6, 1e-12));
   CHECK(library.materials.at("mark").retroreflection == 300.5);
   CHECK(library.materials.at("mark").retroreflection_half_angle == support::relative(pi / 4, 1e-12));
-  for (const char* wrong : {"pulsecast_retroreflection -1", "pulsecast_retroreflection 70 0", "pulsecast_retroreflection 70 30 5",
-                            "pulsecast_retroreflection", "pulsecast_normalizedPhong maybe"})
+  for (const char* wrong :
+       {"pulsecast_retroreflection -1", "pulsecast_retroreflection 70 0", "pulsecast_retroreflection 70 30 5",
+        "pulsecast_retroreflection", "pulsecast_normalizedPhong maybe"})
     CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
 }
 
@@ -130,9 +132,10 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
   CHECK(m.at("corner").retroreflector == RetroreflectorKind::cube_corner);
   CHECK(m.at("mirror").smooth.reflectance == 0.9);
   for (const char* wrong :
-       {"pulsecast_interface", "pulsecast_interface mirror", "pulsecast_interface mirror 1.1", "pulsecast_interface pane -1",
-        "pulsecast_interface door", "pulsecast_interface glass 2", "pulsecast_medium 0.9", "pulsecast_medium", "pulsecast_medium 1.3 0.5",
-        "pulsecast_medium 1.3 1.4 -1", "pulsecast_medium 1.3 1.4 1 1 1 1", "pulsecast_roughness 0", "pulsecast_retroreflector cat",
+       {"pulsecast_interface", "pulsecast_interface mirror", "pulsecast_interface mirror 1.1",
+        "pulsecast_interface pane -1", "pulsecast_interface door", "pulsecast_interface glass 2",
+        "pulsecast_medium 0.9", "pulsecast_medium", "pulsecast_medium 1.3 0.5", "pulsecast_medium 1.3 1.4 -1",
+        "pulsecast_medium 1.3 1.4 1 1 1 1", "pulsecast_roughness 0", "pulsecast_retroreflector cat",
         "pulsecast_retroreflector prisms", "pulsecast_retroreflector prisms 0.5", "pulsecast_retroreflector beads 1"}) {
     CAPTURE(wrong);
     CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
@@ -167,7 +170,8 @@ TEST_CASE("water by a type is that of the laser's wavelength") {
 
 TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are themselves allowed") {
   const MaterialLibrary library =
-      mtl("newmtl a\nhelios_reflectance 35 # percent\nnewmtl b\nhelios_reflectance 1\nnewmtl c\nhelios_reflectance 100\nnewmtl "
+      mtl("newmtl a\nhelios_reflectance 35 # percent\nnewmtl b\nhelios_reflectance 1\nnewmtl c\nhelios_reflectance "
+          "100\nnewmtl "
           "d\nhelios_reflectance 0\n");
   CHECK(library.materials.at("a").reflectance == doctest::Approx(0.35));
   CHECK(library.materials.at("b").reflectance == 1);
@@ -183,7 +187,8 @@ TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one
   const auto birch = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.4e-6, 0.1}, {1.5e-6, 0.6}});
   SpectralLibrary spectra{.spectra = {{"birch", birch}, {"oak", birch}}};
   const std::string text =
-      "newmtl a\nKd 1 1 1\nhelios_spectra birch\nnewmtl b\nhelios_spectra oak\nhelios_reflectance 0.2\nnewmtl c\nhelios_spectra elm\n";
+      "newmtl a\nKd 1 1 1\nhelios_spectra birch\nnewmtl b\nhelios_spectra oak\nhelios_reflectance 0.2\nnewmtl "
+      "c\nhelios_spectra elm\n";
   std::ofstream(path, std::ios::binary) << text;
   const MaterialLibrary library = read_mtl(path, spectra);
   CHECK(library.materials.at("a").spectrum == birch);
@@ -204,7 +209,8 @@ TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one
 }
 
 TEST_CASE("of a name that comes twice the first counts, and what has no name is the default") {
-  const MaterialLibrary library = mtl("helios_reflectance 0.1\nnewmtl a\nhelios_reflectance 0.2\nnewmtl a\nhelios_reflectance 0.3\n");
+  const MaterialLibrary library =
+      mtl("helios_reflectance 0.1\nnewmtl a\nhelios_reflectance 0.2\nnewmtl a\nhelios_reflectance 0.3\n");
   REQUIRE(library.materials.size() == 2);
   CHECK(library.materials.at("default").reflectance == 0.1);
   CHECK(library.materials.at("a").reflectance == 0.2);
@@ -218,7 +224,8 @@ TEST_CASE("a colour of one number is grey, and a texture is no colour") {
 }
 
 TEST_CASE("names may have blanks and signs of comments") {
-  const MaterialLibrary library = mtl("newmtl Material #25\nhelios_reflectance 0.1\nnewmtl Material #26\nhelios_isGround 1 # yes\n");
+  const MaterialLibrary library =
+      mtl("newmtl Material #25\nhelios_reflectance 0.1\nnewmtl Material #26\nhelios_isGround 1 # yes\n");
   REQUIRE(library.materials.size() == 2);
   CHECK(library.materials.at("Material #25").reflectance == 0.1);
   CHECK(library.materials.at("Material #26").ground);
@@ -231,11 +238,12 @@ TEST_CASE("an MTL file may describe nothing, but not be empty") {
 
 TEST_CASE("a damaged MTL file gives one error with its line") {
   for (const char* statement :
-       {"helios_reflectance", "helios_reflectance abc", "helios_reflectance nan", "helios_reflectance -0.1", "helios_reflectance 100.5",
-        "helios_reflectance 0.5 0.5", "helios_reflectance inf", "helios_classification 2.5", "helios_classification -1",
-        "helios_classification 65536", "newmtl", "pulsecast_reflectanceMap"}) {
+       {"helios_reflectance", "helios_reflectance abc", "helios_reflectance nan", "helios_reflectance -0.1",
+        "helios_reflectance 100.5", "helios_reflectance 0.5 0.5", "helios_reflectance inf", "helios_classification 2.5",
+        "helios_classification -1", "helios_classification 65536", "newmtl", "pulsecast_reflectanceMap"}) {
     CAPTURE(statement);
-    const FileError error = support::file_error([&] { (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n"); });
+    const FileError error =
+        support::file_error([&] { (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n"); });
     CAPTURE(error.what());
     CHECK(error.path() == path.string());
     CHECK(error.place() == "line 2");
@@ -287,7 +295,8 @@ TEST_CASE("Kd is the colour of points, white without one") {
 
 TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {
   const MaterialLibrary library =
-      mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap pattern bark.jpg\n"
+      mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap "
+          "pattern bark.jpg\n"
           "newmtl bare\nnewmtl leaf\nmap_Kd other.png\n");
   REQUIRE(library.pictures.size() == 1);
   const MaterialPictures& leaf = library.pictures.at("leaf");

@@ -53,7 +53,8 @@ std::map<std::string, std::string> members(const std::string& zip) {
     CHECK(number_at<std::uint32_t>(zip, at + 24) == size);
     const std::size_t local = number_at<std::uint32_t>(zip, at + 42);
     CHECK(number_at<std::uint32_t>(zip, local) == 0x04034b50);
-    const std::size_t begin = local + 30 + number_at<std::uint16_t>(zip, local + 26) + number_at<std::uint16_t>(zip, local + 28);
+    const std::size_t begin =
+        local + 30 + number_at<std::uint16_t>(zip, local + 26) + number_at<std::uint16_t>(zip, local + 28);
     all[zip.substr(at + 46, name)] = zip.substr(begin, size);
     at += 46 + name + number_at<std::uint16_t>(zip, at + 30) + number_at<std::uint16_t>(zip, at + 32);
   }
@@ -66,7 +67,8 @@ std::string array_content(const std::string& npy, const std::string& type, std::
   CHECK(npy.substr(0, 8) == std::string("\x93NUMPY\x01\0", 8));
   const std::size_t length = number_at<std::uint16_t>(npy, 8);
   CHECK((10 + length) % 64 == 0);
-  const std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + std::to_string(count) + ",), }";
+  const std::string text =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + std::to_string(count) + ",), }";
   CHECK(npy.substr(10, length) == text + std::string(length - text.size() - 1, ' ') + "\n");
   return npy.substr(10 + length);
 }
@@ -90,7 +92,8 @@ PointLayout every_type() {
 TEST_CASE("each field is an array of its name and type, with the numbers of all points") {
   const std::array<Shot, 1> shots{{{.direction = axis::right, .echoes = 2}}};
   const std::array<Echo, 2> echoes{{{.range = 3}, {.range = 70'000.25}}};
-  const std::map<std::string, std::string> all = members(npz({.shots = shots, .echoes = echoes, .samples = {}}, {.layout = every_type()}));
+  const std::map<std::string, std::string> all =
+      members(npz({.shots = shots, .echoes = echoes, .samples = {}}, {.layout = every_type()}));
   CHECK(all.size() == 8);
   const auto numbers = [&](const std::string& name, const std::string& order, auto first, auto second) {
     const std::string data = array_content(all.at(name + ".npy"), order + name, 2);
@@ -119,8 +122,9 @@ TEST_CASE("random points of scans are the columns of a buffer, padded or not") {
       writer.add(scan);
       for (const PointField& field : scan.layout().fields)
         for (std::size_t i = 0; i < scan.size(); ++i)
-          expected[field.name].append(reinterpret_cast<const char*>(scan.records().data()) + i * scan.layout().size + field.offset,
-                                      size_of(field.type));
+          expected[field.name].append(
+              reinterpret_cast<const char*>(scan.records().data()) + i * scan.layout().size + field.offset,
+              size_of(field.type));
       count += scan.size();
     });
     splitter(pulses.batch());
@@ -131,7 +135,8 @@ TEST_CASE("random points of scans are the columns of a buffer, padded or not") {
     CHECK(count == pulses.echoes.size());
     constexpr std::array<const char*, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
     for (const PointField& field : layouts::ouster().fields)
-      CHECK(array_content(all.at(field.name + ".npy"), types[static_cast<std::size_t>(field.type)], count) == expected[field.name]);
+      CHECK(array_content(all.at(field.name + ".npy"), types[static_cast<std::size_t>(field.type)], count) ==
+            expected[field.name]);
   }
 }
 
@@ -174,7 +179,8 @@ TEST_CASE("without close there is no file, and a full disk is an error that leav
     NpzWriter small(folder / "a.npz"), large(folder / "b.npz");
     small(RandomPulses(1000, 1).batch());
     CHECK_THROWS_AS(small.close(), FileError);
-    large(RandomPulses(300'000, 1).batch());  // whose arrays do not fit into the buffer of the file: the library is told
+    large(
+        RandomPulses(300'000, 1).batch());  // whose arrays do not fit into the buffer of the file: the library is told
     CHECK_THROWS_WITH_AS(large.close(), doctest::Contains("room for"), FileError);
   }
   CHECK(folder.empty());
@@ -182,7 +188,9 @@ TEST_CASE("without close there is no file, and a full disk is an error that leav
 
 TEST_CASE("settings and buffers that do not fit are refused") {
   const TemporaryFolder folder;
-  const auto refused = [&](const NpzSettings& settings) { return refused_field([&] { NpzWriter(folder / "a.npz", settings); }); };
+  const auto refused = [&](const NpzSettings& settings) {
+    return refused_field([&] { NpzWriter(folder / "a.npz", settings); });
+  };
   CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
   CHECK(refused({.layout = PointLayout::packed({{"a/b", FieldType::float32}})}) == "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");

@@ -39,7 +39,9 @@ namespace {
 /// A folder for the files of one test.
 class Folder : public support::TemporaryFolder {
  public:
-  ObjModel obj(const std::string& text, const ObjSettings& settings = {}) const { return read_obj(write("a.obj", text), settings); }
+  ObjModel obj(const std::string& text, const ObjSettings& settings = {}) const {
+    return read_obj(write("a.obj", text), settings);
+  }
 
   /// The error of an OBJ file with this text.
   FileError error(const std::string& text) const {
@@ -59,7 +61,8 @@ double area(const MeshData& mesh) {
 /// Twice the area with the sense of the outline: a triangulation without overlaps has the outline's own.
 Vec3 vector_area(const MeshData& mesh) {
   Vec3 sum{};
-  for (const auto& [a, b, c] : mesh.triangles) sum += cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+  for (const auto& [a, b, c] : mesh.triangles)
+    sum += cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
   return sum;
 }
 
@@ -86,21 +89,23 @@ TEST_CASE("a triangle is read as it stands") {
 }
 
 TEST_CASE("UTM coordinates keep every digit") {
-  const ObjModel model = Folder().obj("v 477123.456789 5429000.1234567 101.5\nv 477124 5429000 101\nv 477123 5429001 101\nf 1 2 3\n");
+  const ObjModel model =
+      Folder().obj("v 477123.456789 5429000.1234567 101.5\nv 477124 5429000 101\nv 477123 5429001 101\nf 1 2 3\n");
   CHECK(length(model.mesh.vertices[0] - Vec3{477123.456789, 5429000.1234567, 101.5}) < 1e-8);
 }
 
 TEST_CASE("a number is all of its word") {
   const Folder folder;
-  for (const char* word :
-       {"+1.5e-1", "-.5", "+.5", "5.", "5.e2", "1E3", "-0", "0001", "123456789.123456789", "1e-300", "12345678901234567e-5"}) {
+  for (const char* word : {"+1.5e-1", "-.5", "+.5", "5.", "5.e2", "1E3", "-0", "0001", "123456789.123456789", "1e-300",
+                           "12345678901234567e-5"}) {
     CAPTURE(word);
     CHECK(folder.obj("v " + std::string(word) + " 0 0\n" + corners + "f 2 3 4\n").mesh.vertices[0].x ==
           doctest::Approx(std::strtod(word, nullptr)).epsilon(1e-14));
   }
-  for (const std::string& word : {std::string("+"), std::string("-"), std::string("."), std::string("1,5"), std::string("1.5x"),
-                                  std::string("0x10"), std::string("1e"), std::string("e5"), std::string("1e999"), std::string("--1"),
-                                  std::string("+-1"), std::string("1e5e5"), '1' + std::string(400, '0') + "e-500"}) {
+  for (const std::string& word :
+       {std::string("+"), std::string("-"), std::string("."), std::string("1,5"), std::string("1.5x"),
+        std::string("0x10"), std::string("1e"), std::string("e5"), std::string("1e999"), std::string("--1"),
+        std::string("+-1"), std::string("1e5e5"), '1' + std::string(400, '0') + "e-500"}) {
     CAPTURE(word);
     CHECK(folder.error("v 0 " + word + " 0\n" + corners + "f 2 3 4\n").place() == "line 1");
   }
@@ -111,9 +116,11 @@ TEST_CASE("random numbers are read as the standard library reads them") {
   std::string text;
   std::vector<double> expected;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    const double magnitude = std::pow(10, -12 + 24 * uniform({.seed = seed})), sign = uniform({.seed = seed, .pulse = 1}) < 0.5 ? -1 : 1;
+    const double magnitude = std::pow(10, -12 + 24 * uniform({.seed = seed})),
+                 sign = uniform({.seed = seed, .pulse = 1}) < 0.5 ? -1 : 1;
     char word[64];
-    std::snprintf(word, sizeof word, seed % 2 == 0 ? "%.*g" : "%.*f", 1 + static_cast<int>(seed % 17), sign * magnitude);
+    std::snprintf(word, sizeof word, seed % 2 == 0 ? "%.*g" : "%.*f", 1 + static_cast<int>(seed % 17),
+                  sign * magnitude);
     expected.push_back(std::strtod(word, nullptr));
     text += "v " + std::string(word) + " 0 0\n";
   }
@@ -131,7 +138,9 @@ TEST_CASE("numbers are the same in every locale") {
     std::string do_grouping() const override { return "\3"; }
   };
   const Folder folder;
-  folder.write("m.mtl", "newmtl a\nKd 0.25 0.25 0.25\nKs 0.75 0.75 0.75\nNs 12.5\nhelios_reflectance 0.125\nhelios_classification 1234\n");
+  folder.write("m.mtl",
+               "newmtl a\nKd 0.25 0.25 0.25\nKs 0.75 0.75 0.75\nNs 12.5\nhelios_reflectance "
+               "0.125\nhelios_classification 1234\n");
   const std::string text = "mtllib m.mtl\nusemtl a\nv 1.5 2.25 1000.5\nv 4 5 6\nv 7 8 9.25\nf 1 2 3\n";
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
   std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed, numbers have commas
@@ -157,9 +166,9 @@ TEST_CASE("y up is turned to z up") {
 }
 
 TEST_CASE("corners may be given in every form, and counted backwards") {
-  for (const char* face :
-       {"f 1 2 3", "f 1/7 2/8 3/9", "f 1//7 2//8 3//9", "f 1/7/4 2/8/5 3/9/6", "f -4 -3 -2", "f -4/-1/-1 -3/-1/-1 -2/-1/-1", "  f\t1  2 3 ",
-        "f 1 2 3 # a comment", "f 1 \\\n2 3", "f 1 \\\r\n2 \\ \n3\\\n", "# c:\\\nf 1 2 3", "\\\nf 1 2 3", "f +1 2 3"}) {
+  for (const char* face : {"f 1 2 3", "f 1/7 2/8 3/9", "f 1//7 2//8 3//9", "f 1/7/4 2/8/5 3/9/6", "f -4 -3 -2",
+                           "f -4/-1/-1 -3/-1/-1 -2/-1/-1", "  f\t1  2 3 ", "f 1 2 3 # a comment", "f 1 \\\n2 3",
+                           "f 1 \\\r\n2 \\ \n3\\\n", "# c:\\\nf 1 2 3", "\\\nf 1 2 3", "f +1 2 3"}) {
     CAPTURE(face);
     const ObjModel model = Folder().obj("\xEF\xBB\xBF# a comment\n\nvn 0 0 1\nvt 0 0\n" + corners + face + "\r\n");
     REQUIRE(model.mesh.triangles.size() == 1);
@@ -172,7 +181,8 @@ TEST_CASE("a convex polygon becomes the fan about its first corner") {
   const ObjModel quad = Folder().obj(corners + "f 1 2 3 4\n");
   CHECK(quad.mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
   std::vector<Vec3> octagon;
-  for (int k = 0; k < 8; ++k) octagon.push_back({std::cos(k * std::numbers::pi / 4), 0.5, -std::sin(k * std::numbers::pi / 4)});
+  for (int k = 0; k < 8; ++k)
+    octagon.push_back({std::cos(k * std::numbers::pi / 4), 0.5, -std::sin(k * std::numbers::pi / 4)});
   const ObjModel model = Folder().obj(polygon(octagon));
   REQUIRE(model.mesh.triangles.size() == 6);
   for (std::uint32_t k = 0; k < 6; ++k) CHECK(model.mesh.triangles[k] == std::array<std::uint32_t, 3>{0, k + 1, k + 2});
@@ -192,8 +202,8 @@ TEST_CASE("a concave polygon is covered once, wherever it lies and however it is
   };
   for (const Shape& shape : {Shape{letter_l, 3}, {arrow, 2}, {comb, 8}, {straight, 4}})
     for (const Vec3& offset : {Vec3{0, 0, 0}, Vec3{-5, 7, 0}, Vec3{5, -7, 3}, Vec3{477000, 5429000, 100}})
-      for (const Rotation& turn :
-           {no_rotation, rotation_about({1, 2, 3}, 1.1), rotation_about({1, 0, 0}, pi / 2), rotation_about({0, 1, 0}, 3)})
+      for (const Rotation& turn : {no_rotation, rotation_about({1, 2, 3}, 1.1), rotation_about({1, 0, 0}, pi / 2),
+                                   rotation_about({0, 1, 0}, 3)})
         for (std::size_t first = 0; first < shape.outline.size(); ++first) {
           CAPTURE(shape.area);
           CAPTURE(first);
@@ -263,7 +273,8 @@ TEST_CASE("an MTL file gives reflectance, class, ground and angular law") {
   const ObjModel model = read_obj(support::data_folder / "materials.obj");
   CHECK(model.warnings.empty());
   REQUIRE(model.materials.size() == 4);
-  const Material &ground = model.materials[0], &wall = model.materials[1], &shiny = model.materials[2], &leaves = model.materials[3];
+  const Material &ground = model.materials[0], &wall = model.materials[1], &shiny = model.materials[2],
+                 &leaves = model.materials[3];
   CHECK(ground.name == "ground");
   CHECK(ground.reflectance == 0.5);
   CHECK(ground.ground);
@@ -284,7 +295,8 @@ TEST_CASE("an MTL file gives reflectance, class, ground and angular law") {
 }
 
 TEST_CASE("a material that no MTL file describes is a default one, with one warning") {
-  const ObjModel model = Folder().obj(corners + "f 1 2 3\nusemtl nowhere\nf 1 2 3\nusemtl unused\nusemtl nowhere\nf 2 3 4\n");
+  const ObjModel model =
+      Folder().obj(corners + "f 1 2 3\nusemtl nowhere\nf 1 2 3\nusemtl unused\nusemtl nowhere\nf 2 3 4\n");
   REQUIRE(model.materials.size() == 2);
   CHECK(model.materials[0].name == "default");
   CHECK(model.materials[1].name == "nowhere");
@@ -303,8 +315,8 @@ TEST_CASE("several MTL files may be named, with blanks and with backslashes; of 
   folder.write("two words.mtl", "newmtl a\nhelios_reflectance 0.1\n");
   folder.write("sub/m.mtl", "newmtl a\nhelios_reflectance 0.2\nnewmtl b\nhelios_reflectance 0.3\n");
   folder.write("n.mtl", "newmtl c\nhelios_reflectance 0.4\n");
-  const ObjModel model =
-      folder.obj("mtllib two words.mtl\nmtllib sub\\m.mtl n.mtl\n" + corners + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n");
+  const ObjModel model = folder.obj("mtllib two words.mtl\nmtllib sub\\m.mtl n.mtl\n" + corners +
+                                    "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n");
   REQUIRE(model.materials.size() == 3);
   CHECK(model.materials[0].reflectance == 0.1);
   CHECK(model.materials[1].reflectance == 0.3);
@@ -324,7 +336,8 @@ TEST_CASE("objects, groups and what else OBJ knows are passed over; what it does
 TEST_CASE("materials whose names have blanks and signs of comments are kept apart") {
   const Folder folder;
   folder.write("m.mtl", "newmtl Material #25\nhelios_reflectance 0.1\nnewmtl Material #26\nhelios_reflectance 0.2\n");
-  const ObjModel model = folder.obj("mtllib m.mtl # both\n" + corners + "usemtl Material #26 \nf 1 2 3\nusemtl  Material #25\nf 2 3 4\n");
+  const ObjModel model =
+      folder.obj("mtllib m.mtl # both\n" + corners + "usemtl Material #26 \nf 1 2 3\nusemtl  Material #25\nf 2 3 4\n");
   REQUIRE(model.materials.size() == 2);
   CHECK(model.materials[0].reflectance == 0.2);
   CHECK(model.materials[1].reflectance == 0.1);
@@ -395,7 +408,8 @@ TEST_CASE("a face of more corners than the limit is refused") {
 
 TEST_CASE("a file that is not there, or is a folder, is an error that names it") {
   const Folder folder;
-  CHECK_THROWS_WITH_AS((void)read_obj(folder.path() / "no.obj"), doctest::Contains("no.obj: does not exist"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_obj(folder.path() / "no.obj"), doctest::Contains("no.obj: does not exist"),
+                       FileError);
   CHECK_THROWS_WITH_AS((void)read_obj(folder.path()), doctest::Contains("directory"), FileError);
 }
 
@@ -408,12 +422,15 @@ TEST_CASE("a damaged MTL file is an error with its own path and line") {
   CHECK(folder.error(corners + "f 1 2 5\nmtllib m.mtl\n").place() == "line 5");  // the first error counts
 }
 
-TEST_CASE("an MTL file that is not there is a warning with the line that names it, and its materials are not described") {
+TEST_CASE(
+    "an MTL file that is not there is a warning with the line that names it, and its materials are not described") {
   const Folder folder;
   folder.write("m.mtl", "newmtl b\nhelios_reflectance 0.3\n");
-  const ObjModel model = folder.obj("# x\nmtllib gone.mtl m.mtl\n" + corners + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const ObjModel model =
+      folder.obj("# x\nmtllib gone.mtl m.mtl\n" + corners + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
   REQUIRE(model.warnings.size() == 2);
-  CHECK(model.warnings[0] == (folder.path() / "a.obj").string() + ", line 2: 'mtllib gone.mtl m.mtl': expected an MTL file at " +
+  CHECK(model.warnings[0] == (folder.path() / "a.obj").string() +
+                                 ", line 2: 'mtllib gone.mtl m.mtl': expected an MTL file at " +
                                  (folder.path() / "gone.mtl").string() + ", but there is none");
   CHECK(contains(model.warnings[1], "line 7: no MTL file describes the material 'a'"));
   REQUIRE(model.materials.size() == 2);
@@ -470,8 +487,8 @@ TEST_CASE("a file gives the same, or the same error, in pieces of any size and o
                                             "\tv 1e1 -2 .5 ",
                                             "s off",
                                             "f 2 2 3"};
-  const std::vector<std::string> wrong{"f 1 2 99",  "f 1 2 -99", "v 1 2 x", "mtllib gone.mtl", "f 1 2", std::string("v \0", 3),
-                                       "v 1 2 1e13"};
+  const std::vector<std::string> wrong{
+      "f 1 2 99", "f 1 2 -99", "v 1 2 x", "mtllib gone.mtl", "f 1 2", std::string("v \0", 3), "v 1 2 1e13"};
   const std::vector<std::string> ends{"\n", "\n", "\r\n", " \n"};
   int whole = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
@@ -499,8 +516,8 @@ TEST_CASE("a file gives the same, or the same error, in pieces of any size and o
 TEST_CASE("an OBJ file for which there is no memory is explained, whichever allocation fails") {
   const Folder folder;
   const auto mtl = folder.write("a.mtl", "newmtl a name that is too long for a short string\nKd 1 1 1\n");
-  const auto path =
-      folder.write("a.obj", "mtllib a.mtl\nusemtl a name that is too long for a short string\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto path = folder.write(
+      "a.obj", "mtllib a.mtl\nusemtl a name that is too long for a short string\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   std::size_t explained = 0;
   for (std::size_t n = 1; n < 10'000; ++n) {
     CAPTURE(n);

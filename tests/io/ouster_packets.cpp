@@ -39,7 +39,8 @@ struct Return {
 using Place = std::tuple<unsigned, unsigned, std::size_t, int>;
 
 /// Decodes packets by the firmware user manual alone: the lidar data packet format, and the calculation of coordinates.
-std::map<Place, Return> decoded(const std::vector<KeptPacket>& packets, const SpinningSensor& sensor, unsigned columns) {
+std::map<Place, Return> decoded(const std::vector<KeptPacket>& packets, const SpinningSensor& sensor,
+                                unsigned columns) {
   std::map<Place, Return> all;
   for (const KeptPacket& packet : packets) {
     const bool dual = packet.payload.size() == 16'640;
@@ -48,7 +49,8 @@ std::map<Place, Return> decoded(const std::vector<KeptPacket>& packets, const Sp
     for (std::size_t c = 0; c < 16; ++c) {
       const std::size_t at = dual ? 32 + c * 1036 : c * 788;
       const auto time = packet.at<std::uint64_t>(at);
-      const unsigned id = packet.at<std::uint16_t>(at + 8), frame = dual ? packet.at<std::uint16_t>(2) : packet.at<std::uint16_t>(at + 10);
+      const unsigned id = packet.at<std::uint16_t>(at + 8),
+                     frame = dual ? packet.at<std::uint16_t>(2) : packet.at<std::uint16_t>(at + 10);
       const std::uint32_t encoder = dual ? id * (90'112 / columns) : packet.at<std::uint32_t>(at + 12);
       REQUIRE((dual ? packet.at<std::uint16_t>(at + 10) == 1 : packet.at<std::uint32_t>(at + 784) == 0xFFFFFFFF));
       REQUIRE(encoder == id * (90'112 / columns));
@@ -93,14 +95,17 @@ TEST_CASE("a decoder by the manual gives the echoes of an OS1 back, of all modes
       expected.resize(std::min<std::size_t>(expected.size(), settings.returns == PacketReturns::dual ? 2 : 1));
       const PulseIndex sequence = shot.index / 64;
       for (std::size_t k = 0; k < expected.size(); ++k) {
-        const auto found = returns.find(
-            {static_cast<unsigned>(sequence / columns), static_cast<unsigned>(sequence % columns), shot.index % 64, static_cast<int>(k)});
+        const auto found =
+            returns.find({static_cast<unsigned>(sequence / columns), static_cast<unsigned>(sequence % columns),
+                          shot.index % 64, static_cast<int>(k)});
         REQUIRE(found != returns.end());
         ++compared;
         const Return& r = found->second;
         CHECK(length(r.point - point_of(shot, expected[k])) <= 0.5e-3 + 1e-9);
-        const std::uint64_t start = static_cast<std::uint64_t>(settings.start_time) + static_cast<std::uint64_t>(shot.tick.second);
-        const double late = static_cast<double>(static_cast<std::int64_t>(r.time - start * 1'000'000'000)) - 1e9 * shot.tick.fraction;
+        const std::uint64_t start =
+            static_cast<std::uint64_t>(settings.start_time) + static_cast<std::uint64_t>(shot.tick.second);
+        const double late =
+            static_cast<double>(static_cast<std::int64_t>(r.time - start * 1'000'000'000)) - 1e9 * shot.tick.fraction;
         CHECK(std::fabs(late) <= 0.5 + 1e-6);
         CHECK(r.reflectivity == static_cast<unsigned>(std::lround(100 * expected[k].reflectance)));
         const double photon = 6.62607015e-34 * 299792458 / 865e-9;  // [J]
@@ -170,10 +175,12 @@ TEST_CASE("sensors other than an OS1-64 that starts at encoder 0 are refused") {
   CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::start"), SettingError);
   sensor = ouster_os1_64();
   sensor.sequence_rate = 10'000;
-  CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"), SettingError);
+  CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"),
+                       SettingError);
   sensor = ouster_os1_64();
   sensor.turns_per_second = 0;
-  CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"), SettingError);
+  CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"),
+                       SettingError);
   sensor.lasers.pop_back();
   CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::lasers"), SettingError);
 }

@@ -107,7 +107,8 @@ TEST_CASE("writes and overwrites of any size come out as they would in memory") 
     OutputFile file(folder / "a.bin");
     std::string expected;
     for (int i = 0; i < 60; ++i) {
-      const std::string bytes(static_cast<std::size_t>(random.log_uniform(1, 3e6)), static_cast<char>('a' + random.whole(26)));
+      const std::string bytes(static_cast<std::size_t>(random.log_uniform(1, 3e6)),
+                              static_cast<char>('a' + random.whole(26)));
       if (random.uniform() < 0.2 && expected.size() >= bytes.size()) {
         const std::size_t position = random.whole(expected.size() - bytes.size() + 1);
         file.overwrite(position, std::as_bytes(std::span(bytes)));
@@ -369,7 +370,8 @@ TEST_CASE("what processes of a killed program still write does not come into the
   CHECK(content(folder / "a.las") == "second");
 }
 
-TEST_CASE("on a file system without locks a file is written all the same, and who loses its name to another learns of it") {
+TEST_CASE(
+    "on a file system without locks a file is written all the same, and who loses its name to another learns of it") {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.las";
   for (const int error : {ENOLCK, EOPNOTSUPP, ENOSYS}) {

@@ -69,7 +69,8 @@ TEST_CASE("the checksum of IPv4 holds for any addresses and lengths, and each pa
   for (const std::size_t size : sizes) {
     REQUIRE(file.size() >= at + 16 + 42 + size);
     unsigned sum = 0;  // the sum of all words, the checksum included, is all ones. Source: RFC 1071
-    for (std::size_t k = at + 30; k < at + 50; k += 2) sum += static_cast<unsigned>(std::uint8_t(file[k])) << 8 | std::uint8_t(file[k + 1]);
+    for (std::size_t k = at + 30; k < at + 50; k += 2)
+      sum += static_cast<unsigned>(std::uint8_t(file[k])) << 8 | std::uint8_t(file[k + 1]);
     CHECK((sum & 0xFFFF) + (sum >> 16) == 0xFFFF);
     at += 16 + 42 + size;
   }
@@ -81,7 +82,8 @@ TEST_CASE("a packet longer than UDP allows, and a folder that is none, are refus
   PcapWriter writer(folder / "lidar.pcap");
   const std::vector<std::byte> too_long(65'508);
   CHECK_THROWS_WITH_AS(writer({{}, 1, too_long}), doctest::Contains("SensorPacket::payload"), SettingError);
-  CHECK(support::file_error([&] { PcapWriter(folder / "none/lidar.pcap"); }).path() == (folder / "none/lidar.pcap").string());
+  CHECK(support::file_error([&] { PcapWriter(folder / "none/lidar.pcap"); }).path() ==
+        (folder / "none/lidar.pcap").string());
 }
 
 }  // namespace

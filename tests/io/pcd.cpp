@@ -116,7 +116,8 @@ struct PcdFile {
 
 /// Echoes at 10 m and 20 m to the east of (1, 2, 3).
 struct TwoEchoes {
-  std::array<Shot, 1> shots{{{.tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .channel = 5, .echoes = 2}}};
+  std::array<Shot, 1> shots{
+      {{.tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .channel = 5, .echoes = 2}}};
   std::array<Echo, 2> echoes{{{.range = 10, .reflectance = 0.5, .object = 70'000, .classification = 6},
                               {.range = 20, .reflectance = 0.015, .number = 2, .velocity = -3.5}}};
 
@@ -151,9 +152,10 @@ std::string pcd(const EchoBatch& batch, const PcdSettings& settings) {
 TEST_CASE("a header names fields, sizes, types and the number of points, and the records follow it") {
   const std::string bytes = pcd(TwoEchoes().batch(), {.layout = layouts::velodyne()});
   const std::string blanks(2 * 19, ' ');
-  const std::string header = "# .PCD v0.7 - Point Cloud Data file format" + blanks +
-                             "\nVERSION 0.7\nFIELDS x y z intensity ring time\nSIZE 4 4 4 4 2 4\nTYPE F F F F U F\nCOUNT 1 1 1 1 1 1\n"
-                             "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n";
+  const std::string header =
+      "# .PCD v0.7 - Point Cloud Data file format" + blanks +
+      "\nVERSION 0.7\nFIELDS x y z intensity ring time\nSIZE 4 4 4 4 2 4\nTYPE F F F F U F\nCOUNT 1 1 1 1 1 1\n"
+      "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n";
   REQUIRE(bytes.size() == header.size() + 2 * 22);
   CHECK(bytes.substr(0, header.size()) == header);
   const std::vector<std::vector<double>> columns = PcdFile(bytes).columns();
@@ -285,7 +287,9 @@ TEST_CASE("without close there is no file, and a former one stays") {
 
 TEST_CASE("settings and buffers that do not fit are refused, and leave no file") {
   const TemporaryFolder folder;
-  const auto refused = [&](const PcdSettings& settings) { return refused_field([&] { PcdWriter(folder / "a.pcd", settings); }); };
+  const auto refused = [&](const PcdSettings& settings) {
+    return refused_field([&] { PcdWriter(folder / "a.pcd", settings); });
+  };
   const auto named = [](const std::string& name) {
     return PcdSettings{.layout = PointLayout::packed({{"x", FieldType::float32}, {name, FieldType::float32}})};
   };
@@ -315,8 +319,8 @@ TEST_CASE("what LZF can take has sizes of 32 bits, before and after") {
     const std::vector<std::byte> compressed = detail::pcd_compressed(bytes);
     std::vector<std::byte> again(size);
     REQUIRE(compressed.size() > 8);
-    CHECK(lzf_decompress(compressed.data() + 8, static_cast<unsigned>(compressed.size() - 8), again.data(), static_cast<unsigned>(size)) ==
-          size);
+    CHECK(lzf_decompress(compressed.data() + 8, static_cast<unsigned>(compressed.size() - 8), again.data(),
+                         static_cast<unsigned>(size)) == size);
     CHECK(again == bytes);
   }
 }

@@ -29,14 +29,16 @@ namespace {
 
 using Samples = std::vector<std::uint8_t>;
 
-std::filesystem::path png(const std::filesystem::path& path, int width, int height, int channels, const Samples& samples) {
+std::filesystem::path png(const std::filesystem::path& path, int width, int height, int channels,
+                          const Samples& samples) {
   REQUIRE(stbi_write_png(path.c_str(), width, height, channels, samples.data(), width * channels) != 0);
   return path;
 }
 
 /// A square of 2 m about the origin with a picture on it, of a material "leaf".
 const std::string leaf_obj =
-    "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n";
+    "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 2/2 "
+    "3/3 4/4\n";
 
 }  // namespace
 
@@ -104,7 +106,8 @@ TEST_CASE("damaged pictures are explained or read") {
           static_cast<char>(static_cast<std::uint8_t>(random.uniform(0, 256)));
     attempt(spoilt);
   }
-  for (const char size : {'\x7f', '\x00', '\x01'}) {  // widths of two thousand million, none, and sixteen million pixels
+  for (const char size :
+       {'\x7f', '\x00', '\x01'}) {  // widths of two thousand million, none, and sixteen million pixels
     std::string lying = whole;
     lying[16] = size;
     if (size == 0) lying[19] = 0;
@@ -119,7 +122,8 @@ TEST_CASE("an OBJ file brings its pictures: colour, outline and reflectance") {
   const support::TemporaryFolder folder;
   folder.write("leaf.obj", leaf_obj);
   folder.write("leaf.mtl",
-               "newmtl leaf\nKd 1 1 1\nmap_Kd colour.png\nmap_d -clamp on outline.png\npulsecast_reflectanceMap pattern colour.png\n"
+               "newmtl leaf\nKd 1 1 1\nmap_Kd colour.png\nmap_d -clamp on outline.png\npulsecast_reflectanceMap "
+               "pattern colour.png\n"
                "newmtl leaf\nmap_Kd other.png\n");
   png(folder / "colour.png", 1, 2, 3, {255, 0, 0, 0, 0, 255});  // red above blue
   png(folder / "outline.png", 2, 1, 1, {255, 0});               // solid on the left

@@ -34,7 +34,8 @@ using support::TemporaryFolder;
 
 /// Echoes at 10 m and 20 m to the east of a place.
 struct TwoEchoes {
-  std::array<Shot, 1> shots{{{.tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .channel = 5, .echoes = 2}}};
+  std::array<Shot, 1> shots{
+      {{.tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .channel = 5, .echoes = 2}}};
   std::array<Echo, 2> echoes{{{.range = 10, .reflectance = 0.5, .object = 70'000, .classification = 600},
                               {.range = 20, .reflectance = 0.25, .number = 2, .velocity = -3.5}}};
 
@@ -59,8 +60,8 @@ std::string records(const std::string& file) {
 
 /// Header of a vertex with these properties.
 std::string header(const std::string& count, const std::string& properties) {
-  return "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + std::string(20 - count.size(), ' ') + "\nelement vertex " +
-         count + "\n" + properties + "end_header\n";
+  return "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + std::string(20 - count.size(), ' ') +
+         "\nelement vertex " + count + "\n" + properties + "end_header\n";
 }
 
 TEST_CASE("colours and attributes are properties, colours by the names and in the type that readers know") {
@@ -76,9 +77,10 @@ TEST_CASE("colours and attributes are properties, colours by the names and in th
                                            .with(layouts::attributes(attributes.names(), FieldType::float32)),
                              .points = {.colours = colour, .attributes = attributes}};
   const std::string file = ply(TwoEchoes().batch(), settings);
-  const std::string head = header("2",
-                                  "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
-                                  "property uchar blue\nproperty float age\nproperty float leaf\n");
+  const std::string head =
+      header("2",
+             "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+             "property uchar blue\nproperty float age\nproperty float leaf\n");
   REQUIRE(file.size() == head.size() + 2 * 23);
   CHECK(file.substr(0, head.size()) == head);
   const auto float_at = [&](std::size_t offset) {
@@ -87,15 +89,17 @@ TEST_CASE("colours and attributes are properties, colours by the names and in th
     return number;
   };
   CHECK((file.substr(head.size() + 12, 3) == std::string("\1\xFF\0", 3) && float_at(15) == 80.5F && float_at(19) == 1));
-  CHECK((file.substr(head.size() + 35, 3) == std::string("\2\xFF\0", 3) && std::isnan(float_at(38)) && std::isnan(float_at(42))));
+  CHECK((file.substr(head.size() + 35, 3) == std::string("\2\xFF\0", 3) && std::isnan(float_at(38)) &&
+         std::isnan(float_at(42))));
 }
 
 TEST_CASE("a header names the properties and the number of vertices, and the records follow it") {
   const std::string file = ply(TwoEchoes().batch());
-  const std::string head = header("2",
-                                  "property double x\nproperty double y\nproperty double z\nproperty float reflectance\n"
-                                  "property double time\nproperty ushort channel\nproperty uchar return_number\n"
-                                  "property uchar returns\nproperty ushort classification\nproperty uint object\n");
+  const std::string head =
+      header("2",
+             "property double x\nproperty double y\nproperty double z\nproperty float reflectance\n"
+             "property double time\nproperty ushort channel\nproperty uchar return_number\n"
+             "property uchar returns\nproperty ushort classification\nproperty uint object\n");
   REQUIRE(file.size() == head.size() + 2 * 46);
   CHECK(file.substr(0, head.size()) == head);
   const char* const first = file.data() + head.size();
@@ -120,9 +124,10 @@ TEST_CASE("each number type has its name") {
                                                   {"f", FieldType::uint32, none},
                                                   {"g", FieldType::float32, none},
                                                   {"h", FieldType::float64, none}});
-  CHECK(ply({}, {.layout = layout}) == header("0",
-                                              "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
-                                              "property uint f\nproperty float g\nproperty double h\n"));
+  CHECK(ply({}, {.layout = layout}) ==
+        header("0",
+               "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
+               "property uint f\nproperty float g\nproperty double h\n"));
 }
 
 TEST_CASE("records are those of a buffer, and the header is right for any number of them") {
@@ -142,7 +147,8 @@ TEST_CASE("scans that are added one by one are one cloud, and padding is left ou
   const RandomPulses pulses(3000, 1);
   const TemporaryFolder folder;
   const PointLayout packed = PointLayout::packed(layouts::ouster().fields);
-  PlyWriter padded_writer(folder / "a.ply", {.layout = layouts::ouster()}), packed_writer(folder / "b.ply", {.layout = packed});
+  PlyWriter padded_writer(folder / "a.ply", {.layout = layouts::ouster()}),
+      packed_writer(folder / "b.ply", {.layout = packed});
   ScanSplitter padded(PointBuffer(layouts::ouster()), 1, [&](const PointBuffer& scan) { padded_writer.add(scan); });
   ScanSplitter without_gaps(PointBuffer(packed), 1, [&](const PointBuffer& scan) { packed_writer.add(scan); });
   for (ScanSplitter* splitter : {&padded, &without_gaps}) {
@@ -173,7 +179,9 @@ TEST_CASE("without close there is no file, and a full disk is an error that leav
 
 TEST_CASE("settings and buffers that do not fit are refused") {
   const TemporaryFolder folder;
-  const auto refused = [&](const PlySettings& settings) { return refused_field([&] { PlyWriter(folder / "a.ply", settings); }); };
+  const auto refused = [&](const PlySettings& settings) {
+    return refused_field([&] { PlyWriter(folder / "a.ply", settings); });
+  };
   CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
   CHECK(refused({.layout = PointLayout::packed({{"a b", FieldType::float32}})}) == "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");

@@ -43,7 +43,8 @@ void give(ImageWriter& writer, const std::vector<Point>& points, std::size_t a_b
                        .direction = -axis::up,
                        .first_echo = static_cast<std::uint32_t>(echoes.size()),
                        .echoes = 1});
-      echoes.push_back({.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number, .kind = p.kind});
+      echoes.push_back(
+          {.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number, .kind = p.kind});
     }
     EchoBatch batch;
     batch.shots = shots;
@@ -75,11 +76,13 @@ struct Picture {
 Picture decoded(const std::string& bytes) {
   Picture picture;
   int channels = 0;
-  unsigned char* data = stbi_load_from_memory(reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()),
-                                              &picture.width, &picture.height, &channels, 3);
+  unsigned char* data =
+      stbi_load_from_memory(reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()),
+                            &picture.width, &picture.height, &channels, 3);
   REQUIRE(data != nullptr);
   CHECK(channels == 3);
-  for (int i = 0; i < picture.width * picture.height; ++i) picture.pixels.push_back({data[3 * i], data[3 * i + 1], data[3 * i + 2]});
+  for (int i = 0; i < picture.width * picture.height; ++i)
+    picture.pixels.push_back({data[3 * i], data[3 * i + 1], data[3 * i + 2]});
   stbi_image_free(data);
   return picture;
 }
@@ -88,7 +91,8 @@ Picture decoded(const std::string& bytes) {
 std::vector<Point> field(std::size_t n, Vec3 corner = {0, 0, 0}) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = 10 * uniform({.seed = 1, .pulse = i, .subray = 0}), y = 10 * uniform({.seed = 1, .pulse = i, .subray = 1});
+    const double x = 10 * uniform({.seed = 1, .pulse = i, .subray = 0}),
+                 y = 10 * uniform({.seed = 1, .pulse = i, .subray = 1});
     points.push_back({corner + Vec3{x, y, std::sin(x) * std::cos(y)}, static_cast<ObjectId>(i % 3), x / 10,
                       static_cast<std::uint8_t>(1 + i % 4), static_cast<ReflectionKind>(i % reflection_kind_count)});
   }
@@ -98,8 +102,13 @@ std::vector<Point> field(std::size_t n, Vec3 corner = {0, 0, 0}) {
 const Srgb white{255, 255, 255};
 
 /// A map with north up, in which a square of the given points' frame fills the height.
-const ImageSettings map{
-    .width = 200, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3, .background = white};
+const ImageSettings map{.width = 200,
+                        .height = 100,
+                        .azimuth = 0,
+                        .elevation = pi / 2,
+                        .field_of_view = 0,
+                        .point_size = 3,
+                        .background = white};
 
 }  // namespace
 
@@ -178,14 +187,16 @@ TEST_CASE("the same points give the same bytes, however they come") {
 TEST_CASE("colours differ by what they tell") {
   const std::vector<Point> points = field(3000);
   std::set<std::string> pictures;
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
+  for (const ColourBy by :
+       {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
     pictures.insert(png(points, {.width = 160, .height = 90, .colour_by = by}));
   CHECK(pictures.size() == 5);
 
   ImageSettings settings = map;
   settings.point_size = 6;
   const std::vector<Point> pair{{{0, 0, 0}, 1, 0.1, 1}, {{40, 0, 4}, 2, 0.9, 2, ReflectionKind::water}};
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind}) {
+  for (const ColourBy by :
+       {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind}) {
     settings.colour_by = by;
     const Picture picture = decoded(png(pair, settings));
     CHECK(picture.at(5, 50) != picture.at(195, 50));
@@ -215,7 +226,8 @@ TEST_CASE("values that are not finite harm no picture") {
   points[4].reflectance = std::numeric_limits<double>::infinity();
   points[5].number = 0;
   points[6].at = {1e300, 1e300, -1e300};
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
+  for (const ColourBy by :
+       {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
     CHECK(decoded(png(points, {.width = 16, .height = 9, .colour_by = by})).width == 16);
 }
 
@@ -236,8 +248,10 @@ TEST_CASE("a few outliers do not shrink the picture") {
   std::vector<Point> points = field(20000);
   for (int k = 0; k < 10; ++k) points.push_back({{1e5 * k, -1e5, 1e4 * k}});
   for (const double field_of_view : {0.0, radians(30)}) {
-    const ImageSettings settings{.width = 160, .height = 90, .elevation = pi / 2, .field_of_view = field_of_view, .background = white};
-    CHECK(decoded(png(points, settings)).share_of(white) < 0.75);  // a square of 0.95 * 90 px, turned by 30 degrees, leaves 0.70
+    const ImageSettings settings{
+        .width = 160, .height = 90, .elevation = pi / 2, .field_of_view = field_of_view, .background = white};
+    CHECK(decoded(png(points, settings)).share_of(white) <
+          0.75);  // a square of 0.95 * 90 px, turned by 30 degrees, leaves 0.70
   }
 }
 
@@ -312,11 +326,13 @@ TEST_CASE("classes have colours of their own") {
 }
 
 TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in depth") {
-  // a map with north up of 40 m by 40 m: the west half of the ground is dark, the east half bright, the south is missing
+  // a map with north up of 40 m by 40 m: the west half of the ground is dark, the east half bright, the south is
+  // missing
   Raster raster{.columns = 41, .rows = 41, .first = {-20, 20}, .heights = std::vector<float>(41 * 41, 50)};
   std::vector<std::uint8_t> shades;
   for (std::size_t i = 0; i < 41 * 41; ++i) shades.push_back(i / 41 > 30 ? 0 : i % 41 < 20 ? 40 : 200);
-  const ImageSettings from_above{.width = 100, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3};
+  const ImageSettings from_above{
+      .width = 100, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3};
   ImageWriter writer(path, from_above);
   writer.add_ground(raster, shades);
   // points under the ground, at the corners of the framed square and in its middle

@@ -62,14 +62,16 @@ TEST_CASE("grey of 16 and of 8 bits is read as it was written, and takes two byt
   std::vector<std::uint8_t> grey(64 * 48);
   for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint8_t>(i % 64 + i / 64);
   REQUIRE(stbi_write_png(files.path.c_str(), 64, 48, 1, grey.data(), 64) != 0);
-  CHECK(read_png_heights(files.path, {.pixel = Vec2{1, 1}}).packed.numbers == std::vector<std::uint16_t>(grey.begin(), grey.end()));
+  CHECK(read_png_heights(files.path, {.pixel = Vec2{1, 1}}).packed.numbers ==
+        std::vector<std::uint16_t>(grey.begin(), grey.end()));
 }
 
 TEST_CASE("scale, offset and the grey of missing heights give heights in metres") {
   const Folder files;
   files.put(grey_png(3, 2, 16, {0, 1, 65535, 300, 1000, 300}));
   const Raster raster = read_png_heights(
-      files.path, {.vertical_scale = 0.25, .vertical_offset = -100, .missing = 300, .pixel = Vec2{1, 1}, .first = Vec2{7, 9}});
+      files.path,
+      {.vertical_scale = 0.25, .vertical_offset = -100, .missing = 300, .pixel = Vec2{1, 1}, .first = Vec2{7, 9}});
   CHECK(raster.first == Vec2{7, 9});
   const std::vector<float> heights = raster.unpacked().heights;
   CHECK(heights[0] == -100);
@@ -123,7 +125,8 @@ TEST_CASE("pictures that are no heights are refused with a reason") {
   files.put(grey_png(1, 9, 16, std::vector<std::uint16_t>(9, 1)));
   CHECK(contains(files.refusal(), "is of 1 x 9 pixels: expected 2 x 2 or more"));
   files.put(grey_png(9, 9, 16, std::vector<std::uint16_t>(81, 1)));
-  CHECK(contains(files.refusal({.pixel = Vec2{1, 1}, .max_pixels = 80}), "is of 9 x 9 pixels: expected at most 80 in all"));
+  CHECK(contains(files.refusal({.pixel = Vec2{1, 1}, .max_pixels = 80}),
+                 "is of 9 x 9 pixels: expected at most 80 in all"));
   CHECK(contains(files.refusal({.missing = 1, .pixel = Vec2{1, 1}}), "has no height"));
   const auto refused = [&](const PngHeightSettings& settings) {
     try {
@@ -139,7 +142,8 @@ TEST_CASE("pictures that are no heights are refused with a reason") {
   CHECK(contains(refused({.pixel = Vec2{1, 1}, .first = Vec2{1e16, 1}}), "PngHeightSettings::first"));
 }
 
-TEST_CASE("damaged pictures are explained or read, and sizes that a file cannot hold are refused before they are allocated") {
+TEST_CASE(
+    "damaged pictures are explained or read, and sizes that a file cannot hold are refused before they are allocated") {
   const Folder files;
   support::Generator random(8532);
   std::vector<std::uint16_t> grey(40 * 30);

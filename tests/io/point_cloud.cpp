@@ -48,7 +48,8 @@ FileError error(const std::string& text, const PointCloudSettings& settings = {}
   return support::file_error([&] { (void)read(text, settings); });
 }
 
-std::string text_of(const std::vector<Vec3>& points, const std::vector<Vec3>& normals = {}, const std::vector<Vec3>& colours = {}) {
+std::string text_of(const std::vector<Vec3>& points, const std::vector<Vec3>& normals = {},
+                    const std::vector<Vec3>& colours = {}) {
   std::string text;
   const auto add = [&](const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -76,14 +77,16 @@ TEST_CASE("points on a lattice stand in known cells") {
   CHECK(cloud.points == 5);
   CHECK(cloud.voxels.edge == 1);
   CHECK(cloud.voxels.corner == Vec3{10, 20, 30});
-  CHECK(cloud.voxels.cells == std::vector<Cell>{{0, 0, 0}, {1, 0, 0}, {2, 1, 0}});  // the greatest x is a face of the last cell
+  CHECK(cloud.voxels.cells ==
+        std::vector<Cell>{{0, 0, 0}, {1, 0, 0}, {2, 1, 0}});  // the greatest x is a face of the last cell
   CHECK(cloud.voxels.normals.empty());
   CHECK(cloud.colours.empty());
   CHECK(cloud.warnings.empty());
 }
 
 TEST_CASE("a lattice at multiples begins at one, and holds every point from its lesser face on") {
-  const PointCloud cloud = read("-0.1 5.2 7\n3 5.4 7.5\n3.5 5.25 7\n", {.voxel_size = 0.5, .lattice = VoxelLattice::at_multiples});
+  const PointCloud cloud =
+      read("-0.1 5.2 7\n3 5.4 7.5\n3.5 5.25 7\n", {.voxel_size = 0.5, .lattice = VoxelLattice::at_multiples});
   CHECK(cloud.voxels.corner == Vec3{-0.5, 5, 7});
   CHECK(cloud.voxels.cells == std::vector<Cell>{{0, 0, 0}, {7, 0, 1}, {8, 0, 0}});
 }
@@ -130,7 +133,8 @@ TEST_CASE("a cloud of one point is a voxel around it") {
   CHECK(cloud.voxels.corner == Vec3{477123.25, 5429000, -3.25});
   CHECK(cloud.voxels.cells == std::vector<Cell>{{0, 0, 0}});
   CHECK(cloud.voxels.normals == std::vector<std::array<float, 3>>{{0, 0, 0}});
-  CHECK(cloud.warnings == std::vector<std::string>{"1 of 1 voxels have no normal: their points are fewer than three, or on one line"});
+  CHECK(cloud.warnings ==
+        std::vector<std::string>{"1 of 1 voxels have no normal: their points are fewer than three, or on one line"});
 }
 
 TEST_CASE("the normal of a tilted plane is found to 1e-9") {
@@ -145,7 +149,13 @@ TEST_CASE("the normal of a tilted plane is found to 1e-9") {
     std::array<double, 6> products{};
     for (std::uint64_t i = 0; i < points; ++i) {
       // Three corners of a triangle that is no sliver, then any points.
-      const double a = i == 0 ? 1 : i == 1 ? -1 : i == 2 ? 0 : random.uniform(-1, 1), b = i == 2 ? 1 : i < 2 ? 0 : random.uniform(-1, 1);
+      const double a = i == 0   ? 1
+                       : i == 1 ? -1
+                       : i == 2 ? 0
+                                : random.uniform(-1, 1),
+                   b = i == 2  ? 1
+                       : i < 2 ? 0
+                               : random.uniform(-1, 1);
       const Vec3 d = offset + u * (a * size) + v * (b * size);
       sum += d;
       products[0] += d.x * d.x;
@@ -184,11 +194,13 @@ TEST_CASE("no plane is fitted through points on one line or in one place") {
 }
 
 TEST_CASE("normals of the file are averaged as directions") {
-  const std::string text = "0 0 0 0 0 2\n0.5 0.5 0.5 1e-9 0 0\n2 0 0 0 3 0\n2.5 0 0 0 -1e300 0\n4 4 4 0 0 0\n4.5 4 4 0 -1 0\n";
+  const std::string text =
+      "0 0 0 0 0 2\n0.5 0.5 0.5 1e-9 0 0\n2 0 0 0 3 0\n2.5 0 0 0 -1e300 0\n4 4 4 0 0 0\n4.5 4 4 0 -1 0\n";
   const FileError e = error(text, {.normals = VoxelNormals::mean});
   CHECK(e.place() == "line 4, column 5");  // beyond 1e12
-  const PointCloud cloud = read("0 0 0 0 0 2\n0.5 0.5 0.5 1e-9 0 0\n2 0 0 0 3 0\n2.5 0 0 0 -1e11 0\n4 4 4 0 0 0\n4.5 4 4 0 -1 0\n",
-                                {.normals = VoxelNormals::mean});
+  const PointCloud cloud =
+      read("0 0 0 0 0 2\n0.5 0.5 0.5 1e-9 0 0\n2 0 0 0 3 0\n2.5 0 0 0 -1e11 0\n4 4 4 0 0 0\n4.5 4 4 0 -1 0\n",
+           {.normals = VoxelNormals::mean});
   REQUIRE(cloud.voxels.normals.size() == 3);
   CHECK(same(cloud.voxels.normals[0], normalize(Vec3{1, 0, 1})));
   CHECK(cloud.voxels.normals[1] == std::array<float, 3>{0, 0, 0});  // they oppose each other
@@ -198,8 +210,8 @@ TEST_CASE("normals of the file are averaged as directions") {
 }
 
 TEST_CASE("the normal may be that of the point nearest to the centre, of those that have one") {
-  const PointCloud cloud =
-      read("0 0 0 1 0 0\n0.5 0.5 0.5 0 0 0\n0.6 0.5 0.5 0 -5 0\n0.9 0.5 0.5 0 0 1\n2 2 2 0 0 1\n", {.normals = VoxelNormals::nearest});
+  const PointCloud cloud = read("0 0 0 1 0 0\n0.5 0.5 0.5 0 0 0\n0.6 0.5 0.5 0 -5 0\n0.9 0.5 0.5 0 0 1\n2 2 2 0 0 1\n",
+                                {.normals = VoxelNormals::nearest});
   REQUIRE(cloud.voxels.normals.size() == 2);
   CHECK(same(cloud.voxels.normals[0], {0, -1, 0}));
   CHECK(same(cloud.voxels.normals[1], {0, 0, 1}));
@@ -218,14 +230,16 @@ TEST_CASE("a file without normals or colours gives none, with a warning, or the 
 }
 
 TEST_CASE("colours are averaged as squares") {
-  const PointCloud cloud = read("0 0 0 0 0 1 255 0 51\n0.5 0 0 0 0 1 0 0 51\n2 0 0 0 0 1 102 255 0\n", {.colours = true});
+  const PointCloud cloud =
+      read("0 0 0 0 0 1 255 0 51\n0.5 0 0 0 0 1 0 0 51\n2 0 0 0 0 1 102 255 0\n", {.colours = true});
   REQUIRE(cloud.colours.size() == 2);
   CHECK(cloud.colours[0][0] == doctest::Approx(std::sqrt(0.5)));
   CHECK(cloud.colours[0][1] == 0);
   CHECK(cloud.colours[0][2] == 0.2f);
   CHECK(cloud.colours[1] == std::array<float, 3>{0.4f, 1, 0});
-  CHECK(read("0 0 0 0.5 1 0.25\n", {.colours = true, .colour_max = 1, .columns = {.colour = PointColumns::Columns{3, 4, 5}}}).colours ==
-        std::vector<std::array<float, 3>>{{0.5f, 1, 0.25f}});
+  CHECK(read("0 0 0 0.5 1 0.25\n",
+             {.colours = true, .colour_max = 1, .columns = {.colour = PointColumns::Columns{3, 4, 5}}})
+            .colours == std::vector<std::array<float, 3>>{{0.5f, 1, 0.25f}});
   CHECK(error("0 0 0 0 0 1 0 0 0\n0 0 0 0 0 1 256 0 0\n", {.colours = true}).place() == "line 2");
   CHECK(error("0 0 0 0 0 1 0 -1 0\n", {.colours = true}).problem() == "has the colour -1: expected one from 0 to 255");
 }
@@ -244,7 +258,8 @@ TEST_CASE("a LAS file is recognised as it begins, and gives the same voxels as i
   for (auto& point : las.points)
     for (auto& channel : point.colour) channel = static_cast<std::uint16_t>(channel / 257);
   CHECK(read(las.bytes(), {.colours = true}).warnings ==
-        std::vector<std::string>{"no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255"});
+        std::vector<std::string>{
+            "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255"});
   const PointCloud bytes = read(las.bytes(), {.colours = true, .colour_max = 255});
   CHECK(bytes.colours == cloud.colours);
   CHECK(bytes.warnings.empty());
@@ -269,7 +284,8 @@ TEST_CASE("several files make one cloud") {
 }
 
 /// The same from a cloud that is held: points by cell.
-std::map<Cell, std::vector<std::size_t>> by_cell(const std::vector<Vec3>& points, double edge, const Vec3& least, const Vec3& most) {
+std::map<Cell, std::vector<std::size_t>> by_cell(const std::vector<Vec3>& points, double edge, const Vec3& least,
+                                                 const Vec3& most) {
   std::map<Cell, std::vector<std::size_t>> cells;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Cell cell{};
@@ -308,7 +324,8 @@ TEST_CASE("random clouds give what a cloud in memory gives") {
 
     const PointCloud mean = read(text, {.voxel_size = edge, .normals = VoxelNormals::mean, .colours = true});
     const PointCloud nearest = read(text, {.voxel_size = edge, .normals = VoxelNormals::nearest});
-    const PointCloud fitted = read(text, {.voxel_size = edge, .normals = VoxelNormals::fitted, .default_normal = Vec3{1, 0, 0}});
+    const PointCloud fitted =
+        read(text, {.voxel_size = edge, .normals = VoxelNormals::fitted, .default_normal = Vec3{1, 0, 0}});
     CHECK(mean.voxels.corner == least);
     const auto numbers = number_of(mean);
     REQUIRE(numbers.size() == expected.size());
@@ -378,7 +395,9 @@ TEST_CASE("a cloud is read in blocks without a seam") {
 }
 
 TEST_CASE("clouds that cannot be are refused") {
-  CHECK(error("ply\nformat ascii 1.0\n").problem().starts_with("is a PLY file, which is loaded as a mesh if it has faces: expected"));
+  CHECK(error("ply\nformat ascii 1.0\n")
+            .problem()
+            .starts_with("is a PLY file, which is loaded as a mesh if it has faces: expected"));
   CHECK(error("# .PCD v0.7\nVERSION 0.7\n").problem().starts_with("is a PCD file"));
   CHECK(error("").problem() == "is empty: expected a point cloud");
   CHECK(error("# x y z\n").problem() == "holds no point: expected at least one");
@@ -386,24 +405,30 @@ TEST_CASE("clouds that cannot be are refused") {
   CHECK(error("1 2 3\n1 nan 3\n").path().ends_with("a.xyz"));
   const FileError far = error("0 0 0\n0 1e12 0\n", {.voxel_size = 0.125});
   CHECK(far.problem() ==
-        "the cloud extends over 1e+12 m along y, which is 8e+12 voxels: expected no more than 2^32; voxels are 0.125 m large");
+        "the cloud extends over 1e+12 m along y, which is 8e+12 voxels: expected no more than 2^32; voxels are 0.125 m "
+        "large");
   CHECK(error("0 0 0\n1 0 0\n", {.voxel_size = 1e-320}).problem() != "no error");
   CHECK(error("1 0 0\n1 0 0\n", {.voxel_size = 1e-320, .lattice = VoxelLattice::at_multiples}).problem() != "no error");
-  CHECK(error(LasBuilder{.format = 0, .points = {{.withheld = true}}}.bytes()).problem() == "holds no point: expected at least one");
+  CHECK(error(LasBuilder{.format = 0, .points = {{.withheld = true}}}.bytes()).problem() ==
+        "holds no point: expected at least one");
 }
 
 TEST_CASE("as many voxels as there can be along an axis fit, one more does not") {
   const PointCloud cloud = read("0 0 0\n4294967296 0 0\n");
   CHECK(cloud.voxels.cells == std::vector<Cell>{{0, 0, 0}, {4294967295, 0, 0}});
   CHECK(error("0 0 0\n4294967296.5 0 0\n").problem().starts_with("the cloud extends over 4294967296.5 m along x"));
-  CHECK(error("0 0 0\n4294967296 0 0\n", {.lattice = VoxelLattice::at_multiples}).problem().starts_with("the cloud extends over"));
+  CHECK(error("0 0 0\n4294967296 0 0\n", {.lattice = VoxelLattice::at_multiples})
+            .problem()
+            .starts_with("the cloud extends over"));
 }
 
 TEST_CASE("voxels that are small against the rounding of coordinates are an error of the file") {
   const std::string far =
       "\xEF\xBB\xBF"
       "1;2;-1e12\n";
-  CHECK(error(far, {.voxel_size = 1e-6}).problem().starts_with("the cloud begins 1e+12 m from the origin, where voxels of 1e-06 m"));
+  CHECK(error(far, {.voxel_size = 1e-6})
+            .problem()
+            .starts_with("the cloud begins 1e+12 m from the origin, where voxels of 1e-06 m"));
   CHECK(read(far, {.voxel_size = 1e-3}).voxels.cells.size() == 1);
 }
 

@@ -47,12 +47,14 @@ struct Message {
   friend bool operator==(const Message&, const Message&) = default;
 };
 
-/// Decodes by the rules of CDR alone: a number is aligned to its size, counted from the end of the encapsulation header; padding is zero.
+/// Decodes by the rules of CDR alone: a number is aligned to its size, counted from the end of the encapsulation
+/// header; padding is zero.
 class Rules {
  public:
   explicit Rules(const std::vector<std::byte>& message) : bytes_(message.begin() + 4, message.end()) {
     const std::vector<std::byte> header(message.begin(), message.begin() + 4);
-    if (header != std::vector<std::byte>{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}}) throw std::runtime_error("encapsulation");
+    if (header != std::vector<std::byte>{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}})
+      throw std::runtime_error("encapsulation");
   }
 
   template <class Number>
@@ -125,9 +127,11 @@ Message by_fastcdr(std::vector<std::byte> message) {
 }
 
 /// Message that a scan should be.
-Message expected(const PointBuffer& scan, const std::string& frame_id, std::int32_t seconds, std::uint32_t nanoseconds) {
+Message expected(const PointBuffer& scan, const std::string& frame_id, std::int32_t seconds,
+                 std::uint32_t nanoseconds) {
   const auto length = static_cast<std::uint32_t>(scan.records().size());
-  Message m{seconds, nanoseconds, frame_id, 1, static_cast<std::uint32_t>(scan.size()), {}, false, scan.layout().size, length, {}, true};
+  Message m{seconds, nanoseconds, frame_id, 1, static_cast<std::uint32_t>(scan.size()), {}, false, scan.layout().size,
+            length,  {},          true};
   for (const PointField& field : scan.layout().fields)
     m.fields.push_back({field.name, field.offset, static_cast<std::uint8_t>(field.type), 1});
   for (const std::byte b : scan.records()) m.data.push_back(static_cast<std::uint8_t>(b));
@@ -137,7 +141,8 @@ Message expected(const PointBuffer& scan, const std::string& frame_id, std::int3
 /// Adds pulses with an echo each, in any direction.
 void add_points(PointBuffer& points, std::size_t count, Generator& any) {
   for (std::size_t i = 0; i < count; ++i) {
-    const Shot shot{.index = i, .direction = any.unit(), .channel = static_cast<std::uint16_t>(any.whole(16)), .echoes = 1};
+    const Shot shot{
+        .index = i, .direction = any.unit(), .channel = static_cast<std::uint16_t>(any.whole(16)), .echoes = 1};
     const Echo echo{.range = any.log_uniform(0.1, 1e4), .reflectance = any.uniform()};
     points({.shots = {&shot, 1}, .echoes = {&echo, 1}, .samples = {}});
   }
@@ -154,7 +159,8 @@ PointLayout any_layout(Generator& any) {
   PointLayout layout;
   for (std::uint64_t left = 1 + any.whole(9); left > 0; --left) {
     const auto type = static_cast<FieldType>(1 + any.whole(8));
-    const auto quantity = static_cast<PointQuantity>(1 + any.whole(static_cast<std::uint64_t>(PointQuantity::packed_rgb_bits)));
+    const auto quantity =
+        static_cast<PointQuantity>(1 + any.whole(static_cast<std::uint64_t>(PointQuantity::packed_rgb_bits)));
     layout.size += static_cast<std::uint32_t>(any.whole(3));
     layout.fields.push_back({any_text(any.whole(10), any), type, quantity, 1, layout.size});
     layout.size += size_of(type);
@@ -212,7 +218,8 @@ TEST_CASE("fields of the layouts of drivers have the names, places and types tha
     serialize_point_cloud2(PointBuffer(layout), "lidar", message);
     const Message m = by_fastcdr(message);
     std::string text;
-    for (const Field& field : m.fields) text += field.name + ' ' + std::to_string(field.offset) + ' ' + std::to_string(field.type) + ", ";
+    for (const Field& field : m.fields)
+      text += field.name + ' ' + std::to_string(field.offset) + ' ' + std::to_string(field.type) + ", ";
     CHECK((m.row_step == 0 && m.width == 0 && m.data.empty()));
     return text + std::to_string(m.point_step);
   };
@@ -221,14 +228,18 @@ TEST_CASE("fields of the layouts of drivers have the names, places and types tha
   CHECK(told(layouts::velodyne()) == xyzi + "ring 16 4, time 18 7, 22");
   CHECK(told(layouts::hesai()) == xyzi + "ring 16 4, timestamp 18 8, 26");
   CHECK(told(layouts::livox()) == xyzi + "tag 16 2, line 17 2, timestamp 18 8, 26");
-  CHECK(told(layouts::ouster()) == xyz + "intensity 16 7, t 20 6, reflectivity 24 4, ring 26 4, ambient 28 4, range 32 6, 48");
-  CHECK(told(layouts::autoware()) ==
-        xyz + "intensity 12 2, return_type 13 2, channel 14 4, azimuth 16 7, elevation 20 7, distance 24 7, time_stamp 28 6, 32");
+  CHECK(told(layouts::ouster()) ==
+        xyz + "intensity 16 7, t 20 6, reflectivity 24 4, ring 26 4, ambient 28 4, range 32 6, 48");
+  CHECK(told(layouts::autoware()) == xyz +
+                                         "intensity 12 2, return_type 13 2, channel 14 4, azimuth 16 7, elevation 20 "
+                                         "7, distance 24 7, time_stamp 28 6, 32");
   CHECK(told(layouts::map()) ==
         "x 0 8, y 8 8, z 16 8, reflectance 24 7, time 28 8, channel 36 4, return_number 38 2, returns 39 2, "
         "classification 40 4, object 42 6, 46");
   CHECK(told(layouts::velodyne().with(layouts::labels())) ==
-        xyzi + "ring 16 4, time 18 7, classification 22 4, object 24 6, part 28 6, material 32 4, normal_x 34 7, normal_y 38 7, " +
+        xyzi +
+            "ring 16 4, time 18 7, classification 22 4, object 24 6, part 28 6, material 32 4, normal_x 34 7, normal_y "
+            "38 7, " +
             "normal_z 42 7, velocity_x 46 7, velocity_y 50 7, velocity_z 54 7, 58");
 }
 
@@ -247,14 +258,16 @@ TEST_CASE("the stamp is the start of the scan by the clock, exact to the nanosec
   CHECK(stamp(2'147'483'646, {0, 0.5}) == 2'147'483'646'500'000'000);
   CHECK(stamp(-2, {3, 0.5}) == 1'500'000'000);
   CHECK(stamp(5, {1, 0.9999999999}) == 7'000'000'000);  // rounded up to the next second
-  CHECK_THROWS_WITH_AS(stamp(-1, {}), doctest::Contains("PointSettings::start_time + PointBuffer::scan_start is -1 s"), SettingError);
+  CHECK_THROWS_WITH_AS(stamp(-1, {}), doctest::Contains("PointSettings::start_time + PointBuffer::scan_start is -1 s"),
+                       SettingError);
   CHECK_THROWS_AS(stamp(2'147'483'647, {1, 0}), SettingError);
   CHECK_THROWS_AS(stamp(1e300, {}), SettingError);
 }
 
 TEST_CASE("points of more bytes than the message can count are refused") {
   CHECK(detail::point_cloud2_length(4'294'967'295) == 4'294'967'295);
-  CHECK_THROWS_WITH_AS(static_cast<void>(detail::point_cloud2_length(4'294'967'296)), doctest::Contains("as a PointCloud2"), SettingError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(detail::point_cloud2_length(4'294'967'296)),
+                       doctest::Contains("as a PointCloud2"), SettingError);
 }
 
 TEST_CASE("a message that has grown to the longest scan allocates nothing") {

@@ -23,9 +23,10 @@ TEST_CASE("the layouts of drivers have the sizes and offsets of what they publis
   CHECK(layouts::autoware().size == 32);
   CHECK(layouts::autoware().fields[6].offset == 16);
   CHECK(layouts::map().fields[3].offset == 24);
-  for (const PointLayout& layout : {layouts::velodyne(), layouts::hesai(), layouts::livox(), layouts::ouster(), layouts::autoware(),
-                                    layouts::map(), layouts::velodyne().with(layouts::labels()), layouts::map().with(layouts::colours()),
-                                    layouts::map().with(layouts::deep_colours()), layouts::xyzi().with(layouts::packed_colour())})
+  for (const PointLayout& layout :
+       {layouts::velodyne(), layouts::hesai(), layouts::livox(), layouts::ouster(), layouts::autoware(), layouts::map(),
+        layouts::velodyne().with(layouts::labels()), layouts::map().with(layouts::colours()),
+        layouts::map().with(layouts::deep_colours()), layouts::xyzi().with(layouts::packed_colour())})
     layout.validate();
 }
 
@@ -38,11 +39,14 @@ TEST_CASE("fields behind a padded layout begin behind its padding") {
 
 TEST_CASE("attributes have a field each, by their names") {
   const std::vector<std::string> names{"age", "species"};
-  const PointLayout layout = layouts::xyzi().with(layouts::attributes(names, FieldType::uint16)).with(layouts::colours());
+  const PointLayout layout =
+      layouts::xyzi().with(layouts::attributes(names, FieldType::uint16)).with(layouts::colours());
   REQUIRE(layout.fields.size() == 9);
   CHECK((layout.fields[4].name == "age" && layout.fields[5].name == "species" && layout.fields[6].name == "red"));
-  CHECK((layout.fields[4].offset == 16 && layout.fields[5].offset == 18 && layout.fields[6].offset == 20 && layout.size == 23));
-  CHECK((layout.has(PointQuantity::attribute, PointQuantity::attribute) && layout.has(PointQuantity::red, PointQuantity::blue)));
+  CHECK((layout.fields[4].offset == 16 && layout.fields[5].offset == 18 && layout.fields[6].offset == 20 &&
+         layout.size == 23));
+  CHECK((layout.has(PointQuantity::attribute, PointQuantity::attribute) &&
+         layout.has(PointQuantity::red, PointQuantity::blue)));
   CHECK_FALSE(layout.has(PointQuantity::near_infrared, PointQuantity::packed_rgb_bits));
 }
 

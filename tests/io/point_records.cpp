@@ -35,10 +35,21 @@ using namespace literals;
 
 /// Batch of one pulse to the east with echoes at 10 m and 20 m.
 struct TwoEchoes {
-  std::array<Shot, 1> shots{
-      {{.index = 7, .tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .leg = 2, .channel = 1, .echoes = 2}}};
+  std::array<Shot, 1> shots{{{.index = 7,
+                              .tick = {3, 0.25},
+                              .origin = {1, 2, 3},
+                              .direction = axis::right,
+                              .leg = 2,
+                              .channel = 1,
+                              .echoes = 2}}};
   std::array<Echo, 2> echoes{
-      {{.range = 10, .amplitude = 2e-9, .reflectance = 0.5, .width = 1e-9, .cos_incidence = 0.7, .object = 9, .classification = 6},
+      {{.range = 10,
+        .amplitude = 2e-9,
+        .reflectance = 0.5,
+        .width = 1e-9,
+        .cos_incidence = 0.7,
+        .object = 9,
+        .classification = 6},
        {.range = 20, .amplitude = 1e-9, .reflectance = 8, .number = 2, .kind = ReflectionKind::glass, .velocity = -3}}};
 
   [[nodiscard]] EchoBatch batch() const { return {.shots = shots, .echoes = echoes, .samples = {}}; }
@@ -61,8 +72,9 @@ double number(const PointBuffer& points, std::size_t point, PointQuantity quanti
 
 TEST_CASE("each quantity of a point is in its field") {
   using enum PointQuantity;
-  PointBuffer points(every_quantity(FieldType::float64),
-                     {.origin = {1, 0, 0}, .rings = {5, 11}, .start_time = 1000, .laser = {.wavelength = 1e-6, .pulse_length = 5e-9}});
+  PointBuffer points(
+      every_quantity(FieldType::float64),
+      {.origin = {1, 0, 0}, .rings = {5, 11}, .start_time = 1000, .laser = {.wavelength = 1e-6, .pulse_length = 5e-9}});
   points.begin_scan({3, 0});
   const TwoEchoes two;
   points(two.batch());
@@ -81,14 +93,17 @@ TEST_CASE("each quantity of a point is in its field") {
   CHECK((at(0, time) == 0.25 && at(0, clock) == 1003.25));
   CHECK((at(0, ring) == 11 && at(0, pulse) == 7 && at(0, leg) == 2));
   CHECK((at(0, return_number) == 1 && at(1, return_number) == 2 && at(1, returns) == 2));
-  CHECK((at(0, classification) == 6 && at(0, object) == 9 && at(1, kind) == static_cast<double>(ReflectionKind::glass)));
+  CHECK(
+      (at(0, classification) == 6 && at(0, object) == 9 && at(1, kind) == static_cast<double>(ReflectionKind::glass)));
   CHECK((at(0, normal_x) == 0 && at(0, velocity_z) == 0 && std::isinf(at(0, part)) && std::isinf(at(0, material))));
-  CHECK((std::isnan(at(0, red)) && std::isnan(at(0, near_infrared)) && std::isnan(at(0, packed_rgb)) && at(0, packed_rgb_bits) == 0));
+  CHECK((std::isnan(at(0, red)) && std::isnan(at(0, near_infrared)) && std::isnan(at(0, packed_rgb)) &&
+         at(0, packed_rgb_bits) == 0));
 }
 
 TEST_CASE("integers are rounded and limited to the range of their type, and NaN is 0") {
   TwoEchoes two;
-  two.echoes[0] = {.range = 3.6, .reflectance = 1e9, .object = 70'000, .velocity = std::numeric_limits<double>::quiet_NaN()};
+  two.echoes[0] = {
+      .range = 3.6, .reflectance = 1e9, .object = 70'000, .velocity = std::numeric_limits<double>::quiet_NaN()};
   two.shots[0].origin = {-400, 0, 0};
   for (const FieldType type :
        {FieldType::int8, FieldType::uint8, FieldType::int16, FieldType::uint16, FieldType::int32, FieldType::uint32}) {
@@ -133,12 +148,15 @@ TEST_CASE("reflectivity is in percent up to white, and grows by 10 a doubling up
 
 TEST_CASE("points of a moving sensor are distorted in its frame, unless the distortion is removed") {
   // two pulses ahead, 0.5 s apart, to a wall at y = 50, from a sensor that drives to it at 10 m/s
-  const MeshData wall{.vertices = {{-9, 50, -9}, {9, 50, -9}, {9, 50, 9}, {-9, 50, 9}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const MeshData wall{.vertices = {{-9, 50, -9}, {9, 50, -9}, {9, 50, 9}, {-9, 50, 9}},
+                      .triangles = {{0, 1, 2}, {0, 2, 3}}};
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(wall)}});
   const StraightLine path{.from = {5, 0, 1}, .to = {5, 100, 1}, .speed = 10};
-  const Platform platform{path, Mount{.lever_arm = {0, 1, 0}}, Deflector{FixedBeam{}, Scanner{.pulse_rate = 2, .pulses = 2}}};
+  const Platform platform{path, Mount{.lever_arm = {0, 1, 0}},
+                          Deflector{FixedBeam{}, Scanner{.pulse_rate = 2, .pulses = 2}}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
-  PointSettings settings{.sensor = [&](Tick t) { return platform.instrument_at(t); }, .axes = PointAxes::forward_left_up};
+  PointSettings settings{.sensor = [&](Tick t) { return platform.instrument_at(t); },
+                         .axes = PointAxes::forward_left_up};
   const auto forward = [&](std::size_t point) {
     PointBuffer points(every_quantity(FieldType::float64), settings);
     points.begin_scan({});
@@ -156,25 +174,28 @@ TEST_CASE("points of a moving sensor are distorted in its frame, unless the dist
 
 TEST_CASE("part, material, normal and velocity of a moving board are in the sensor's axes") {
   using enum PointQuantity;
-  const MeshData board{
-      .vertices = {{-9, 20, -9}, {9, 20, -9}, {9, 20, 9}, {-9, 20, 9}}, .triangles = {{0, 1, 2}, {0, 2, 3}}, .materials = {1, 1}};
+  const MeshData board{.vertices = {{-9, 20, -9}, {9, 20, -9}, {9, 20, 9}, {-9, 20, 9}},
+                       .triangles = {{0, 1, 2}, {0, 2, 3}},
+                       .materials = {1, 1}};
   const auto drive = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {2, 0, 0}});
   const auto mesh = std::make_shared<const TriangleMesh<>>(board);
   const MaterialTable paints = material_table({{.name = "red"}, {.name = "green"}});
-  const MovingScene<TriangleMesh<>> scene({{.geometry = mesh, .materials = paints, .placement = {.translation = {0, 50, 0}}},
-                                           {.geometry = mesh, .materials = paints, .object = 4, .motion = drive}},
-                                          {.to = 1});
+  const MovingScene<TriangleMesh<>> scene(
+      {{.geometry = mesh, .materials = paints, .placement = {.translation = {0, 50, 0}}},
+       {.geometry = mesh, .materials = paints, .object = 4, .motion = drive}},
+      {.to = 1});
   const Platform platform{Tripod{.heading = -90_deg}, Mount{.boresight = rotation_about(axis::up, -90_deg)},
                           Deflector{FixedBeam{}, Scanner{.pulses = 1}}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
-  PointBuffer points(
-      every_quantity(FieldType::float64),
-      {.sensor = [&](Tick t) { return platform.instrument_at(t); }, .axes = PointAxes::forward_left_up, .surfaces = surfaces_of(scene)});
+  PointBuffer points(every_quantity(FieldType::float64), {.sensor = [&](Tick t) { return platform.instrument_at(t); },
+                                                          .axes = PointAxes::forward_left_up,
+                                                          .surfaces = surfaces_of(scene)});
   run(survey, {}, points);
   REQUIRE(points.size() == 1);
   const auto at = [&](PointQuantity quantity) { return number(points, 0, quantity); };
   const Pose<frame::World, frame::Instrument> frame = platform.instrument_at({}).inverse();
-  const Vec3 towards = to_forward_left_up(frame.direction({0, -1, 0})), along = to_forward_left_up(frame.direction({2, 0, 0}));
+  const Vec3 towards = to_forward_left_up(frame.direction({0, -1, 0})),
+             along = to_forward_left_up(frame.direction({2, 0, 0}));
   CHECK((at(part) == 1 && at(material) == 1 && at(object) == 4));
   CHECK(length(Vec3{at(normal_x), at(normal_y), at(normal_z)} - towards) < 1e-12);
   CHECK(length(Vec3{at(velocity_x), at(velocity_y), at(velocity_z)} - along) < 1e-12);
@@ -186,14 +207,18 @@ std::optional<PointColour> of_first(const EchoBatch&, const Shot&, const Echo& e
   return PointColour{.red = 65535, .green = 257 * 128, .blue = 257 * 3 + 128, .near_infrared = 13107};
 }
 
-TEST_CASE("colours of points are shares of white, numbers of 8 and 16 bits, or packed in one, and unknown ones are NaN or 0") {
+TEST_CASE(
+    "colours of points are shares of white, numbers of 8 and 16 bits, or packed in one, and unknown ones are NaN or "
+    "0") {
   using enum PointQuantity;
   const TwoEchoes two;
   PointBuffer shares(every_quantity(FieldType::float64), {.colours = of_first});
   shares(two.batch());
   const auto share = [&](PointQuantity quantity) { return number(shares, 0, quantity); };
-  CHECK((share(red) == 1 && share(green) == 128 / 255.0 && share(blue) == 899 / 65535.0 && share(near_infrared) == 0.2));
-  for (const PointQuantity quantity : {red, green, blue, near_infrared, packed_rgb}) CHECK(std::isnan(number(shares, 1, quantity)));
+  CHECK(
+      (share(red) == 1 && share(green) == 128 / 255.0 && share(blue) == 899 / 65535.0 && share(near_infrared) == 0.2));
+  for (const PointQuantity quantity : {red, green, blue, near_infrared, packed_rgb})
+    CHECK(std::isnan(number(shares, 1, quantity)));
 
   const auto check = [&](const std::vector<PointField>& fields, const std::vector<double>& expected) {
     PointBuffer points(PointLayout::packed(fields), {.colours = of_first});
@@ -218,8 +243,10 @@ TEST_CASE("colours of points are shares of white, numbers of 8 and 16 bits, or p
 TEST_CASE("every colour of 8 and of 16 bits is written exactly") {
   TwoEchoes two;
   std::uint16_t level = 0;
-  const PointSettings settings{.colours = [&](const EchoBatch&, const Shot&, const Echo&) { return PointColour{.red = level}; }};
-  PointBuffer deep(PointLayout::packed(layouts::deep_colours()), settings), bytes(PointLayout::packed(layouts::colours()), settings);
+  const PointSettings settings{
+      .colours = [&](const EchoBatch&, const Shot&, const Echo&) { return PointColour{.red = level}; }};
+  PointBuffer deep(PointLayout::packed(layouts::deep_colours()), settings),
+      bytes(PointLayout::packed(layouts::colours()), settings);
   std::size_t wrong = 0;
   for (std::uint32_t n = 0; n < 65536; ++n) {
     level = static_cast<std::uint16_t>(n);
@@ -248,7 +275,8 @@ TEST_CASE("colours are asked for only if the layout has them") {
   CHECK(asked == 2);
 }
 
-TEST_CASE("attributes of a point's object are in the fields of their names, in any type, and NaN or 0 where it has none") {
+TEST_CASE(
+    "attributes of a point's object are in the fields of their names, in any type, and NaN or 0 where it has none") {
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 9;
   trees[0].attributes = pulsecast::attributes({{"age", 80.25}, {"species", 3}});
@@ -259,7 +287,9 @@ TEST_CASE("attributes of a point's object are in the fields of their names, in a
                                           {"age", FieldType::float64, PointQuantity::attribute, 12}}),
                      {.attributes = attributes});
   points(two.batch());
-  const auto at = [&](std::size_t point, std::size_t field) { return points.number(point, points.layout().fields[field]); };
+  const auto at = [&](std::size_t point, std::size_t field) {
+    return points.number(point, points.layout().fields[field]);
+  };
   CHECK((at(0, 0) == 3 && at(0, 1) == 9 && at(0, 2) == 963));
   CHECK((at(1, 0) == 0 && at(1, 1) == 0 && std::isnan(at(1, 2))));
 
@@ -270,7 +300,8 @@ TEST_CASE("attributes of a point's object are in the fields of their names, in a
 
 TEST_CASE("a field of an attribute that no object has is refused") {
   const std::vector<std::string> names{"height"};
-  CHECK_THROWS_WITH_AS(PointBuffer(layouts::map().with(layouts::attributes(names))), doctest::Contains("'height'"), SettingError);
+  CHECK_THROWS_WITH_AS(PointBuffer(layouts::map().with(layouts::attributes(names))), doctest::Contains("'height'"),
+                       SettingError);
 }
 
 TEST_CASE("a buffer that has grown keeps its memory for further scans") {

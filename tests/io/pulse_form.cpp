@@ -27,8 +27,8 @@ std::string error(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a pulse is read in nanoseconds, about its peak and relative to it") {
-  for (const char* text :
-       {"time,power\n10,0\n11,4\n12.5,2\n14,-0.1\n", "# a laser\n10;0\n11;4\n12.5;2\n14;0", "10 0\r\n11 4\r\n12.5 2\r\n14 0\r\n"}) {
+  for (const char* text : {"time,power\n10,0\n11,4\n12.5,2\n14,-0.1\n", "# a laser\n10;0\n11;4\n12.5;2\n14;0",
+                           "10 0\r\n11 4\r\n12.5 2\r\n14 0\r\n"}) {
     INFO(text);
     const MeasuredPulse pulse = read(text);
     CHECK(pulse.power(0, 4e-9) == 1);

@@ -25,8 +25,8 @@ struct Scan {
 
 /// Scans of pulses that come in batches of random lengths.
 std::vector<Scan> scans_of(const RandomPulses& pulses, double rate, std::uint64_t seed) {
-  const PointLayout layout =
-      PointLayout::packed({{"pulse", FieldType::float64, PointQuantity::pulse}, {"time", FieldType::float64, PointQuantity::time}});
+  const PointLayout layout = PointLayout::packed(
+      {{"pulse", FieldType::float64, PointQuantity::pulse}, {"time", FieldType::float64, PointQuantity::time}});
   std::vector<Scan> scans;
   ScanSplitter splitter(PointBuffer(layout), rate, [&](const PointBuffer& points) {
     Scan scan{points.scan_start().seconds(), {}, {}};
@@ -59,7 +59,8 @@ TEST_CASE("scans have equal times, begin at their multiples, and hold every poin
     for (std::size_t n = 0; n < scans.size(); ++n) {
       CHECK(scans[n].start == Tick::of(n, 10).seconds());
       for (std::size_t k = 0; k < scans[n].pulses.size(); ++k) {
-        CHECK((scans[n].pulses[k] >= 25.0 * static_cast<double>(n) && scans[n].pulses[k] < 25.0 * static_cast<double>(n + 1)));
+        CHECK((scans[n].pulses[k] >= 25.0 * static_cast<double>(n) &&
+               scans[n].pulses[k] < 25.0 * static_cast<double>(n + 1)));
         CHECK((scans[n].times[k] >= 0 && scans[n].times[k] < 0.1));
       }
       points += scans[n].pulses.size();
@@ -79,8 +80,8 @@ TEST_CASE("scans without pulses are left out, those without points are passed on
 
 TEST_CASE("a run without pulses has no scans, and a rate of zero is refused") {
   CHECK(scans_of(RandomPulses(0, 0), 10, 0).empty());
-  CHECK_THROWS_WITH_AS(ScanSplitter(PointBuffer(layouts::xyzi()), 0, [](const PointBuffer&) {}), doctest::Contains("scan_rate"),
-                       SettingError);
+  CHECK_THROWS_WITH_AS(ScanSplitter(PointBuffer(layouts::xyzi()), 0, [](const PointBuffer&) {}),
+                       doctest::Contains("scan_rate"), SettingError);
 }
 
 }  // namespace

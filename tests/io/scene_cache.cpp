@@ -64,9 +64,14 @@ MeshData some_mesh(std::uint64_t seed, std::size_t triangles = 40) {
 }
 
 MaterialTable some_materials() {
-  const auto spectrum = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1e-6, 0.4}, {2e-6, 0.2}});
+  const auto spectrum =
+      std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1e-6, 0.4}, {2e-6, 0.2}});
   return material_table({{.name = "bark", .spectrum = spectrum},
-                         {.name = "leaf", .reflectance = 0.7, .scattering = Scattering::phong, .specular_share = 0.2, .classification = 5},
+                         {.name = "leaf",
+                          .reflectance = 0.7,
+                          .scattering = Scattering::phong,
+                          .specular_share = 0.2,
+                          .classification = 5},
                          {.name = "moss", .ground = true, .spectrum = spectrum}});
 }
 
@@ -84,9 +89,13 @@ S some_scene() {
   const MaterialTable materials = some_materials(), others = some_materials();
   std::vector<typename S::Part> parts;
   for (ObjectId i = 0; i < 6; ++i) {
-    const Similarity placement{.rotation = random.rotation(), .scale = random.log_uniform(0.5, 2), .translation = random.point(20)};
-    typename S::Part part{
-        .geometry = first, .materials = materials, .placement = placement, .object = 100 + i, .name = "part " + std::to_string(i)};
+    const Similarity placement{
+        .rotation = random.rotation(), .scale = random.log_uniform(0.5, 2), .translation = random.point(20)};
+    typename S::Part part{.geometry = first,
+                          .materials = materials,
+                          .placement = placement,
+                          .object = 100 + i,
+                          .name = "part " + std::to_string(i)};
     if (i % 2 == 1) part.geometry = second;
     if (i == 5) {
       part.materials = others;
@@ -151,8 +160,9 @@ void seal(std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that was saved", Shape, TriangleMesh<>, TriangleMesh<Bvh<double>>,
-                   TriangleMesh<KdTree<>>, TriangleMesh<KdTree<double>>, TriangleMesh<Linear<>>) {
+TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that was saved", Shape, TriangleMesh<>,
+                   TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>, TriangleMesh<KdTree<double>>,
+                   TriangleMesh<Linear<>>) {
   using S = Scene<Shape>;
   const S scene = some_scene<S, Shape, Shape>();
   save_scene(path, scene, key);
@@ -163,7 +173,9 @@ TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that w
   CHECK(differences(scene, *opened.scene, met) == 0);
   CHECK(met > 1000);
   CHECK(opened.scene->bounds() == scene.bounds());
-  const auto memory = [](const S& s) { return visit_shape([](const auto& shape) { return shape->memory(); }, s.parts()[0].geometry); };
+  const auto memory = [](const S& s) {
+    return visit_shape([](const auto& shape) { return shape->memory(); }, s.parts()[0].geometry);
+  };
   CHECK(memory(*opened.scene) == memory(scene));
 }
 
@@ -204,15 +216,18 @@ TEST_CASE("height fields and grids of voxels come back, too") {
   using S = Scene<HeightField, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
   Generator random(4);
   Raster raster{.columns = 70, .rows = 60, .first = {-35, 30}};
-  for (std::uint32_t i = 0; i < raster.columns * raster.rows; ++i) raster.heights.push_back(static_cast<float>(random.uniform(-20, -15)));
+  for (std::uint32_t i = 0; i < raster.columns * raster.rows; ++i)
+    raster.heights.push_back(static_cast<float>(random.uniform(-20, -15)));
   Raster packed{.columns = 70, .rows = 60, .first = {-35, 30}, .packed = {.scale = 0.01, .offset = -30, .missing = 0}};
-  for (std::size_t i = 0; i < packed.pixels(); ++i) packed.packed.numbers.push_back(static_cast<std::uint16_t>(random.whole(200)));
+  for (std::size_t i = 0; i < packed.pixels(); ++i)
+    packed.packed.numbers.push_back(static_cast<std::uint16_t>(random.whole(200)));
   VoxelData voxels{.corner = {-10, -10, -10}, .edge = 0.5};
   for (std::uint32_t i = 0; i < 40; ++i)
     for (std::uint32_t j = 0; j < 40; ++j) {
       voxels.cells.push_back({i, j, static_cast<std::uint32_t>(random.whole(40))});
       const Vec3 normal = random.unit();
-      voxels.normals.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)});
+      voxels.normals.push_back(
+          {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)});
       voxels.densities.push_back(static_cast<float>(random.uniform(0.1, 2)));
       voxels.scales.push_back(static_cast<float>(random.uniform(0.1, 1)));
       voxels.materials.push_back(static_cast<std::uint16_t>(random.whole(3)));
@@ -242,7 +257,8 @@ TEST_CASE("height fields and grids of voxels come back, too") {
 TEST_CASE("a scene that moves is made from its parts and its time") {
   using S = MovingScene<TriangleMesh<KdTree<>>>;
   const auto parts = [] {
-    return std::vector<S::Part>{{.geometry = shared<TriangleMesh<KdTree<>>>(some_mesh(1, 10)), .materials = some_materials()}};
+    return std::vector<S::Part>{
+        {.geometry = shared<TriangleMesh<KdTree<>>>(some_mesh(1, 10)), .materials = some_materials()}};
   };
   const std::filesystem::path cache = folder / "moving.cache";
   CHECK_FALSE(cached_scene<S>(cache, {}, parts, MovingIndexSettings{.to = 10}).from_cache);
@@ -405,7 +421,8 @@ TEST_CASE("a material or a mesh that cannot be is refused, whatever the checksum
   CHECK(contains(with(corners, std::array<std::uint32_t, 3>{0, 1, 4000}), "its members are inconsistent"));
 }
 
-TEST_CASE("the key is that of the contents: it changes with every byte, the order and the settings, but not with the place") {
+TEST_CASE(
+    "the key is that of the contents: it changes with every byte, the order and the settings, but not with the place") {
   write(folder / "a", "one");
   write(folder / "b", "two");
   write(folder / "empty", "");
@@ -484,11 +501,13 @@ TEST_CASE("a scene is built once, and again when a source changes, the cache is 
 }
 
 TEST_CASE("a cache that cannot be written is a warning, and what the build throws passes through") {
-  const auto made = cached_scene<Small>(folder / "no" / "such" / "folder", {}, [] { return std::vector<Small::Part>{}; });
+  const auto made =
+      cached_scene<Small>(folder / "no" / "such" / "folder", {}, [] { return std::vector<Small::Part>{}; });
   CHECK_FALSE(made.from_cache);
   CHECK(contains(made.warning, "cannot be created"));
   const std::filesystem::path never = folder / "never.cache";
-  CHECK_THROWS_AS((void)cached_scene<Small>(never, {}, []() -> std::vector<Small::Part> { throw std::runtime_error("no"); }),
-                  std::runtime_error);
+  CHECK_THROWS_AS(
+      (void)cached_scene<Small>(never, {}, []() -> std::vector<Small::Part> { throw std::runtime_error("no"); }),
+      std::runtime_error);
   CHECK_FALSE(std::filesystem::exists(never));
 }

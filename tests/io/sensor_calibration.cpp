@@ -118,22 +118,25 @@ TEST_CASE("a calibration of the data sheet's VLP-32C has the numbers of the ROS 
   CHECK(std::fabs(number(0, "vert_correction") - -0.4363323129985824) < 1e-12);
   CHECK(std::fabs(number(1, "rot_correction") - 0.07330382858376185) < 1e-12);
   CHECK(std::fabs(number(3, "vert_correction") - -0.2729520417193932) < 1e-6);
-  for (const char* key : {"dist_correction", "dist_correction_x", "dist_correction_y", "vert_offset_correction", "horiz_offset_correction",
-                          "focal_distance", "focal_slope"})
+  for (const char* key : {"dist_correction", "dist_correction_x", "dist_correction_y", "vert_offset_correction",
+                          "horiz_offset_correction", "focal_distance", "focal_slope"})
     CHECK(number(5, key) == 0);
 }
 
-/// Calibration in the manner of a driver's file: of blocks and flow, with comments, lasers in any order, and keys that are not needed.
+/// Calibration in the manner of a driver's file: of blocks and flow, with comments, lasers in any order, and keys that
+/// are not needed.
 std::string driver_file() {
   std::string text = "# Velodyne VLP-16\r\nnum_lasers: 16   # as on the label\r\nmodel: [a, {b: c}]\r\nlasers:\r\n";
   for (int k = 15; k >= 1; --k)
     text +=
-        "- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0,\r\n  focal_slope: 0.0, "
+        "- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0,\r\n  "
+        "focal_slope: 0.0, "
         "horiz_offset_correction: 0.0, laser_id: " +
         std::to_string(k) + ", rot_correction: 0." + std::to_string(k + 10) +
         ", vert_correction: -2.5e-1, vert_offset_correction: +1e-2}\r\n";
   return text +
-         "-\r\n  laser_id: 0\r\n  rot_correction: -.01\r\n  vert_correction: -0.2617993877991494\r\n  vert_offset_correction: 0.0112\r\n";
+         "-\r\n  laser_id: 0\r\n  rot_correction: -.01\r\n  vert_correction: -0.2617993877991494\r\n  "
+         "vert_offset_correction: 0.0112\r\n";
 }
 
 TEST_CASE("a calibration in the manner of a driver's file replaces the angles of the data sheet") {
@@ -151,15 +154,16 @@ TEST_CASE("a calibration in the manner of a driver's file replaces the angles of
 TEST_CASE("damaged Velodyne calibrations are refused with path and line") {
   const support::TemporaryFolder folder;
   const auto error = [&](const std::string& text) {
-    const FileError refusal =
-        support::file_error([&] { static_cast<void>(read_velodyne_calibration(file_of(folder, text), velodyne_vlp_16())); });
+    const FileError refusal = support::file_error(
+        [&] { static_cast<void>(read_velodyne_calibration(file_of(folder, text), velodyne_vlp_16())); });
     CHECK(refusal.path() == (folder / "unit").string());
     return refusal.place() + ": " + refusal.problem();
   };
   const std::string sound = driver_file();
   check(error(with(sound, "num_lasers: 16", "num_lasers: 32")), "line 2: num_lasers is '32': expected 16");
   check(error(with(sound, "num_lasers: 16 ", "number: 16 ")), "has no num_lasers");
-  check(error(with(sound, "rot_correction: -.01", "rot_correction: west")), "line 37: rot_correction is 'west': expected a number");
+  check(error(with(sound, "rot_correction: -.01", "rot_correction: west")),
+        "line 37: rot_correction is 'west': expected a number");
   check(error(with(sound, "rot_correction: -.01", "rot_correction: .nan")), "line 37");
   check(error(with(sound, "rot_correction: -.01", "rot_correction: 30")), "line 37");
   check(error(with(sound, "rot_correction: -.01", "rot_correction: [1]")), "rot_correction is a list or map");
@@ -167,7 +171,8 @@ TEST_CASE("damaged Velodyne calibrations are refused with path and line") {
   check(error(with(sound, "laser_id: 0", "laser_id: 7")), "line 36: expected each laser_id once");
   check(error(with(sound, "laser_id: 0", "laser_id: 0.5")), "line 36: expected each laser_id once");
   check(error(with(sound, "laser_id: 0", "laser_id: 16")), "line 36: laser_id is '16': expected a number from 0 to 15");
-  check(error(with(sound, "dist_correction: 0.0", "dist_correction: 1.3")), "line 5: dist_correction is '1.3': expected 0");
+  check(error(with(sound, "dist_correction: 0.0", "dist_correction: 1.3")),
+        "line 5: dist_correction is '1.3': expected 0");
   check(error(with(sound, "lasers:\r\n-", "lasers: 5\r\nothers:\r\n-")), "line 4: lasers is no list of 16");
   check(error(with(sound, "lasers:\r\n-", "lasers:\r\n- 5\r\n-")), "lasers is no list of 16");
   check(error(sound + "distance_resolution: 0.004\n"), "line 40: distance_resolution is '0.004': expected 0.002");
@@ -201,12 +206,15 @@ TEST_CASE("metadata of an OS1 are JSON with the members that its decoders need")
     const std::string text = ouster_text(sensor, {.returns = is_dual ? PacketReturns::dual : PacketReturns::last});
     CHECK(contains(text, "{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"2048x10\",\n"));
     CHECK(contains(text, "\"beam_altitude_angles\": [21.2, 20.526984127, "));
-    CHECK(contains(text, "\"beam_azimuth_angles\": [3.073, -3.384, 0, "));  // to the right, as the manual's formula has it
+    CHECK(contains(text,
+                   "\"beam_azimuth_angles\": [3.073, -3.384, 0, "));  // to the right, as the manual's formula has it
     CHECK(contains(text, "\"lidar_origin_to_beam_origin_mm\": 15.806,\n"));
     CHECK(contains(text, "\"lidar_to_sensor_transform\": [-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36.18, 0, 0, 0, 1],\n"));
-    CHECK(contains(text, "\"columns_per_frame\": 2048,\n    \"columns_per_packet\": 16,\n    \"pixels_per_column\": 64,\n"));
+    CHECK(contains(text,
+                   "\"columns_per_frame\": 2048,\n    \"columns_per_packet\": 16,\n    \"pixels_per_column\": 64,\n"));
     CHECK(contains(text, "\"column_window\": [0, 2047],\n    \"pixel_shift_by_row\": [36, 0, 19, "));
-    CHECK(contains(text, is_dual ? "\"udp_profile_lidar\": \"RNG19_RFL8_SIG16_NIR16_DUAL\"\n" : "\"udp_profile_lidar\": \"LEGACY\"\n"));
+    CHECK(contains(text, is_dual ? "\"udp_profile_lidar\": \"RNG19_RFL8_SIG16_NIR16_DUAL\"\n"
+                                 : "\"udp_profile_lidar\": \"LEGACY\"\n"));
   }
 }
 
@@ -217,9 +225,11 @@ TEST_CASE("metadata with sections are read, and what they lack is of the data sh
     azimuths += (k == 0 ? "" : ", ") + std::string(k % 2 == 0 ? "3.5" : "-1.5");
   }
   const SpinningSensor sensor = ouster_of(
-      "{\"sensor_info\": {\"prod_line\": \"OS-1-64-U02\", \"status\": \"RUNNING\"},\n\"config_params\": {\"lidar_mode\": \"512x20\"},\n"
+      "{\"sensor_info\": {\"prod_line\": \"OS-1-64-U02\", \"status\": \"RUNNING\"},\n\"config_params\": "
+      "{\"lidar_mode\": \"512x20\"},\n"
       "\"beam_intrinsics\":\n{\n\"beam_altitude_angles\": [" +
-      altitudes + "], \"beam_azimuth_angles\": [" + azimuths + "]}, \"lidar_data_format\": {\"columns_per_frame\": 512}}");
+      altitudes + "], \"beam_azimuth_angles\": [" + azimuths +
+      "]}, \"lidar_data_format\": {\"columns_per_frame\": 512}}");
   CHECK(sensor.sequence_rate == 512 * 20);
   CHECK(sensor.lasers[0].elevation == doctest::Approx(16.25 * pi / 180));
   CHECK(sensor.lasers[63].elevation == doctest::Approx(-15.25 * pi / 180));
@@ -232,7 +242,8 @@ TEST_CASE("metadata with sections are read, and what they lack is of the data sh
 TEST_CASE("damaged metadata are refused with path and line") {
   const support::TemporaryFolder folder;
   const auto error = [&](const std::string& text) {
-    const FileError refusal = support::file_error([&] { static_cast<void>(read_ouster_metadata(file_of(folder, text))); });
+    const FileError refusal =
+        support::file_error([&] { static_cast<void>(read_ouster_metadata(file_of(folder, text))); });
     CHECK(refusal.path() == (folder / "unit").string());
     return refusal.place() + ": " + refusal.problem();
   };
@@ -243,7 +254,8 @@ TEST_CASE("damaged metadata are refused with path and line") {
     check(error(with(sound, "1024x10", mode)), "line 3: lidar_mode is");
   check(error(with(sound, "[21.2, ", "[")), "line 5: beam_altitude_angles is no list of 64");
   check(error(with(sound, "[21.2, ", "[[21.2], ")), "line 5: beam_altitude_angles is a list or map");
-  check(error(with(sound, "[21.2, ", "[91, ")), "line 5: beam_altitude_angles is '91': expected a number from -90 to 90");
+  check(error(with(sound, "[21.2, ", "[91, ")),
+        "line 5: beam_altitude_angles is '91': expected a number from -90 to 90");
   check(error(with(sound, "beam_azimuth_angles", "angles")), "has no beam_azimuth_angles");
   check(error(with(sound, "15.806", "-1")), "line 7: lidar_origin_to_beam_origin_mm is '-1'");
   check(error(with(sound, "[-1, 0, 0, 0", "[-1, 0, 0")), "line 8: lidar_to_sensor_transform is no list of 16");
@@ -252,7 +264,8 @@ TEST_CASE("damaged metadata are refused with path and line") {
 }
 
 TEST_CASE("a calibration that was spoilt is read or refused") {
-  constexpr std::array words{"[", "{", "}", "- ", "&a ", "*a", ": ", "\"", "'", "!!int ", "|", "<<: *a", "%", "---", "...", "1e999", "~"};
+  constexpr std::array words{"[",      "{", "}",      "- ", "&a ", "*a",  ": ",    "\"", "'",
+                             "!!int ", "|", "<<: *a", "%",  "---", "...", "1e999", "~"};
   const std::array sound{driver_file(), velodyne_text(velodyne_vlp_16()), ouster_text(ouster_os1_64())};
   std::size_t read = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 600; ++seed) {

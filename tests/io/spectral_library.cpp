@@ -42,21 +42,24 @@ TEST_CASE("a file with the header of the ECOSTRESS and ASTER libraries is read i
       "Name: Oak leaf\nType: vegetation\nParticle Size: 75-250 um\nSample No.: 26\nWavelength Range: All\n"
       "Description: A leaf, 5 % wet, of 2 by 3 nm.\nMeasurement: Directional (10 Degree) Hemispherical Reflectance\n"
       "First Column: X\nSecond Column: Y\n";
-  const std::string end = "First X Value: 1.5\nLast X Value: 0.5\nNumber of X Values: 2\nAdditional Information: none\n\n";
-  const SpectrumFile percent =
-      spectrum(header + "X Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n" + end + "1.5\t60\r\n0.5\t20\r\n");
+  const std::string end =
+      "First X Value: 1.5\nLast X Value: 0.5\nNumber of X Values: 2\nAdditional Information: none\n\n";
+  const SpectrumFile percent = spectrum(header + "X Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n" +
+                                        end + "1.5\t60\r\n0.5\t20\r\n");
   check(percent, 0.5e-6, 1.5e-6, 0.4);
   CHECK(percent.scale == ReflectanceScale::percent);
-  CHECK(percent.report == path.string() + ": wavelengths in micrometres, by the header; reflectance in percent, by the header");
+  CHECK(percent.report ==
+        path.string() + ": wavelengths in micrometres, by the header; reflectance in percent, by the header");
   CHECK(percent.warnings.empty());
 
-  const SpectrumFile fraction =
-      spectrum(header + "X Units: Wavelength (nanometers)\nY Units: Reflectance (fraction)\n" + end + "1500 0.6\n500 0.2\n");
+  const SpectrumFile fraction = spectrum(
+      header + "X Units: Wavelength (nanometers)\nY Units: Reflectance (fraction)\n" + end + "1500 0.6\n500 0.2\n");
   check(fraction, 0.5e-6, 1.5e-6, 0.4);
   CHECK(fraction.scale == ReflectanceScale::fraction);
   CHECK(contains(fraction.report, "nanometres, by the header; reflectance in fractions, by the header"));
 
-  const SpectrumFile waves = spectrum("X Units: Wavenumber (cm-1)\nY Units: Reflectance (percentage)\n5000 10\n10000 40\n");
+  const SpectrumFile waves =
+      spectrum("X Units: Wavenumber (cm-1)\nY Units: Reflectance (percentage)\n5000 10\n10000 40\n");
   check(waves, 1e-6, 2e-6, 0.4);
 }
 
@@ -64,18 +67,21 @@ TEST_CASE("without a header the values tell the units, and both are always repor
   const SpectrumFile percent = spectrum("500 20\n1500 60\n");
   check(percent, 0.5e-6, 1.5e-6, 0.4);
   CHECK(percent.scale == ReflectanceScale::percent);
-  CHECK(contains(percent.report, "nanometres, by the values 500 to 1500; reflectance in percent, as its values reach 60"));
+  CHECK(contains(percent.report,
+                 "nanometres, by the values 500 to 1500; reflectance in percent, as its values reach 60"));
 
   const SpectrumFile fraction = spectrum("0.5,0.2\n1.5,0.6");
   check(fraction, 0.5e-6, 1.5e-6, 0.4);
   CHECK(fraction.scale == ReflectanceScale::fraction);
-  CHECK(contains(fraction.report, "micrometres, by the values 0.5 to 1.5; reflectance in fractions, as its values reach 0.6"));
+  CHECK(contains(fraction.report,
+                 "micrometres, by the values 0.5 to 1.5; reflectance in fractions, as its values reach 0.6"));
 
   check(spectrum("5e-7;0.2;9\n1.5e-6;0.6;9\n"), 0.5e-6, 1.5e-6, 0.4);
 }
 
 TEST_CASE("the titles of the columns tell the units") {
-  const SpectrumFile names = spectrum("# from the garden, 2 nm steps\nwavelength_nm,reflectance_percent\n500,0.2\n1500,0.6\n");
+  const SpectrumFile names =
+      spectrum("# from the garden, 2 nm steps\nwavelength_nm,reflectance_percent\n500,0.2\n1500,0.6\n");
   check(names, 0.5e-6, 1.5e-6, 0.004);
   CHECK(names.scale == ReflectanceScale::percent);
   REQUIRE(names.warnings.size() == 1);
@@ -130,7 +136,8 @@ TEST_CASE("a file that is no spectrum gives one error, with its line") {
   CHECK(contains(problem("0.5 0.2\n0 0.3\n"), "line 2: '0 0.3': expected a wavelength greater than 0"));
   CHECK(contains(problem("-0.5 0.2\n"), "line 1"));
   CHECK(contains(problem("1e-320 0.2\n1 0.1\n"), "line 1"));
-  CHECK(contains(problem("Y Units: Transmittance (percent)\n0.5 0.2\n"), "line 1: 'Y Units: Transmittance (percent)': expected"));
+  CHECK(contains(problem("Y Units: Transmittance (percent)\n0.5 0.2\n"),
+                 "line 1: 'Y Units: Transmittance (percent)': expected"));
   CHECK(contains(problem(std::string("0.5 0.2\n\0\0\n", 11)), "binary"));
   CHECK_THROWS_AS((void)read_spectrum(folder / "none"), FileError);
 }
@@ -162,5 +169,6 @@ TEST_CASE("a library is all spectra of a folder, by the names of their files") {
   CHECK_THROWS_AS((void)read_spectral_library(many / "readme.md"), FileError);
   CHECK_THROWS_AS((void)read_spectral_library(folder / "none"), FileError);
   std::filesystem::create_directory(folder / "nothing");
-  CHECK_THROWS_WITH_AS((void)read_spectral_library(folder / "nothing"), doctest::Contains("holds no spectrum"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_spectral_library(folder / "nothing"), doctest::Contains("holds no spectrum"),
+                       FileError);
 }

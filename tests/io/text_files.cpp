@@ -44,8 +44,13 @@ TEST_CASE("a point is a line of eleven columns") {
   shot.origin = {100, 200, 50};
   shot.direction = {0, 0, -1};
   shot.echoes = 2;
-  const Echo first{
-      .range = 10.00016, .amplitude = 2.5e-9, .reflectance = 0.5, .width = 1.25e-9, .object = 12, .classification = 5, .number = 1};
+  const Echo first{.range = 10.00016,
+                   .amplitude = 2.5e-9,
+                   .reflectance = 0.5,
+                   .width = 1.25e-9,
+                   .object = 12,
+                   .classification = 5,
+                   .number = 1};
   const Echo second{.range = 50, .amplitude = 1e-10, .width = 0, .object = 3, .classification = 2, .number = 2};
   CHECK(points_of(folder, {shot}, {first, second}, {.start_time = 1000}) ==
         "100.0000 200.0000 39.9998 2.5000 1.2500 1 2 41 12 5 1007.250000000\n"
@@ -57,11 +62,12 @@ TEST_CASE("colours and attributes are further columns of a point, in this order,
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 12;
   trees[0].attributes = pulsecast::attributes({{"age", 80.125}, {"species", 3}, {"share", 0.1}});
-  const PointTextColumns more{.colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
-                                if (echo.number == 2) return std::nullopt;
-                                return PointColour{65535, 257 * 128, 899, 0};  // 899 / 257 is 3.498
-                              },
-                              .attributes = ObjectAttributes{std::span(std::as_const(trees))}};
+  const PointTextColumns more{
+      .colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
+        if (echo.number == 2) return std::nullopt;
+        return PointColour{65535, 257 * 128, 899, 0};  // 899 / 257 is 3.498
+      },
+      .attributes = ObjectAttributes{std::span(std::as_const(trees))}};
   const std::vector<Shot> shots{{.tick = {7, 0.25}, .direction = {0, 0, -1}, .echoes = 2}};
   const std::vector<Echo> echoes{{.range = 10, .object = 12}, {.range = 20, .object = 3, .number = 2}};
   const auto written = [&](const PointTextColumns& columns) {
@@ -121,8 +127,10 @@ TEST_CASE("whatever is written reads back to the last decimal, in every locale")
       REQUIRE(lines.good());
       const Vec3 point = point_of(shot, echo);
       const std::array expected{point.x, point.y, point.z, echo.amplitude * 1e9, echo.width * 1e9};
-      for (std::size_t i = 0; i < 5; ++i) CHECK(std::fabs(reals[i] - expected[i]) <= 0.5e-4 + 1e-15 * std::fabs(expected[i]));
-      CHECK(wholes == std::array<std::uint64_t, 5>{echo.number, shot.echoes, shot.index, echo.object, echo.classification});
+      for (std::size_t i = 0; i < 5; ++i)
+        CHECK(std::fabs(reals[i] - expected[i]) <= 0.5e-4 + 1e-15 * std::fabs(expected[i]));
+      CHECK(wholes ==
+            std::array<std::uint64_t, 5>{echo.number, shot.echoes, shot.index, echo.object, echo.classification});
       CHECK(std::fabs(time - shot.tick.seconds()) <= 0.6e-9);
     }
   }
@@ -168,13 +176,15 @@ TEST_CASE("a pulse is a line of ten columns, nine of which are HELIOS++'s") {
   shot.direction = {0.6, 0, -0.8};
   shot.channel = 3;
   shot.fate = Fate::returned;
-  CHECK(pulses_of({shot}) == "100.0000 200.0000 -50.0000 0.600000000 0.000000000 -0.800000000 7250000000.0000 41 3 0\n");
+  CHECK(pulses_of({shot}) ==
+        "100.0000 200.0000 -50.0000 0.600000000 0.000000000 -0.800000000 7250000000.0000 41 3 0\n");
   CHECK(pulses_of({shot}, {.start_time = 4e8}) ==
         "100.0000 200.0000 -50.0000 0.600000000 0.000000000 -0.800000000 400000007250000000.0000 41 3 0\n");
 }
 
 TEST_CASE("pulses are written whatever became of them, and their fates have the numbers that are documented") {
-  const std::vector<Fate> fates{Fate::returned, Fate::missed, Fate::out_of_range, Fate::below_threshold, Fate::absorbed};
+  const std::vector<Fate> fates{Fate::returned, Fate::missed, Fate::out_of_range, Fate::below_threshold,
+                                Fate::absorbed};
   std::vector<Shot> shots(fates.size());
   for (std::size_t i = 0; i < fates.size(); ++i) {
     shots[i].index = i;
@@ -195,7 +205,8 @@ TEST_CASE("no pulses make an empty file; one without a place or a direction is a
     PulseTextWriter writer(folder / "pulses.txt");
     CHECK_THROWS_WITH_AS(writer(EchoBatch{shots, {}, {}, 0}), doctest::Contains("line 2"), FileError);
   }
-  CHECK_THROWS_AS(PulseTextWriter(folder / "a.txt", {.start_time = std::numeric_limits<double>::infinity()}), SettingError);
+  CHECK_THROWS_AS(PulseTextWriter(folder / "a.txt", {.start_time = std::numeric_limits<double>::infinity()}),
+                  SettingError);
   CHECK(folder.empty());
 }
 
@@ -216,7 +227,8 @@ TEST_CASE("a hit is a line of eleven columns; subrays that met nothing have none
   std::vector<Shot> shots(2);
   shots[0].index = 40;
   shots[1].index = 41;
-  const std::vector<SubrayHit> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayHit{}, SubrayHit{}, hit(20.00016, 0, {-1, 0, 5e6})};
+  const std::vector<SubrayHit> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayHit{}, SubrayHit{},
+                                       hit(20.00016, 0, {-1, 0, 5e6})};
   SubrayTextWriter writer(folder / "subrays.txt");
   writer(EchoBatch{shots, {}, {}, 0, subrays});
   writer.close();
@@ -247,7 +259,9 @@ std::string waveforms_of(const EchoBatch& batch, TextFileSettings settings = {})
   return content(folder / "waveforms.txt");
 }
 
-TEST_CASE("a waveform is a line of ten columns and its samples; times are one-way, in nanoseconds") {  // samples have a float's 7 digits
+TEST_CASE(
+    "a waveform is a line of ten columns and its samples; times are one-way, in nanoseconds") {  // samples have a
+                                                                                                 // float's 7 digits
   Shot shot;
   shot.index = 41;
   shot.tick = {7, 0.25};
@@ -276,7 +290,8 @@ TEST_CASE("each sample is found at the range that its column says, and keeps its
     shot.waveform_start = random.uniform(1e-9, 1e-4);
     shot.first_sample = samples.size();
     shot.samples = static_cast<std::uint32_t>(2 + random.whole(200));
-    for (std::uint32_t k = 0; k < shot.samples; ++k) samples.push_back(static_cast<float>(random.log_uniform(1e-12, 1e-3)));
+    for (std::uint32_t k = 0; k < shot.samples; ++k)
+      samples.push_back(static_cast<float>(random.log_uniform(1e-12, 1e-3)));
     shots.push_back(shot);
   }
   const EchoBatch batch{shots, {}, samples, interval};
@@ -314,7 +329,8 @@ TEST_CASE("pulses without a waveform make no lines, those without echoes do; pla
   shots[1].origin.x = std::numeric_limits<double>::infinity();
   WaveformTextWriter writer(folder / "a.txt");
   CHECK_THROWS_AS(writer(EchoBatch{shots, {}, samples, 1e-9}), FileError);
-  CHECK_THROWS_AS(WaveformTextWriter(folder / "b.txt", {.start_time = std::numeric_limits<double>::quiet_NaN()}), SettingError);
+  CHECK_THROWS_AS(WaveformTextWriter(folder / "b.txt", {.start_time = std::numeric_limits<double>::quiet_NaN()}),
+                  SettingError);
   CHECK(folder.empty());
 }
 

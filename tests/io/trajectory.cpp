@@ -24,12 +24,14 @@ using support::TemporaryFolder;
 /// Goes east at 2 m/s with a constant attitude.
 struct East {
   Rotation rotation = no_rotation;
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept { return {rotation, {2 * tick.seconds(), 10, 100}}; }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
+    return {rotation, {2 * tick.seconds(), 10, 100}};
+  }
 };
 static_assert(Trajectory<East>);
 
-std::string written(const TemporaryFolder& folder, const Trajectory auto& trajectory, Tick start, Tick duration, double interval,
-                    TrajectoryFileSettings settings = {}) {
+std::string written(const TemporaryFolder& folder, const Trajectory auto& trajectory, Tick start, Tick duration,
+                    double interval, TrajectoryFileSettings settings = {}) {
   TrajectoryWriter writer(folder / "trajectory.txt", settings);
   writer.add(trajectory, start, duration, interval);
   writer.close();
@@ -55,7 +57,8 @@ TEST_CASE("records stand at every interval and at the end, which is not written 
     const std::string text = written(folder, East{}, {}, Tick::of_seconds(interval * 21), interval);
     CHECK(std::count(text.begin(), text.end(), '\n') == 22);
   }
-  const std::string text = written(folder, East{}, {}, {0, 0.9}, 0.3);  // three times the double 0.3 is less than the double 0.9
+  const std::string text =
+      written(folder, East{}, {}, {0, 0.9}, 0.3);  // three times the double 0.3 is less than the double 0.9
   CHECK(std::count(text.begin(), text.end(), '\n') == 4);
 }
 
@@ -86,14 +89,15 @@ TEST_CASE("yaw stays below 360 as written, and no zero has a sign") {
   const TemporaryFolder folder;
   CHECK(turned(folder, rotation_about(axis::up, radians(-0.00001))) == "0.0000 0.0000 0.0000\n");
   CHECK(turned(folder, rotation_about(axis::up, radians(-0.00006))) == "0.0000 0.0000 359.9999\n");
-  CHECK(turned(folder, rotation_about(axis::right, radians(-0.00001)) * rotation_about(axis::forward, radians(-0.00001))) ==
-        "0.0000 0.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::right, radians(-0.00001)) *
+                           rotation_about(axis::forward, radians(-0.00001))) == "0.0000 0.0000 0.0000\n");
 }
 
 TEST_CASE("where roll and yaw are one turn, all of it is yaw") {
   const TemporaryFolder folder;
   CHECK(turned(folder, rotation_about(axis::forward, radians(90))) == "0.0000 90.0000 0.0000\n");
-  CHECK(turned(folder, rotation_about(axis::forward, radians(-90)) * rotation_about(axis::up, radians(30))) == "0.0000 -90.0000 30.0000\n");
+  CHECK(turned(folder, rotation_about(axis::forward, radians(-90)) * rotation_about(axis::up, radians(30))) ==
+        "0.0000 -90.0000 30.0000\n");
   CHECK(turned(folder, rotation_about(axis::right, radians(30)) * rotation_about(axis::forward, radians(90))) ==
         "0.0000 90.0000 30.0000\n");
 }
@@ -131,7 +135,8 @@ std::vector<TimedPose> poses(std::uint64_t seed, const AngleConvention& conventi
     Rotation rotation = random.rotation();
     if (i % 2 == 1) {
       RollPitchYaw angles{random.uniform(-pi, pi), random.uniform(-pi, pi), random.uniform(-pi, pi)};
-      angles.*convention.turns[1].angle = (random.coin() ? 1 : -1) * (pi / 2 - (i % 4 == 1 ? 0 : random.log_uniform(1e-17, 1)));
+      angles.*convention.turns[1].angle =
+          (random.coin() ? 1 : -1) * (pi / 2 - (i % 4 == 1 ? 0 : random.log_uniform(1e-17, 1)));
       rotation = rotation_of(angles, convention);
     }
     result.push_back({time, random.point(6e6), rotation});
@@ -151,7 +156,8 @@ TEST_CASE("a gap of more than 20 times the median interval gets a note, with its
   CHECK(warnings({0, 1, 100}).empty());  // too few for a median
   const std::vector<std::string> two = warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91});
   REQUIRE(two.size() == 1);
-  CHECK(two[0].find("t.csv: no pose between 33 s and 90 s, the longest of 2 gaps of more than 20 times the median") != std::string::npos);
+  CHECK(two[0].find("t.csv: no pose between 33 s and 90 s, the longest of 2 gaps of more than 20 times the median") !=
+        std::string::npos);
   CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {4, 29}).empty());
   CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {30, 33}).empty());
 }
@@ -159,7 +165,8 @@ TEST_CASE("a gap of more than 20 times the median interval gets a note, with its
 TEST_CASE("what is written is read: every format, convention, axis and separator") {
   const TemporaryFolder folder;
   std::vector<TrajectoryFormat> formats{csv_format(), helios_format(), helios_output_format(), tum_format()};
-  for (const AngleConvention& angles : {heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw})
+  for (const AngleConvention& angles :
+       {heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw})
     for (const TrajectoryFormat& format : {csv_format(), helios_format()}) {
       formats.push_back(format);
       formats.back().angles = angles;
@@ -222,7 +229,8 @@ TEST_CASE("a written trajectory looks like its format") {
     return content(folder / "t.txt");
   };
   CHECK(text(csv_format()) ==
-        "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n10,476200,5474300.5,600,0,0,90\n10.5,476230,5474300.5,600,0,0,0\n");
+        "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n10,476200,5474300.5,600,0,0,90\n10.5,476230,5474300.5,600,"
+        "0,0,0\n");
   CHECK(text(helios_format()) ==
         "#TIME_COLUMN: 0\n#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n"
         "10,0,0,90,476200,5474300.5,600\n10.5,0,0,0,476230,5474300.5,600\n");
@@ -237,7 +245,8 @@ TEST_CASE("a written trajectory looks like its format") {
 TEST_CASE("a jump, and a rotation of single precision, are written and read") {
   const TemporaryFolder folder;
   const Rotation rounded{0.6F, 0, 0, 0.8F};
-  const std::vector<TimedPose> jump{{0, {}, rounded}, {1, axis::right, rounded}, {1, axis::up, no_rotation}, {2, {}, no_rotation}};
+  const std::vector<TimedPose> jump{
+      {0, {}, rounded}, {1, axis::right, rounded}, {1, axis::up, no_rotation}, {2, {}, no_rotation}};
   write_trajectory(folder / "t.txt", jump, tum_format(), 5);
   const TrajectoryTable table = read_trajectory(folder / "t.txt", tum_format());
   REQUIRE(table.poses.size() == 4);
@@ -246,19 +255,22 @@ TEST_CASE("a jump, and a rotation of single precision, are written and read") {
     CHECK(table.poses[k].position == jump[k].position);
     CHECK(apart(table.poses[k].rotation, jump[k].rotation) < 1e-7);
   }
-  CHECK_THROWS_AS(write_trajectory(folder / "t.txt", std::vector<TimedPose>{{0, {}}, {1e-9, axis::right}}, csv_format(), 1e10), FileError);
+  CHECK_THROWS_AS(
+      write_trajectory(folder / "t.txt", std::vector<TimedPose>{{0, {}}, {1e-9, axis::right}}, csv_format(), 1e10),
+      FileError);
 }
 
 TEST_CASE("what could not be read back is not written, and no file is left") {
   const TemporaryFolder folder;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const std::vector<TimedPose>& bad : std::vector<std::vector<TimedPose>>{{},
-                                                                               {{nan, {}, no_rotation}},
-                                                                               {{0, {0, nan, 0}, no_rotation}},
-                                                                               {{0, {0, 2e12, 0}, no_rotation}},
-                                                                               {{0, {}, Rotation{2, 0, 0, 0}}},
-                                                                               {{0, {}, Rotation{nan, 0, 0, 0}}},
-                                                                               {{1, {}, no_rotation}, {0, {}, no_rotation}}})
+  for (const std::vector<TimedPose>& bad :
+       std::vector<std::vector<TimedPose>>{{},
+                                           {{nan, {}, no_rotation}},
+                                           {{0, {0, nan, 0}, no_rotation}},
+                                           {{0, {0, 2e12, 0}, no_rotation}},
+                                           {{0, {}, Rotation{2, 0, 0, 0}}},
+                                           {{0, {}, Rotation{nan, 0, 0, 0}}},
+                                           {{1, {}, no_rotation}, {0, {}, no_rotation}}})
     CHECK_THROWS_AS(write_trajectory(folder / "t.txt", bad), FileError);
   const std::vector<TimedPose> good{{0, {}, no_rotation}};
   TrajectoryFormat format;

@@ -94,7 +94,8 @@ TEST_CASE("a pace delays packets, and loses none") {
     CHECK(receiver.next() == payload);
   }
   ::clock_gettime(CLOCK_MONOTONIC, &after);
-  const double spent = static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
+  const double spent =
+      static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
   CHECK(spent >= 0.008);  // never sooner; later depends on the load of the machine
 }
 

@@ -44,16 +44,18 @@ struct Return {
   bool is_interpolated;  // between azimuths of this packet
 };
 
-/// Place of a return: firing sequence since the first packet, laser, and 0 for the first of two blocks of the same firings.
+/// Place of a return: firing sequence since the first packet, laser, and 0 for the first of two blocks of the same
+/// firings.
 using Place = std::tuple<std::size_t, std::size_t, int>;
 
-/// Elevation of a laser, and its azimuth from the head's [deg]. Source: VLP-16 user manual, table 9-1; VLP-32C user manual, tables 9-2,
-/// 9-6.
+/// Elevation of a laser, and its azimuth from the head's [deg]. Source: VLP-16 user manual, table 9-1; VLP-32C user
+/// manual, tables 9-2, 9-6.
 std::pair<double, double> angles_of(std::size_t laser, bool vlp_16) {
   if (vlp_16) return {laser % 2 == 0 ? -15.0 + static_cast<double>(laser) : static_cast<double>(laser), 0};
-  constexpr std::array<double, 32> elevations{-25,    -1,     -1.667, -15.639, -11.31, 0,      -0.667, -8.843, -7.254, 0.333,  -0.333,
-                                              -6.148, -5.333, 1.333,  0.667,   -4,     -4.667, 1.667,  1,      -3.667, -3.333, 3.333,
-                                              2.333,  -2.667, -3,     7,       4.667,  -2.333, -2,     15,     10.333, -1.333};
+  constexpr std::array<double, 32> elevations{-25,    -1,    -1.667, -15.639, -11.31, 0,     -0.667, -8.843,
+                                              -7.254, 0.333, -0.333, -6.148,  -5.333, 1.333, 0.667,  -4,
+                                              -4.667, 1.667, 1,      -3.667,  -3.333, 3.333, 2.333,  -2.667,
+                                              -3,     7,     4.667,  -2.333,  -2,     15,    10.333, -1.333};
   constexpr std::array<int, 32> azimuths{14, -42, 14, -14, 14, -14, 42, -14, 14, -42, 14, -14, 42, -14, 42, -14,
                                          14, -42, 14, -42, 42, -14, 14, -14, 14, -14, 14, -42, 42, -14, 14, -14};
   return {elevations[laser], 0.1 * azimuths[laser]};
@@ -79,7 +81,8 @@ std::map<Place, Return> decoded(const std::vector<KeptPacket>& packets) {
         const double distance = packet.at<std::uint16_t>(position) * (vlp_16 ? 0.002 : 0.004);
         if (distance == 0) continue;
         const auto [elevation, aside] = angles_of(laser, vlp_16);
-        const double in_block = 55.296e-6 * static_cast<double>(half) + 2.304e-6 * static_cast<double>(vlp_16 ? laser : laser / 2);
+        const double in_block =
+            55.296e-6 * static_cast<double>(half) + 2.304e-6 * static_cast<double>(vlp_16 ? laser : laser / 2);
         const double block_time = 55.296e-6 * static_cast<double>(per_block);
         const double offset = block_time * static_cast<double>(pair) + in_block;
         all[{(n * pairs + pair) * per_block + half, laser, static_cast<int>(block % step)}] = {
@@ -132,7 +135,8 @@ void check_decoded(const SensorEchoes& all, const std::vector<KeptPacket>& packe
       CHECK(std::fabs(wrapped(r.azimuth - azimuth)) <= (r.is_interpolated ? 0.005 : 0.015) + 1e-9);
       CHECK(std::fabs(r.elevation - std::asin(shot.direction.z) * 180 / pi) < 1e-9);
       const Tick packet = sensor.sequence_start(sequence / per_packet * per_packet);
-      const double since = static_cast<double>(shot.tick.second - packet.second) + (shot.tick.fraction - packet.fraction);
+      const double since =
+          static_cast<double>(shot.tick.second - packet.second) + (shot.tick.fraction - packet.fraction);
       CHECK(std::fabs(r.offset - since) < 0.01e-6);
       const double clock = std::fmod(settings.start_time, 3600) + shot.tick.seconds();
       CHECK(std::fabs(std::remainder(r.time - clock, 3600)) < 1e-6);
@@ -145,13 +149,15 @@ TEST_CASE("the bytes of a packet are those of the manual") {
   const SpinningSensor sensor = velodyne_vlp_16();
   const SpinningSource source = sensor.source(1);
   SensorEchoes all;
-  all.add(source, 0, {10.0});                 // laser 0 of the first sequence
-  all.add(source, 16 * 3 + 5, {2.5, 131.5});  // laser 5 of the second sequence of block 1; the farther is beyond 16 bits
-  all.add(source, 16 * 24, {1.0});            // the next packet
+  all.add(source, 0, {10.0});  // laser 0 of the first sequence
+  all.add(source, 16 * 3 + 5,
+          {2.5, 131.5});            // laser 5 of the second sequence of block 1; the farther is beyond 16 bits
+  all.add(source, 16 * 24, {1.0});  // the next packet
   const auto packets = packets_of<VelodynePackets>(all, sensor, {.start_time = 7200.25});
   REQUIRE(packets.size() == 2);
   std::vector<std::uint8_t> expected(1206);
-  const std::vector<unsigned> azimuths{0, 40, 80, 119, 159, 199, 239, 279, 319, 358, 398, 438};  // 360 deg 10 Hz 110.592 us = 0.39813 deg
+  const std::vector<unsigned> azimuths{0,   40,  80,  119, 159, 199,
+                                       239, 279, 319, 358, 398, 438};  // 360 deg 10 Hz 110.592 us = 0.39813 deg
   for (std::size_t block = 0; block < 12; ++block) {
     expected[block * 100] = 0xFF;
     expected[block * 100 + 1] = 0xEE;
@@ -208,7 +214,8 @@ TEST_CASE("a decoder by the manuals gives the echoes back, of all modes and rate
     const double rate = std::array{5.0, 10.0, 20.0}[seed / 6 % 3];
     SpinningSensor sensor = seed % 2 == 0 ? velodyne_vlp_16(rate) : velodyne_vlp_32c(rate);
     sensor.start = any.uniform(0, 2 * pi);
-    const PacketSettings settings{.returns = static_cast<PacketReturns>(seed / 2 % 3), .start_time = any.uniform(0, 2e9)};
+    const PacketSettings settings{.returns = static_cast<PacketReturns>(seed / 2 % 3),
+                                  .start_time = any.uniform(0, 2e9)};
     const PulseIndex first = any.whole(100'000);
     const SensorEchoes all = SensorEchoes::any(sensor.source(10), first, first + 20'000, 3, any);
     check_decoded(all, packets_of<VelodynePackets>(all, sensor, settings), sensor, settings);
@@ -249,8 +256,10 @@ TEST_CASE("missing slots are empty packets, and the packets of a part are those 
   const SpinningSensor sensor = velodyne_vlp_16();
   const SpinningSource source = sensor.source(1);
   SensorEchoes whole, part;
-  for (const PulseIndex slot : {PulseIndex{3}, PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}}) whole.add(source, slot, {2.0});
-  for (const PulseIndex slot : {PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}}) part.add(source, slot, {2.0});
+  for (const PulseIndex slot : {PulseIndex{3}, PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}})
+    whole.add(source, slot, {2.0});
+  for (const PulseIndex slot : {PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}})
+    part.add(source, slot, {2.0});
   const auto all = packets_of<VelodynePackets>(whole, sensor, {}), some = packets_of<VelodynePackets>(part, sensor, {});
   REQUIRE(all.size() == 6);
   REQUIRE(some.size() == 4);
@@ -312,12 +321,14 @@ TEST_CASE("packets of a survey, run in steps, hold its echoes") {
   const Room room;
   for (const SpinningSensor& sensor : {velodyne_vlp_16(), velodyne_vlp_32c()}) {
     const PacketSettings settings{.start_time = 100};
-    const Survey survey{Platform{Tripod{}, Mount{}, sensor.source(0.2)}, SingleRay{}, room, sensor.receiver(), FirstHit{}};
+    const Survey survey{Platform{Tripod{}, Mount{}, sensor.source(0.2)}, SingleRay{}, room, sensor.receiver(),
+                        FirstHit{}};
     EchoKeeper truth;
     run(survey, {.threads = 1}, truth);
     PacketKeeper kept;
     VelodynePackets packets(sensor, settings, std::ref(kept));
-    for (PulseIndex slot = 0; slot < survey.size(); slot += 7777) run(survey, {.threads = 2, .first = slot, .end = slot + 7777}, packets);
+    for (PulseIndex slot = 0; slot < survey.size(); slot += 7777)
+      run(survey, {.threads = 2, .first = slot, .end = slot + 7777}, packets);
     packets.close();
     const std::size_t sequences = static_cast<std::size_t>(survey.size()) / sensor.lasers.size(),
                       each = sensor.lasers.size() == 16 ? 24 : 12;
@@ -340,8 +351,10 @@ TEST_CASE("pulses out of order, other sensors and settings out of range are refu
   CHECK_THROWS_WITH_AS(VelodynePackets(other, {}, take), doctest::Contains("SpinningSensor::lasers"), SettingError);
   other = sensor;
   other.exit_radius = 0.04;
-  CHECK_THROWS_WITH_AS(VelodynePackets(other, {}, take), doctest::Contains("SpinningSensor::exit_radius"), SettingError);
-  CHECK_THROWS_WITH_AS(VelodynePackets(sensor, {.start_time = -1}, take), doctest::Contains("PacketSettings::start_time"), SettingError);
+  CHECK_THROWS_WITH_AS(VelodynePackets(other, {}, take), doctest::Contains("SpinningSensor::exit_radius"),
+                       SettingError);
+  CHECK_THROWS_WITH_AS(VelodynePackets(sensor, {.start_time = -1}, take),
+                       doctest::Contains("PacketSettings::start_time"), SettingError);
 }
 
 }  // namespace

@@ -80,10 +80,12 @@ TEST_CASE("scaled cubes are a power of their density large") {
   CHECK(file.transmittances == std::vector<float>{0, 0, 0.5f});
   CHECK(file.voxels.shifts.empty());
   REQUIRE(file.warnings.size() == 1);
-  CHECK(file.warnings[0].ends_with("a.vox: a voxel is denser than the maximum, 2 m^2/m^3, one of 1: they fill their cells"));
+  CHECK(file.warnings[0].ends_with(
+      "a.vox: a voxel is denser than the maximum, 2 m^2/m^3, one of 1: they fill their cells"));
   CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1}).voxels.scales == std::vector<float>{1, 0.25f, 1});
   CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 0}).voxels.scales == std::vector<float>{1, 1, 1, 1});
-  CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1, .density_max = 4}).voxels.scales == std::vector<float>{0.5f, 0.125f, 0.75f});
+  CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1, .density_max = 4}).voxels.scales ==
+        std::vector<float>{0.5f, 0.125f, 0.75f});
 }
 
 TEST_CASE("the greatest density is the file's own where nobody names one") {
@@ -92,7 +94,8 @@ TEST_CASE("the greatest density is the file's own where nobody names one") {
   CHECK(file.density_max == 4);
   CHECK(file.voxels.scales == std::vector<float>{0.5f});
   REQUIRE(file.warnings.size() == 2);  // beside that about NaN
-  CHECK(file.warnings[0].ends_with("has no key 'max_pad': the largest density of its rows, 4 m^2/m^3, is that of whole cubes"));
+  CHECK(file.warnings[0].ends_with(
+      "has no key 'max_pad': the largest density of its rows, 4 m^2/m^3, is that of whole cubes"));
   CHECK(error(plain + "0 0 0 0 0\n", scaled).problem() == "has no occupied voxel: expected at least one");
 }
 
@@ -100,7 +103,8 @@ TEST_CASE("shifted cubes stay inside their cells, evenly, and depend on the seed
   std::vector<std::string> rows;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 20; ++j)
-      for (int k = 0; k < 20; ++k) rows.push_back(std::to_string(i) + " " + std::to_string(j) + " " + std::to_string(k) + " 0.25 0.5\n");
+      for (int k = 0; k < 20; ++k)
+        rows.push_back(std::to_string(i) + " " + std::to_string(j) + " " + std::to_string(k) + " 0.25 0.5\n");
   const auto text = [&] {
     std::string all = "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1 #max_pad: 1\ni j k PadBVTotal transmittance\n";
     for (const std::string& row : rows) all += row;
@@ -136,9 +140,9 @@ TEST_CASE("shifted cubes stay inside their cells, evenly, and depend on the seed
 }
 
 TEST_CASE("keys come in any order and spelling, with brackets or without, one or several a line") {
-  for (const char* given :
-       {"#min_corner: 1 2 3\n#res: 0.5\n", "#RES:0.5 #nsubvoxel:8 #MIN_CORNER:1 2 3\n", "#res=0.5 0.5 0.5\n#min_corner: (1, 2, 3)\n",
-        "#type: TLS\n#res:\t0.5\n# a remark\n\n#min_corner: [1.0 2.0 3.0]\n"}) {
+  for (const char* given : {"#min_corner: 1 2 3\n#res: 0.5\n", "#RES:0.5 #nsubvoxel:8 #MIN_CORNER:1 2 3\n",
+                            "#res=0.5 0.5 0.5\n#min_corner: (1, 2, 3)\n",
+                            "#type: TLS\n#res:\t0.5\n# a remark\n\n#min_corner: [1.0 2.0 3.0]\n"}) {
     CAPTURE(given);
     const VoxelFile file = read(std::string("VOXEL SPACE\r\n") + given + "i j k PadBVTotal\n0 1 2 3\n");
     CHECK(file.voxels.corner == Vec3{1, 2, 3});
@@ -147,7 +151,8 @@ TEST_CASE("keys come in any order and spelling, with brackets or without, one or
     CHECK(file.transmittances.empty());
   }
   CHECK(read(head + "0 0 0 1 0\n").warnings.empty());
-  const VoxelFile odd = read("VOXEL SPACE\n#min_corner: 1 2 3\n#max_corner: 3 4 9\n#split: 4 4 4\n#res: 0.5\ni j k PadBVTotal\n0 1 2 3\n");
+  const VoxelFile odd = read(
+      "VOXEL SPACE\n#min_corner: 1 2 3\n#max_corner: 3 4 9\n#split: 4 4 4\n#res: 0.5\ni j k PadBVTotal\n0 1 2 3\n");
   REQUIRE(odd.warnings.size() == 1);
   CHECK(odd.warnings[0].ends_with("a.vox: 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored"));
 }
@@ -195,9 +200,11 @@ TEST_CASE("headers that cannot be right are refused, with the line") {
         {"VOXEL SPACE\n", "", "has no row of column names: expected 'i j k PadBVTotal ...'"},
         {keys, "", "has no row of column names: expected 'i j k PadBVTotal ...'"},
         {head, "", "has no rows: expected at least one voxel"},
-        {begin + "#res: 1\n" + row, "line 4", "no column is named 'i': expected a row of names, as 'i j k PadBVTotal ...'"},
+        {begin + "#res: 1\n" + row, "line 4",
+         "no column is named 'i': expected a row of names, as 'i j k PadBVTotal ...'"},
         {begin + "#res: 1\ni j k PAD\n", "line 4", "no column is named 'PadBVTotal'"},
-        {"VOXEL SPACE\n#res: 1\n" + names + row, "", "has no key 'min_corner': expected '#min_corner: x y z' above the rows"},
+        {"VOXEL SPACE\n#res: 1\n" + names + row, "",
+         "has no key 'min_corner': expected '#min_corner: x y z' above the rows"},
         {begin + names + row, "", "has no key 'res': expected '#res: edge' above the rows"},
         {begin + "#res: 0\n", "line 3", "'res' is ' 0': expected the edge of a voxel [m], above 0"},
         {begin + "#res: nan\n", "line 3", "'res' is ' nan': expected the edge"},
@@ -215,29 +222,32 @@ TEST_CASE("headers that cannot be right are refused, with the line") {
     CHECK_MESSAGE(e.problem().starts_with(c.problem), e.problem());
     CHECK((c.text.empty() || e.path().ends_with("a.vox")));
   }
-  CHECK(error(keys + "i j k PadBVTotal\n0 0 0 1\n", opaque).problem().starts_with("no column is named 'transmittance'"));
+  CHECK(
+      error(keys + "i j k PadBVTotal\n0 0 0 1\n", opaque).problem().starts_with("no column is named 'transmittance'"));
 }
 
 TEST_CASE("rows that cannot be right are refused, with line and column") {
   struct Case {
     const char *row, *place, *problem;
   };
-  for (const Case& c : {Case{"0 0 0 1\n", "line 10", "has 4 columns: expected 5"},
-                        {"-1 0 0 1 0\n", "line 10, column 1", "'-1': expected a whole number from 0 to 2^32 - 1"},
-                        {"0 1.5 0 1 0\n", "line 10, column 2", "'1.5': expected a whole number"},
-                        {"0 0 4294967296 1 0\n", "line 10, column 3", "'4294967296': expected a whole number"},
-                        {"0 0 4 1 0\n", "line 10, column 3", "'4': expected less than the 4 voxels that 'split' gives"},
-                        {"0 0 1 -0.5 0\n", "line 10, column 4", "'-0.5': expected a density from 0 to 1e12"},
-                        {"0 0 1 inf 0\n", "line 10, column 4", "'inf': expected a number, with a decimal point, or NaN"},
-                        {"0 0 1 2e12 0\n", "line 10, column 4", "'2e12': expected a density from 0 to 1e12"},
-                        {"0 0 1 1 x\n", "line 10, column 5", "'x': expected a number, with a decimal point, or NaN"},
-                        {"0 0 0 1 0\n", "line 10", "the voxel 0 0 0 is repeated: expected each voxel once"}}) {
+  for (const Case& c :
+       {Case{"0 0 0 1\n", "line 10", "has 4 columns: expected 5"},
+        {"-1 0 0 1 0\n", "line 10, column 1", "'-1': expected a whole number from 0 to 2^32 - 1"},
+        {"0 1.5 0 1 0\n", "line 10, column 2", "'1.5': expected a whole number"},
+        {"0 0 4294967296 1 0\n", "line 10, column 3", "'4294967296': expected a whole number"},
+        {"0 0 4 1 0\n", "line 10, column 3", "'4': expected less than the 4 voxels that 'split' gives"},
+        {"0 0 1 -0.5 0\n", "line 10, column 4", "'-0.5': expected a density from 0 to 1e12"},
+        {"0 0 1 inf 0\n", "line 10, column 4", "'inf': expected a number, with a decimal point, or NaN"},
+        {"0 0 1 2e12 0\n", "line 10, column 4", "'2e12': expected a density from 0 to 1e12"},
+        {"0 0 1 1 x\n", "line 10, column 5", "'x': expected a number, with a decimal point, or NaN"},
+        {"0 0 0 1 0\n", "line 10", "the voxel 0 0 0 is repeated: expected each voxel once"}}) {
     CAPTURE(c.row);
     const FileError e = error(head + "# a remark\n0 0 0 1 0\n\n" + c.row);
     CHECK(e.place() == c.place);
     CHECK_MESSAGE(e.problem().starts_with(c.problem), e.problem());
   }
-  const FileError far = error("VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1e6\ni j k PadBVTotal\n0 1000000 0 1\n0 1000001 0 1\n");
+  const FileError far =
+      error("VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1e6\ni j k PadBVTotal\n0 1000000 0 1\n0 1000001 0 1\n");
   CHECK(far.place() == "line 6");
   CHECK(far.problem() == "the voxel 0 1000001 0 is beyond 1e12 m: expected coordinates up to 1e12 m");
   const FileError fine = error("VOXEL SPACE\n#res: 1e-9\n#min_corner: 0 0 -1e12\ni j k PadBVTotal\n0 0 0 1\n");
@@ -249,7 +259,8 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
 
 TEST_CASE("settings that cannot be are refused") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const VoxelFileSettings& settings : {VoxelFileSettings{.exponent = -1}, {.exponent = nan}, {.density_max = 0}, {.density_max = nan}})
+  for (const VoxelFileSettings& settings :
+       {VoxelFileSettings{.exponent = -1}, {.exponent = nan}, {.density_max = 0}, {.density_max = nan}})
     CHECK_THROWS_AS((void)read(head + "0 0 0 1 0\n", settings), SettingError);
 }
 

@@ -32,8 +32,8 @@ std::string error(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a world file places the pixels of a picture") {
-  for (const char* text :
-       {"2\n0\n0\n-3\n1001\n1998.5\n", "2.0\r\n0.0\r\n-0.0\r\n-3.0\r\n1001\r\n1998.5", "\n 2\n0\n0\n -3e0\n1.001e3\n\n1998.5\n\n"}) {
+  for (const char* text : {"2\n0\n0\n-3\n1001\n1998.5\n", "2.0\r\n0.0\r\n-0.0\r\n-3.0\r\n1001\r\n1998.5",
+                           "\n 2\n0\n0\n -3e0\n1.001e3\n\n1998.5\n\n"}) {
     INFO(text);
     const WorldFile world = read(text);
     CHECK(world.step == Vec2{2, -3});
@@ -78,7 +78,8 @@ TEST_CASE("a spoilt world file is refused with its place, or gives a placement t
     INFO("seed 8531, ", text);
     try {
       const WorldFile world = read(text);
-      CHECK((world.step.x >= 1e-9 && world.step.x <= 1e6 && std::fabs(world.first.x) <= 1e15 && std::fabs(world.first.y) <= 1e15));
+      CHECK((world.step.x >= 1e-9 && world.step.x <= 1e6 && std::fabs(world.first.x) <= 1e15 &&
+             std::fabs(world.first.y) <= 1e15));
       ++read_all;
     } catch (const FileError& e) {
       CHECK(e.path() == (folder / "dem.pgw").string());

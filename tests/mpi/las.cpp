@@ -22,8 +22,8 @@ TEST_CASE("LAS files are those of one process, waveforms included") {
   const io::LasSettings settings, waveforms{.waveforms = true}, old{.format = io::LasFormat::las_1_0, .scale = 1e-3};
   require_same_bytes(dry, "las", written_alone<io::LasWriter>(dry, settings), written_by_all<MpiLas>(settings), {""});
   require_same_bytes(dry, "las", written_alone<io::LasWriter>(dry, old), written_by_all<MpiLas>(old), {""});
-  require_same_bytes(with_waveforms, "las", written_alone<io::LasWriter>(with_waveforms, waveforms), written_by_all<MpiLas>(waveforms),
-                     {"", "wdp"});
+  require_same_bytes(with_waveforms, "las", written_alone<io::LasWriter>(with_waveforms, waveforms),
+                     written_by_all<MpiLas>(waveforms), {"", "wdp"});
   CHECK_THROWS_AS(MpiLas(mpi_group(), "never.las", {.intensity = io::LasIntensity::amplitude}), SettingError);
 }
 

@@ -23,12 +23,14 @@ using support::written_by_all;
 
 TEST_CASE("texts are those of one process") {
   const Showers survey{50'000, 8};
-  require_same_bytes(survey, "xyz", written_alone<io::XyzWriter>(survey, io::TextFileSettings{.start_time = 5}),
-                     written_by_all<MpiRows<io::XyzWriter, io::TextFileSettings>>(io::TextFileSettings{.start_time = 5}), {""});
+  require_same_bytes(
+      survey, "xyz", written_alone<io::XyzWriter>(survey, io::TextFileSettings{.start_time = 5}),
+      written_by_all<MpiRows<io::XyzWriter, io::TextFileSettings>>(io::TextFileSettings{.start_time = 5}), {""});
   require_same_bytes(survey, "txt", written_alone<io::PulseTextWriter>(survey, io::TextFileSettings{}),
                      written_by_all<MpiRows<io::PulseTextWriter, io::TextFileSettings>>(io::TextFileSettings{}), {""});
   require_same_bytes(survey, "txt", written_alone<io::WaveformTextWriter>(survey, io::TextFileSettings{}),
-                     written_by_all<MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(io::TextFileSettings{}), {""});
+                     written_by_all<MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(io::TextFileSettings{}),
+                     {""});
 }
 
 TEST_CASE("outputs may want one channel only") {

@@ -31,7 +31,8 @@ static void build_survey(const std::filesystem::path& folder) {
 </document>)";
   const SurveySettings survey = read_survey(folder / "survey.xml", {.assets = {folder}}).survey;
   const SurveyScene scene(SceneBuilder(survey.scene, {}).parts(), {.to = 1});
-  const CompiledSurvey compiled = compile_survey(survey, [&](const pulsecast::Vec2& at) { return scene.ground_height(at); });
+  const CompiledSurvey compiled =
+      compile_survey(survey, [&](const pulsecast::Vec2& at) { return scene.ground_height(at); });
   std::cout << scene.parts().size() << " parts and " << compiled.source.size() << " pulses\n";
 }
 #endif

@@ -33,7 +33,8 @@ void give(auto& writer, std::size_t n, std::size_t a_batch) {
                        .direction = -axis::up,
                        .first_echo = static_cast<std::uint32_t>(i - begin),
                        .echoes = 1});
-      echoes.push_back({.range = 50 + 0.01 * static_cast<double>(i % 7), .amplitude = 1e-6, .object = static_cast<ObjectId>(i % 5)});
+      echoes.push_back(
+          {.range = 50 + 0.01 * static_cast<double>(i % 7), .amplitude = 1e-6, .object = static_cast<ObjectId>(i % 5)});
     }
     EchoBatch batch;
     batch.shots = shots;
@@ -42,7 +43,8 @@ void give(auto& writer, std::size_t n, std::size_t a_batch) {
   }
 }
 
-std::string page_of(const PageSurvey& survey, const PageSettings& settings = {}, std::size_t n = 5000, std::size_t a_batch = 1000) {
+std::string page_of(const PageSurvey& survey, const PageSettings& settings = {}, std::size_t n = 5000,
+                    std::size_t a_batch = 1000) {
   PageWriter writer(path, survey, settings);
   give(writer, n, a_batch);
   CHECK_FALSE(std::filesystem::exists(path));
@@ -108,7 +110,8 @@ TEST_CASE("a page has the colours of its points, if its settings have them") {
   const PointColours colours = [](const EchoBatch&, const Shot& shot, const Echo&) {
     return PointColour{.red = static_cast<std::uint16_t>(shot.index * 10), .green = 257, .blue = 65535};
   };
-  const std::string plain = page_of({}, {.points_max = 1000}), coloured = page_of({}, {.points_max = 1000, .colours = colours});
+  const std::string plain = page_of({}, {.points_max = 1000}),
+                    coloured = page_of({}, {.points_max = 1000, .colours = colours});
   PageSample sample(1000, colours);
   give(sample, 5000, 1000);
   const std::string points = base64(page_columns(sample.points()));
@@ -132,11 +135,13 @@ TEST_CASE("a leg that does not move is a set-up") {
   REQUIRE(setup.places.size() == 1);
   CHECK(setup.places[0] == Vec3{1, 2, 3});
   CHECK(setup.times == std::vector<double>{10});
-  const PageLeg flight = page_leg("B", StraightLine{.from = {0, 0, 0}, .to = {100, 0, 0}, .speed = 10}, Tick{20, 0}, Tick{10, 0}, 11);
+  const PageLeg flight =
+      page_leg("B", StraightLine{.from = {0, 0, 0}, .to = {100, 0, 0}, .speed = 10}, Tick{20, 0}, Tick{10, 0}, 11);
   REQUIRE(flight.places.size() == 11);
   CHECK(flight.times[3] == doctest::Approx(23));
   CHECK(length(flight.places[3] - Vec3{30, 0, 0}) < 1e-9);
-  CHECK(count(page_of({.legs = {setup, flight}}), R"({"name":"A","times":[10],"places":[[1,2,3]]},{"name":"B","times":[20,21,)") == 1);
+  CHECK(count(page_of({.legs = {setup, flight}}),
+              R"({"name":"A","times":[10],"places":[[1,2,3]]},{"name":"B","times":[20,21,)") == 1);
 }
 
 TEST_CASE("settings that cannot be are refused") {

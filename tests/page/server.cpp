@@ -63,7 +63,8 @@ void give(PageServer& server, PulseIndex first, PulseIndex end) {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   for (PulseIndex i = first; i < end; ++i) {
-    shots.push_back({.index = i, .direction = axis::forward, .first_echo = static_cast<std::uint32_t>(echoes.size()), .echoes = 1});
+    shots.push_back(
+        {.index = i, .direction = axis::forward, .first_echo = static_cast<std::uint32_t>(echoes.size()), .echoes = 1});
     echoes.push_back({.range = 5});
   }
   EchoBatch batch;
@@ -101,7 +102,9 @@ TEST_CASE("the page is served to its address, and to nothing else") {
   CHECK(server.stop_requested());
 }
 
-TEST_CASE("addresses differ from server to server") { CHECK(Address(PageServer().address()).path != Address(PageServer().address()).path); }
+TEST_CASE("addresses differ from server to server") {
+  CHECK(Address(PageServer().address()).path != Address(PageServer().address()).path);
+}
 
 TEST_CASE("only this machine is listened to") {
   PageServer server;

@@ -20,7 +20,8 @@ using namespace pulsecast::literals;
 
 TEST_CASE("a block is flown in parallel lines, there and back in turn") {
   // 1000 m to the east by 600 m to the north, lines to the north every 200 m: two reach 450 m, five 1050 m
-  const BlockFlight block{.area = {{0, 0, 50}, {1000, 600, 90}}, .altitude = 800, .swath = 250, .overlap = 0.2, .speed = 70, .run_in = 100};
+  const BlockFlight block{
+      .area = {{0, 0, 50}, {1000, 600, 90}}, .altitude = 800, .swath = 250, .overlap = 0.2, .speed = 70, .run_in = 100};
   const auto lines = plan_block_flight(block);
   REQUIRE(lines.size() == 5);
   for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -49,7 +50,8 @@ TEST_CASE("every place of the area lies in the swath of a line, and neighbours o
     block.swath = any.log_uniform(20, 2000);
     block.overlap = any.uniform(0, 0.9);
     const auto lines = plan_block_flight(block);
-    const auto offset = [](const StraightLine& line, const Vec3& p) {  // to the right of the line, and share of its length
+    const auto offset = [](const StraightLine& line,
+                           const Vec3& p) {  // to the right of the line, and share of its length
       const Vec3 path = line.to - line.from, d{p.x - line.from.x, p.y - line.from.y, 0};
       return Vec2{dot(d, Vec3{path.y, -path.x, 0}) / length(path), dot(d, path) / dot(path, path)};
     };

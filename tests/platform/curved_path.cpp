@@ -38,7 +38,8 @@ TEST_CASE("an arc is an arc of a circle, to the right and to the left") {
     CHECK(apart(arc.after(r * pi / 2).position, {side * r, r}) < 1e-14);
     CHECK(apart(arc.end().position, {side * 2 * r, 0}) < 1e-14);
     CHECK(arc.end().heading == relative(side * pi, 1e-15));
-    for (double s = 0; s < arc.length; s += 0.3) CHECK(apart(arc.after(s).position, {side * r, 0}) == relative(r, 1e-14));
+    for (double s = 0; s < arc.length; s += 0.3)
+      CHECK(apart(arc.after(s).position, {side * r, 0}) == relative(r, 1e-14));
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// From the laser to the point in the world: the whole pipeline against its closed form, computed on its own in extended precision.
+// From the laser to the point in the world: the whole pipeline against its closed form, computed on its own in extended
+// precision.
 
 #include <algorithm>
 #include <array>
@@ -35,7 +36,8 @@ using namespace pulsecast::literals;
 
 namespace {
 
-// ------------------------------------------------------------------------------------------------ the closed form, on its own
+// ------------------------------------------------------------------------------------------------ the closed form, on
+// its own
 
 using Real = long double;
 using Row = std::array<Real, 3>;
@@ -68,7 +70,8 @@ Matrix turn(std::size_t axis, Real angle_deg) {
   return m;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- the flight
+// ---------------------------------------------------------------------------------------------------------------- the
+// flight
 
 const Vec3 start{512345.678, 5403210.987, 1234.5};  // as in UTM [m]
 const Vec3 lever_arm{0.3, -1.2, 0.7};
@@ -76,16 +79,18 @@ constexpr double rate = 50e3, lines_per_second = 77.3, speed = 61.7;
 
 /// The instrument looks down and sweeps to the right; then it is off by 1, -2 and 3 degrees about the axes of the body.
 Rotation boresight() {
-  return extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}, {axis::right, 1_deg}, {axis::forward, -2_deg}, {axis::up, 3_deg}});
+  return extrinsic(
+      {{axis::right, -90_deg}, {axis::up, -90_deg}, {axis::right, 1_deg}, {axis::forward, -2_deg}, {axis::up, 3_deg}});
 }
 
 Matrix expected_boresight() { return turn(2, 3) * turn(1, -2) * turn(0, 1) * turn(2, -90) * turn(0, -90); }
 
 auto airplane(double heading, const Vec3& climb = {}) {
   const Vec3 way{std::sin(heading), std::cos(heading), 0};
-  return Platform{
-      StraightLine{.from = start, .to = start + 500.0 * way + climb, .speed = speed}, Mount{lever_arm, boresight()},
-      Deflector{PolygonMirror{.lines_per_second = lines_per_second, .sweep = 30_deg}, Scanner{.pulse_rate = rate, .pulses = 400'000}}};
+  return Platform{StraightLine{.from = start, .to = start + 500.0 * way + climb, .speed = speed},
+                  Mount{lever_arm, boresight()},
+                  Deflector{PolygonMirror{.lines_per_second = lines_per_second, .sweep = 30_deg},
+                            Scanner{.pulse_rate = rate, .pulses = 400'000}}};
 }
 
 /// A plane through a place of the world.
@@ -141,8 +146,8 @@ double largest_error(const Cloud& cloud, Real heading_deg, const Plane& plane) {
 
 /// A horizontal square of two triangles around a place.
 Scene<TriangleMesh<>> square(const Vec3& middle, double half) {
-  MeshData data{.vertices = {middle + Vec3{-half, -half, 0}, middle + Vec3{half, -half, 0}, middle + Vec3{half, half, 0},
-                             middle + Vec3{-half, half, 0}},
+  MeshData data{.vertices = {middle + Vec3{-half, -half, 0}, middle + Vec3{half, -half, 0},
+                             middle + Vec3{half, half, 0}, middle + Vec3{-half, half, 0}},
                 .triangles = {{0, 1, 2}, {0, 2, 3}}};
   return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(std::move(data))}});
 }
@@ -163,7 +168,8 @@ TEST_CASE("points on a plane from a straight flight match the closed form within
   }
 }
 
-TEST_CASE("the closed form is worth the comparison: a lever arm, a boresight or a heading that is off by little shows") {
+TEST_CASE(
+    "the closed form is worth the comparison: a lever arm, a boresight or a heading that is off by little shows") {
   const Plane ground{start - Vec3{0, 0, 900}};
   const auto error = [&](const Mount& mount) {
     const auto flight = airplane(90_deg);
@@ -173,10 +179,11 @@ TEST_CASE("the closed form is worth the comparison: a lever arm, a boresight or 
   CHECK(error({lever_arm + Vec3{0.001, 0, 0}, boresight()}) > 5e-4);
   CHECK(error({{}, boresight()}) > 1);
   CHECK(error({lever_arm, extrinsic({{axis::up, 0.001_deg}}) * boresight()}) > 1e-3);
-  CHECK(
-      error({lever_arm,
-             extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}, {axis::up, 3_deg}, {axis::forward, -2_deg}, {axis::right, 1_deg}})}) >
-      0.1);
+  CHECK(error({lever_arm, extrinsic({{axis::right, -90_deg},
+                                     {axis::up, -90_deg},
+                                     {axis::up, 3_deg},
+                                     {axis::forward, -2_deg},
+                                     {axis::right, 1_deg}})}) > 0.1);
   CHECK(largest_error(scan(airplane(90_deg), ground, 611), Real{90.001}, ground) > 1e-3);
 }
 

@@ -30,7 +30,9 @@ std::optional<double> level_ground(Vec2) { return 0.0; }
 std::optional<double> ramp(Vec2 p) { return 100 + 0.15 * p.x - 0.1 * p.y; }
 
 /// Hills some 60 m apart and 3 m high, in places as steep as 1 in 6.
-std::optional<double> hills(Vec2 p) { return 1.2 * std::sin(p.x / 10) * std::cos(p.y / 13) + 0.3 * std::sin((p.x + p.y) / 7); }
+std::optional<double> hills(Vec2 p) {
+  return 1.2 * std::sin(p.x / 10) * std::cos(p.y / 13) + 0.3 * std::sin((p.x + p.y) / 7);
+}
 
 /// The four wheels of a vehicle, where they touch the ground.
 std::vector<Vec3> wheels(const Pose<frame::Body, frame::World>& pose, const GroundVehicleSettings& s) {
@@ -51,12 +53,15 @@ double farthest_wheel(const GroundVehicleDrive& drive, const GroundVehicleSettin
   return farthest;
 }
 
-/// The first promise that a drive on level ground does not keep; empty if it keeps all. From the pieces of way and of time themselves.
-std::string broken_promise(const GroundVehicleDrive& drive, const GroundVehicleSettings& s, const Points& points, double grain = 1e-6) {
+/// The first promise that a drive on level ground does not keep; empty if it keeps all. From the pieces of way and of
+/// time themselves.
+std::string broken_promise(const GroundVehicleDrive& drive, const GroundVehicleSettings& s, const Points& points,
+                           double grain = 1e-6) {
   const double more = 1 + 1e-9;
   for (std::size_t k = 0; k < drive.sections().size(); ++k) {
     const auto& [path, start, footings] = drive.sections()[k];
-    if (!(std::fabs(path.curvature) * s.turn_radius <= more)) return sentence("section ", k, " bends by ", path.curvature, " /m");
+    if (!(std::fabs(path.curvature) * s.turn_radius <= more))
+      return sentence("section ", k, " bends by ", path.curvature, " /m");
     if (k > 0 && !(length(drive.sections()[k - 1].path.end().position - path.start.position) <= grain))
       return sentence("a gap before section ", k);
   }
@@ -72,14 +77,17 @@ std::string broken_promise(const GroundVehicleDrive& drive, const GroundVehicleS
       if (!std::isfinite(state.position)) return sentence("piece ", k, " is not finite");
       if (!(state.velocity <= s.speed * more) || !(state.velocity >= -1e-9 * s.speed))
         return sentence("piece ", k, " has a speed of ", state.velocity);
-      const double across = state.velocity * state.velocity * bend, acceleration = std::hypot(across, state.acceleration);
-      if (!(acceleration <= s.acceleration * more)) return sentence("piece ", k, " has an acceleration of ", acceleration);
+      const double across = state.velocity * state.velocity * bend,
+                   acceleration = std::hypot(across, state.acceleration);
+      if (!(acceleration <= s.acceleration * more))
+        return sentence("piece ", k, " has an acceleration of ", acceleration);
       if (!(std::fabs(state.jerk) <= s.jerk * more)) return sentence("piece ", k, " has a jerk of ", state.jerk);
     }
     if (k + 1 == pieces.size()) break;
     const auto end = piece.after(piece.duration), next = pieces[k + 1].piece.after(0);
     if (!(std::fabs(next.position - end.position) <= grain)) return sentence("a gap behind piece ", k);
-    if (!(std::fabs(next.velocity - end.velocity) <= 1e-9 * s.speed)) return sentence("the speed jumps behind piece ", k);
+    if (!(std::fabs(next.velocity - end.velocity) <= 1e-9 * s.speed))
+      return sentence("the speed jumps behind piece ", k);
   }
   for (std::size_t k = 1; k < drive.sections().size(); ++k) {  // at a change of gear it stands
     if (drive.sections()[k].path.gear == drive.sections()[k - 1].path.gear) continue;
@@ -147,11 +155,13 @@ TEST_CASE("over hills the body keeps the speed limit in space, not only on the m
   const auto drive = plan_ground_vehicle(Points{{0, 0}, {300, 0}}, steep, s);
   double fastest = 0;
   for (double t = 0; t + 0.01 < drive.duration().seconds(); t += 0.1)
-    fastest = std::fmax(fastest, length(drive.at(Tick::of_seconds(t + 0.01)).position - drive.at(Tick::of_seconds(t)).position) / 0.01);
+    fastest = std::fmax(
+        fastest, length(drive.at(Tick::of_seconds(t + 0.01)).position - drive.at(Tick::of_seconds(t)).position) / 0.01);
   CHECK(fastest == relative(12, 1e-9));
 }
 
-TEST_CASE("drives through random waypoints keep their radius and all limits, stand where they change gear, and arrive") {
+TEST_CASE(
+    "drives through random waypoints keep their radius and all limits, stand where they change gear, and arrive") {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
@@ -197,7 +207,8 @@ TEST_CASE("no list of waypoints is too odd for a drive") {
   CHECK(keeps({{500000, 5400000}, {500020, 5400000}, {500020, 5400020}}) == "");
   CHECK(keeps({{-1e6, 1e6}, {1e6, 1e6}, {0, 0}}) == "");
   CHECK(keeps({{1e9, 1e9}, {1e9 - 30, 1e9}, {1e9 - 30, 1e9 - 50}}) == "");
-  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{-1e9, 1e9}, {1e9, 1e9}}, level_ground, {}), SettingError);  // too long for its steps
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{-1e9, 1e9}, {1e9, 1e9}}, level_ground, {}),
+                  SettingError);  // too long for its steps
 }
 
 TEST_CASE("ten thousand waypoints are driven, be they in a row, in a circle, or anywhere") {
@@ -224,7 +235,8 @@ TEST_CASE("on any plane the pose is exact, and a straight drive takes L / v + v 
     const Vec2 ahead{std::sin(heading), std::cos(heading)}, end = random.uniform(250, 400) * ahead;
     const auto drive = plan_ground_vehicle(Points{{0, 0}, end}, plane, s);
     const double slope = east * ahead.x + north * ahead.y, way = length(end) * std::hypot(1, slope);
-    CHECK(drive.duration().seconds() == relative(way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk, 1e-13));
+    CHECK(drive.duration().seconds() ==
+          relative(way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk, 1e-13));
     CHECK(drive.warnings().empty());
     for (int i = 0; i <= 20; ++i) {
       const auto pose = drive.at(Tick::of_seconds(drive.duration().seconds() * i / 20));
@@ -240,7 +252,8 @@ TEST_CASE("a step in the ground costs its height in way, wherever it is and howe
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
-    const double height = random.log_uniform(0.01, 0.3), at = random.uniform(50, 450), step = random.log_uniform(0.01, 1);
+    const double height = random.log_uniform(0.01, 0.3), at = random.uniform(50, 450),
+                 step = random.log_uniform(0.01, 1);
     const bool up = random.coin();
     const auto kerb = [&](Vec2 p) -> std::optional<double> { return (p.x < at) == up ? 0 : height; };
     const GroundVehicleSettings s{.speed = random.log_uniform(2, 25), .ground_step = step};
@@ -250,7 +263,8 @@ TEST_CASE("a step in the ground costs its height in way, wherever it is and howe
     CHECK(drive.duration().seconds() <= level + 1.001 * height / s.speed);
     CHECK(drive.warnings().empty());
     const double high = std::fmax(drive.at({}).position.z, drive.at(drive.duration()).position.z);
-    for (const Footing& footing : drive.sections()[0].footings) REQUIRE(std::fabs(footing.height - high / 2) <= high / 2 + 1e-12);
+    for (const Footing& footing : drive.sections()[0].footings)
+      REQUIRE(std::fabs(footing.height - high / 2) <= high / 2 + 1e-12);
   }
 }
 
@@ -259,7 +273,9 @@ TEST_CASE("a drive over steps and slopes keeps its limits along the way in space
     CAPTURE(seed);
     Generator random(seed);
     const double high = random.uniform(0, 0.3), slope = random.uniform(-0.4, 0.4), wide = random.uniform(0.5, 20);
-    const auto ground = [&](Vec2 p) -> std::optional<double> { return slope * p.y + (std::fmod(p.x + 1e3, 2 * wide) < wide ? high : 0); };
+    const auto ground = [&](Vec2 p) -> std::optional<double> {
+      return slope * p.y + (std::fmod(p.x + 1e3, 2 * wide) < wide ? high : 0);
+    };
     Points points(2 + random.whole(5));
     for (auto& p : points) p = {random.uniform(-60, 60), random.uniform(-60, 60)};
     const GroundVehicleSettings s{.speed = random.log_uniform(1, 30)};
@@ -284,12 +300,14 @@ TEST_CASE("a wheel rolls up a kerb along the arc of its axle, and over gaps narr
   const auto highest_step = [](const GroundVehicleDrive& drive) {
     double most = 0;
     const auto& footings = drive.sections()[0].footings;
-    for (std::size_t i = 1; i < footings.size(); ++i) most = std::fmax(most, std::fabs(footings[i].height - footings[i - 1].height));
+    for (std::size_t i = 1; i < footings.size(); ++i)
+      most = std::fmax(most, std::fabs(footings[i].height - footings[i - 1].height));
     return most;
   };
   const auto kerb = [](Vec2 p) -> std::optional<double> { return p.x < 20 ? 0 : 0.15; };
   const auto drive = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, kerb, s);
-  const double r = s.wheel_radius, reach = std::sqrt(2 * r * 0.15 - 0.15 * 0.15);  // the wheel touches the edge from there on
+  const double r = s.wheel_radius,
+               reach = std::sqrt(2 * r * 0.15 - 0.15 * 0.15);  // the wheel touches the edge from there on
   for (const Footing& f : drive.sections()[0].footings) {
     if (f.along < 20 - reach - 0.03) CHECK(f.height < 1e-12);
     if (f.along > 20.5) CHECK(f.height == relative(0.15, 1e-12));
@@ -338,7 +356,8 @@ TEST_CASE("ground that is steeper than 45 degrees, and higher than a wheel, gets
     REQUIRE(drive.warnings().size() == 1);
     CHECK(drive.warnings()[0].find("steeper than 45 degrees") != std::string::npos);
     CHECK(drive.warnings()[0].find("steps of up to 6 m") != std::string::npos);
-    CHECK(drive.duration().seconds() < plan_ground_vehicle(Points{{0, 0}, {40, 0}}, level_ground, {}).duration().seconds() + 1);
+    CHECK(drive.duration().seconds() <
+          plan_ground_vehicle(Points{{0, 0}, {40, 0}}, level_ground, {}).duration().seconds() + 1);
     height = 0.3;
     CHECK(plan_ground_vehicle(Points{{0, 0}, {40, 0}}, wall, {.ground_step = step}).warnings().empty());
   }

@@ -102,7 +102,8 @@ TEST_CASE("many legs keep the laws of a source") {
 }
 
 TEST_CASE("a leg that is not active takes its time and its number, but holds no slots") {
-  const Legs legs(std::vector<Leg<Pass>>{{set_up(1, 4, 6)}, {set_up(2, 1, 5), false}, {set_up(3, 2, 3)}, {set_up(4, 1, 7), false}});
+  const Legs legs(
+      std::vector<Leg<Pass>>{{set_up(1, 4, 6)}, {set_up(2, 1, 5), false}, {set_up(3, 2, 3)}, {set_up(4, 1, 7), false}});
   static_assert(std::same_as<decltype(legs), const Legs<Pass>>);
   CHECK(legs.size() == 9);
   CHECK(legs.duration() == Tick{15, 0});
@@ -119,7 +120,8 @@ TEST_CASE("a leg that is not active takes its time and its number, but holds no 
 
 TEST_CASE("a leg may say when it starts: with a gap, or before the leg listed before it") {
   std::vector<Leg<Pass>> list;
-  for (const Tick start : {Tick{7, 0.25}, Tick{100, 0}, Tick{0, 0.5}}) list.push_back({.platform = set_up(1, 100, 10), .start = start});
+  for (const Tick start : {Tick{7, 0.25}, Tick{100, 0}, Tick{0, 0.5}})
+    list.push_back({.platform = set_up(1, 100, 10), .start = start});
   list.push_back({.platform = set_up(1, 100, 10)});
   const Legs legs(list);
   CHECK(legs.pulse(0)->tick == Tick{7, 0.25});
@@ -179,12 +181,13 @@ TEST_CASE("each leg finds its emitters among those of all, whatever they are") {
 
 TEST_CASE("more emitters than a pulse can number are refused") {
   const auto pass = [](double wavelength) {
-    return Platform{
-        Tripod{}, Mount{},
-        Deflector{FixedBeam{}, Channels{std::vector<Scanner>(40'000, Scanner{.pulses = 1, .laser = {.wavelength = wavelength}})}}};
+    return Platform{Tripod{}, Mount{},
+                    Deflector{FixedBeam{}, Channels{std::vector<Scanner>(
+                                               40'000, Scanner{.pulses = 1, .laser = {.wavelength = wavelength}})}}};
   };
   CHECK(Legs(std::vector{pass(532_nm), pass(532_nm)}).emitters().size() == 40'000);
-  CHECK_THROWS_WITH_AS((Legs(std::vector{pass(532_nm), pass(905_nm)})), doctest::Contains("Legs::legs (emitters) is 80000"), SettingError);
+  CHECK_THROWS_WITH_AS((Legs(std::vector{pass(532_nm), pass(905_nm)})),
+                       doctest::Contains("Legs::legs (emitters) is 80000"), SettingError);
 }
 
 TEST_CASE("no legs are refused") { CHECK_THROWS_AS(Legs(std::vector<Pass>{}), SettingError); }

@@ -26,9 +26,10 @@ using Points = std::vector<FlightPoint>;
 
 double cosine(const Rotation& a, const Rotation& b) { return std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z); }
 
-/// The first promise that a flight does not keep; empty if it keeps all. In each piece at its ends and in between, from the piece itself;
-/// `grain` is how exactly a place can be told where the flight goes [m].
-std::string broken_promise(const MulticopterFlight& flight, const MulticopterSettings& s, const Points& points, double grain = 1e-9) {
+/// The first promise that a flight does not keep; empty if it keeps all. In each piece at its ends and in between, from
+/// the piece itself; `grain` is how exactly a place can be told where the flight goes [m].
+std::string broken_promise(const MulticopterFlight& flight, const MulticopterSettings& s, const Points& points,
+                           double grain = 1e-9) {
   const double more = 1 + 1e-9;
   const auto& pieces = flight.motion().pieces();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -37,7 +38,8 @@ std::string broken_promise(const MulticopterFlight& flight, const MulticopterSet
       const auto state = piece.after(piece.duration * i / 8);
       const Vec3 a = state.acceleration;
       if (!finite(state.position) || !finite(a)) return sentence("piece ", k, " is not finite");
-      if (!(length(state.velocity) <= s.speed * more)) return sentence("piece ", k, " has a speed of ", length(state.velocity));
+      if (!(length(state.velocity) <= s.speed * more))
+        return sentence("piece ", k, " has a speed of ", length(state.velocity));
       if (!(length(a) <= s.acceleration * more)) return sentence("piece ", k, " has an acceleration of ", length(a));
       if (!(length(state.jerk) <= s.jerk * more)) return sentence("piece ", k, " has a jerk of ", length(state.jerk));
       const double bank = std::atan2(std::hypot(a.x, a.y), a.z + standard_gravity);
@@ -53,16 +55,19 @@ std::string broken_promise(const MulticopterFlight& flight, const MulticopterSet
   }
   const auto& turns = flight.heading().pieces();
   for (std::size_t k = 0; k < turns.size(); ++k) {
-    if (!(std::fabs(turns[k].piece.velocity) <= s.yaw_rate * more)) return sentence("the yaw rate of turn ", k, " is too high");
+    if (!(std::fabs(turns[k].piece.velocity) <= s.yaw_rate * more))
+      return sentence("the yaw rate of turn ", k, " is too high");
     const Tick t = turns[k].start;
     if (k > 0 &&
         !(std::fabs(turns[k].piece.position -
-                    turns[k - 1].piece.after(std::fmin(turns[k - 1].piece.duration, t.seconds() - turns[k - 1].start.seconds())).position) <
-          1e-6))
+                    turns[k - 1]
+                        .piece.after(std::fmin(turns[k - 1].piece.duration, t.seconds() - turns[k - 1].start.seconds()))
+                        .position) < 1e-6))
       return sentence("the heading jumps at turn ", k);
   }
   const auto end = flight.motion().at(flight.duration());
-  if (!(length(flight.at({}).position - points.front().position) <= 1e-9)) return "it does not begin at the first waypoint";
+  if (!(length(flight.at({}).position - points.front().position) <= 1e-9))
+    return "it does not begin at the first waypoint";
   if (!(length(end.position - points.back().position) <= 1e-9)) return "it does not arrive at the last waypoint";
   if (length(end.velocity) != 0 || length(end.acceleration) != 0) return "it does not arrive at rest";
   return {};
@@ -151,14 +156,16 @@ TEST_CASE("a smooth turn begins and ends on its legs, as far from the waypoint a
   }
   CHECK(nearest > 0.5);
   CHECK(nearest < 5 / std::sqrt(2.0));
-  CHECK(flight.duration().seconds() < plan_multicopter(Points{{{0, 0, 9}}, {{0, 100, 9}, 1e-9}, {{100, 100, 9}}}, s).duration().seconds());
+  CHECK(flight.duration().seconds() <
+        plan_multicopter(Points{{{0, 0, 9}}, {{0, 100, 9}, 1e-9}, {{100, 100, 9}}}, s).duration().seconds());
 }
 
 TEST_CASE("it departs and arrives with the headings that are wished, and turns the shorter way") {
   const MulticopterSettings s{.yaw_rate = 0.5, .departure_heading = 350_deg, .arrival_heading = -20_deg};
   const auto flight = plan_multicopter(Points{{{5, 5, 9}}, {{15, 5, 9}}}, s);
   CHECK(length(flight.at({}).direction(axis::forward) - Vec3{std::sin(-10_deg), std::cos(-10_deg), 0}) < 1e-14);
-  CHECK(length(flight.at(flight.duration()).direction(axis::forward) - Vec3{std::sin(-20_deg), std::cos(-20_deg), 0}) < 1e-14);
+  CHECK(length(flight.at(flight.duration()).direction(axis::forward) - Vec3{std::sin(-20_deg), std::cos(-20_deg), 0}) <
+        1e-14);
   const auto plain = plan_multicopter(Points{{{5, 5, 9}}, {{15, 5, 9}}}, {});
   CHECK(flight.duration().seconds() - plain.duration().seconds() == relative((100_deg + 110_deg) / 0.5, 1e-12));
 }
@@ -176,7 +183,8 @@ TEST_CASE("however fast it may sink, it keeps a tenth of its weight on its rotor
   double least = 0;
   for (const auto& [start, piece] : flight.motion().pieces()) least = std::fmin(least, piece.acceleration.z);
   CHECK(least == relative(-0.9 * standard_gravity, 1e-9));
-  for (double t = 0; t < flight.duration().seconds(); t += 0.01) CHECK(flight.at(Tick::of_seconds(t)).direction(axis::up) == axis::up);
+  for (double t = 0; t < flight.duration().seconds(); t += 0.01)
+    CHECK(flight.at(Tick::of_seconds(t)).direction(axis::up) == axis::up);
 }
 
 TEST_CASE("flights over random waypoints keep all limits, have no gaps, and arrive") {
@@ -204,7 +212,8 @@ TEST_CASE("finite differences of the poses themselves keep the limits, and no at
     Points points(6);
     for (auto& p : points) p.position = random.point(60);
     const auto flight = plan_multicopter(points, s);
-    const double h = 1e-3;  // differences of a millisecond are exact to 1e-14 / h^2 in acceleration, 1e-14 / h^3 in jerk
+    const double h =
+        1e-3;  // differences of a millisecond are exact to 1e-14 / h^2 in acceleration, 1e-14 / h^3 in jerk
     double most = 0, fastest = 0, turned = 1;
     for (double t = 2 * h; t < flight.duration().seconds(); t += 37 * h) {
       const auto at = [&](double i) { return flight.at(Tick::of_seconds(t + i * h)); };
@@ -220,7 +229,8 @@ TEST_CASE("finite differences of the poses themselves keep the limits, and no at
 }
 
 TEST_CASE("a flight says when it passes each waypoint, also one that stands twice in the list") {
-  const Points points{{{0, 0, 40}}, {{60, 0, 40}}, {{60, 0, 40}}, {{60, 80, 40}, 3}, {{60, 0, 45}}, {{160, 0, 45}}, {{260, 0, 45}}};
+  const Points points{{{0, 0, 40}},  {{60, 0, 40}},  {{60, 0, 40}}, {{60, 80, 40}, 3},
+                      {{60, 0, 45}}, {{160, 0, 45}}, {{260, 0, 45}}};
   for (const auto turn : {MulticopterTurn::smooth, MulticopterTurn::stop_and_turn}) {
     const MulticopterFlight flight = plan_multicopter(points, {.turn = turn});
     REQUIRE(flight.passes().size() == points.size());
@@ -267,7 +277,8 @@ TEST_CASE("ten thousand waypoints are planned, be they in a row, in a circle, or
     circle[k].position = {20 * std::cos(0.01 * i), 20 * std::sin(0.01 * i), 1e-3 * i};
     anywhere[k].position = random.point(1000);
   }
-  for (const Points* points : {&row, &circle, &anywhere}) CHECK(broken_promise(plan_multicopter(*points, {}), {}, *points) == "");
+  for (const Points* points : {&row, &circle, &anywhere})
+    CHECK(broken_promise(plan_multicopter(*points, {}), {}, *points) == "");
 }
 
 TEST_CASE("a flight keeps the laws of a motion") {
@@ -296,7 +307,8 @@ TEST_CASE("a flight that cannot be is refused") {
   const Points points{{{0, 0, 0}}, {{1, 0, 0}}};
   CHECK_THROWS_AS((void)plan_multicopter(Points{}, {}), SettingError);
   CHECK_THROWS_WITH_AS((void)plan_multicopter(Points{{{0, 0, 0}}, {{0, nan, 0}}}, {}),
-                       "plan_multicopter: waypoints[1].position.y is nan m, but must be from -1e+09 to 1e+09", SettingError);
+                       "plan_multicopter: waypoints[1].position.y is nan m, but must be from -1e+09 to 1e+09",
+                       SettingError);
   CHECK_THROWS_AS((void)plan_multicopter(Points{{{0, 0, infinite}}}, {}), SettingError);
   CHECK_THROWS_AS((void)plan_multicopter(Points{{{1e300, 0, 0}}}, {}), SettingError);
   CHECK_THROWS_AS((void)plan_multicopter(Points{{{0, 0, 0}, -1}}, {}), SettingError);

@@ -94,7 +94,9 @@ TEST_CASE("a scan angle is zero below the body, positive to its right, and does 
   }
 }
 
-TEST_CASE("a scan angle is that of the beam from the vertical, with the roll of the body and whatever its heading and pitch") {
+TEST_CASE(
+    "a scan angle is that of the beam from the vertical, with the roll of the body and whatever its heading and "
+    "pitch") {
   struct Attitude {
     Rotation rotation;
     Pose<frame::Body, frame::World> at(Tick) const noexcept { return {rotation, {}}; }
@@ -109,21 +111,25 @@ TEST_CASE("a scan angle is that of the beam from the vertical, with the roll of 
   CHECK(scan_angle(rotation_about(axis::forward, 15_deg), 20_deg) == support::relative(5_deg, 1e-14));
   CHECK(std::fabs(scan_angle(rotation_about(axis::right, 40_deg), 0)) < 1e-15);
   // forward straight up or down has no heading
-  for (const double pitch : {-90_deg, 90_deg}) CHECK(std::isfinite(scan_angle(rotation_about(axis::right, pitch), 10_deg)));
+  for (const double pitch : {-90_deg, 90_deg})
+    CHECK(std::isfinite(scan_angle(rotation_about(axis::right, pitch), 10_deg)));
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const double heading = any.uniform(-3, 3), pitch = any.uniform(-1.4, 1.4), roll = any.uniform(-3, 3), aside = any.uniform(-3, 3);
+    const double heading = any.uniform(-3, 3), pitch = any.uniform(-1.4, 1.4), roll = any.uniform(-3, 3),
+                 aside = any.uniform(-3, 3);
     const Rotation rolled = rotation_about(axis::forward, roll), nosed = rotation_about(axis::right, pitch) * rolled;
     const Vec3 beam = nosed * (rotation_about(axis::forward, -aside) * (down * axis::forward));
-    CHECK(scan_angle(rotation_about(axis::up, heading) * nosed, aside) == support::relative(std::atan2(beam.x, -beam.z), 1e-12));
+    CHECK(scan_angle(rotation_about(axis::up, heading) * nosed, aside) ==
+          support::relative(std::atan2(beam.x, -beam.z), 1e-12));
     CHECK(std::fabs(std::sin(scan_angle(rotation_about(axis::up, heading) * rolled, aside) - (aside - roll))) < 1e-12);
   }
 }
 
 TEST_CASE("a blocked slot stays blocked on a platform") {
-  const Platform platform{Tripod{}, Mount{},
-                          Deflector{PolygonMirror{.lines_per_second = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};
+  const Platform platform{
+      Tripod{}, Mount{},
+      Deflector{PolygonMirror{.lines_per_second = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};
   CHECK_FALSE(platform.pulse(0));
   CHECK_FALSE(platform.pulse(1));
   CHECK(platform.pulse(2));
@@ -131,8 +137,9 @@ TEST_CASE("a blocked slot stays blocked on a platform") {
 }
 
 TEST_CASE("a platform keeps the laws of a source and the size and ticks of what it carries") {
-  const Deflector device{RotatingHead{.rate = 0.1}, Deflector{PolygonMirror{.lines_per_second = 77, .angle_min = -1, .angle_max = 0.5},
-                                                              Scanner{.pulse_rate = 1e6 / 7, .pulses = 100000007}}};
+  const Deflector device{RotatingHead{.rate = 0.1},
+                         Deflector{PolygonMirror{.lines_per_second = 77, .angle_min = -1, .angle_max = 0.5},
+                                   Scanner{.pulse_rate = 1e6 / 7, .pulses = 100000007}}};
   const Platform platform{Spinning{}, Mount{.lever_arm = {0.1, -0.2, 0.3}}, device};
   CHECK(support::source_laws(platform) == "");
   CHECK(support::wrapped_source_laws(platform, device) == "");

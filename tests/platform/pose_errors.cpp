@@ -78,7 +78,8 @@ TEST_CASE("an error of the boresight turns the reported beam in the frame of the
   const WithPoseErrors platform{airplane(), {.boresight_error = error}};
   const auto p = platform.pulse(500);
   const auto inner = airplane().source().pulse(500);
-  const Vec3 expected = rotation_about(axis::up, 30_deg) * (rotation_about(axis::right, -90_deg) * (error * inner->direction()));
+  const Vec3 expected =
+      rotation_about(axis::up, 30_deg) * (rotation_about(axis::right, -90_deg) * (error * inner->direction()));
   CHECK(length(p->reported->direction(axis::forward) - expected) < 1e-14);
   CHECK(p->pose.rotation == airplane().pulse(500)->pose.rotation);
 }
@@ -140,7 +141,8 @@ TEST_CASE("jitter moves the beam and not what is reported of it") {
 TEST_CASE("a platform that errs keeps the laws of a source, with everything switched on") {
   const WithPoseErrors platform{airplane(500), all};
   CHECK(support::source_laws(platform) == "");
-  CHECK(support::source_laws(Legs{std::vector{platform, WithPoseErrors{airplane(300), {.position_noise = 1_m, .seed = 2}}}}) == "");
+  CHECK(support::source_laws(
+            Legs{std::vector{platform, WithPoseErrors{airplane(300), {.position_noise = 1_m, .seed = 2}}}}) == "");
 }
 
 TEST_CASE("the seed decides") {
@@ -155,7 +157,8 @@ TEST_CASE("no two legs err alike, whatever they share; a platform alone errs as 
   using Strip = WithPoseErrors<Flight, Deflector<PolygonMirror, Scanner>>;
   using Any = AnySource<Strip, decltype(airplane())>;
   static_assert(DrawsByLeg<Strip> && DrawsByLeg<Any> && !DrawsByLeg<decltype(airplane())>);
-  const PoseErrors one_kind[] = {{.position_noise = 1}, {.attitude_noise = 1e-3}, {.position_drift = 1}, {.angular_jitter = 1e-3}};
+  const PoseErrors one_kind[] = {
+      {.position_noise = 1}, {.attitude_noise = 1e-3}, {.position_drift = 1}, {.angular_jitter = 1e-3}};
   for (const PoseErrors& errors : one_kind) {
     const Strip strip{airplane(100), errors};
     const Legs legs{std::vector{strip, strip, strip}};

@@ -55,7 +55,8 @@ TEST_CASE("the reachable speed is what a change of speed needs its length for") 
   const SpeedLimits limits{.speed = 50, .acceleration = 2, .braking = 3, .jerk = 4};
   for (const double to : {3.0, 3.1, 7.0, 40.0}) {
     const double way = SpeedChange{3, to, 2, 4}.distance();
-    CHECK(reachable_speed(way, 3, 2, limits) == relative(to, 1e-7));  // to 3 from 3 the distance grows like a square root
+    CHECK(reachable_speed(way, 3, 2, limits) ==
+          relative(to, 1e-7));  // to 3 from 3 the distance grows like a square root
   }
   CHECK(reachable_speed(1e6, 3, 2, limits) == 50);
   CHECK(reachable_speed(0, 3, 2, limits) == 3);
@@ -65,8 +66,8 @@ TEST_CASE("profiles keep their limits, join up, and end where and as fast as the
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
-    const SpeedLimits limits{random.log_uniform(0.01, 100), random.log_uniform(0.01, 100), random.log_uniform(0.01, 100),
-                             random.log_uniform(0.01, 100)};
+    const SpeedLimits limits{random.log_uniform(0.01, 100), random.log_uniform(0.01, 100),
+                             random.log_uniform(0.01, 100), random.log_uniform(0.01, 100)};
     const double way = random.log_uniform(1e-6, 1e4);
     std::vector<double> joints{random.uniform(0, limits.speed), random.uniform(0, limits.speed)};
     settle_speeds(joints, std::vector<PathSection>{{way, limits}});
@@ -109,8 +110,8 @@ TEST_CASE("settled speeds are never raised, and every section can be driven with
     for (std::size_t k = 0; k < sections.size(); ++k) {
       const auto& [way, limits] = sections[k];
       const bool faster = joints[k + 1] > joints[k];
-      CHECK(SpeedChange{joints[k], joints[k + 1], faster ? limits.acceleration : limits.braking, limits.jerk}.distance() <=
-            way * (1 + 1e-12));
+      CHECK(SpeedChange{joints[k], joints[k + 1], faster ? limits.acceleration : limits.braking, limits.jerk}
+                .distance() <= way * (1 + 1e-12));
       CHECK(joints[k] <= wished[k]);
       if (k > 0) CHECK(joints[k] > 0);
     }

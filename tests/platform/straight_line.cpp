@@ -57,7 +57,8 @@ TEST_CASE("straight lines of any length keep the laws of a motion") {
     CAPTURE(seed);
     support::Generator any(seed);
     const Vec3 from = any.point(1e7);
-    const StraightLine line{.from = from, .to = from + any.log_uniform(1e-12, 1e6) * any.unit(), .speed = any.log_uniform(1e-3, 1e3)};
+    const StraightLine line{
+        .from = from, .to = from + any.log_uniform(1e-12, 1e6) * any.unit(), .speed = any.log_uniform(1e-3, 1e3)};
     std::vector<Tick> ticks{{}, line.duration(), {1000000000, 0.5}};
     for (int k = 0; k < 20; ++k) ticks.push_back(Tick::of_seconds(any.uniform(0, line.duration().seconds())));
     CHECK(support::motion_laws(line, ticks) == "");

@@ -60,11 +60,13 @@ TEST_CASE("over any ground the path keeps its height and its slope") {
     support::Generator any(seed);
     const double bumps = any.log_uniform(0.1, 100), tall = any.log_uniform(0.1, 300);
     const auto ground = [&](const Vec2& p) { return tall * std::sin(p.x / bumps) * std::cos(0.7 * p.y / bumps); };
-    const TerrainFollowing settings{.height = any.uniform(-5, 200), .step = any.log_uniform(0.5, 50), .slope = any.log_uniform(0.01, 3)};
+    const TerrainFollowing settings{
+        .height = any.uniform(-5, 200), .step = any.log_uniform(0.5, 50), .slope = any.log_uniform(0.01, 3)};
     const Vec3 from = any.point(1000);
     const Waypoints path = plan_terrain_following({.from = from, .to = from + any.point(2000)}, ground, settings);
     CHECK(steepest(path) <= settings.slope * (1 + 1e-9));
-    for (const TimedPose& p : path.points()) CHECK(p.position.z >= ground({p.position.x, p.position.y}) + settings.height - 1e-9);
+    for (const TimedPose& p : path.points())
+      CHECK(p.position.z >= ground({p.position.x, p.position.y}) + settings.height - 1e-9);
   }
 }
 
@@ -84,7 +86,8 @@ TEST_CASE("where the ground is not known, the last height counts") {
 
 TEST_CASE("a line that is vertical or goes nowhere gives a place above the ground") {
   for (const Vec3& way : {Vec3{}, Vec3{0, 0, 100}, Vec3{1e-12, 0, 0}, Vec3{0, 1e-3, -100}}) {
-    const Waypoints path = plan_terrain_following({.from = utm, .to = utm + way}, [](const Vec2&) { return 12.0; }, {.height = 30});
+    const Waypoints path =
+        plan_terrain_following({.from = utm, .to = utm + way}, [](const Vec2&) { return 12.0; }, {.height = 30});
     const std::vector<Tick> ticks{{}, {0, 1e-7}, path.duration(), {10, 0}};
     CHECK(support::motion_laws(path, ticks) == "");
     CHECK(length(path.at({10, 0}).position - Vec3{utm.x, utm.y, 42}) < 2e-3);

@@ -17,7 +17,8 @@ using namespace pulsecast::literals;
 
 TEST_CASE("a tripod stands where it stands and looks where a compass says") {
   const Vec3 utm{500000, 5400000, 300};
-  const Tripod north{.position = utm}, east{.position = utm, .heading = 90_deg}, northwest{.position = utm, .heading = -45_deg};
+  const Tripod north{.position = utm}, east{.position = utm, .heading = 90_deg},
+      northwest{.position = utm, .heading = -45_deg};
   CHECK(north.at({}).position == utm);
   CHECK(length(north.at({}).direction(axis::forward) - axis::forward) < 1e-15);
   CHECK(length(east.at({}).direction(axis::forward) - axis::right) < 1e-15);

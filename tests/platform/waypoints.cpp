@@ -40,11 +40,11 @@ std::vector<TimedPose> random_points(support::Generator& any, std::size_t n) {
 std::vector<std::vector<Vec3>> awkward_lists() {
   std::vector<std::vector<Vec3>> lists{
       {utm},
-      {utm, utm, utm},                                                                                    // repeated
-      {utm, utm + axis::up, utm + 2.0 * axis::up, utm},                                                   // vertical
-      {utm, utm + 100.0 * axis::right, utm, utm + 100.0 * axis::right},                                   // straight back
+      {utm, utm, utm},                                                   // repeated
+      {utm, utm + axis::up, utm + 2.0 * axis::up, utm},                  // vertical
+      {utm, utm + 100.0 * axis::right, utm, utm + 100.0 * axis::right},  // straight back
       {utm, utm, utm + axis::right, utm + axis::right, utm + axis::right + axis::up, utm + axis::right},  // all of it
-      {{}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5e-324, 5e-324, 5e-324}, {0, 1e-160, 0}},                     // next to nothing
+      {{}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5e-324, 5e-324, 5e-324}, {0, 1e-160, 0}},  // next to nothing
   };
   std::vector<Vec3> millimetres, many, still(10'000, utm);
   support::Generator any(7);
@@ -57,7 +57,8 @@ std::vector<std::vector<Vec3>> awkward_lists() {
 }  // namespace
 
 TEST_CASE("between two waypoints a body moves straight at constant velocity") {
-  const Waypoints path({{.time = 10, .position = utm}, {.time = 14, .position = utm + Vec3{8, -4, 2}}, {.time = 15, .position = utm}});
+  const Waypoints path(
+      {{.time = 10, .position = utm}, {.time = 14, .position = utm + Vec3{8, -4, 2}}, {.time = 15, .position = utm}});
   CHECK(length(path.at(at(11)).position - (utm + Vec3{2, -1, 0.5})) < 1e-9);
   CHECK(length(path.at(at(14.25)).position - (utm + Vec3{6, -3, 1.5})) < 1e-9);
   CHECK(path.at(at(14)).position == utm + Vec3{8, -4, 2});
@@ -66,7 +67,8 @@ TEST_CASE("between two waypoints a body moves straight at constant velocity") {
 
 TEST_CASE("before the first and after the last waypoint a body stands there") {
   for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
-    const Waypoints path({{2, utm, level(1)}, {3, utm + axis::right, level(2)}, {5, utm - axis::right, level(3)}}, kind);
+    const Waypoints path({{2, utm, level(1)}, {3, utm + axis::right, level(2)}, {5, utm - axis::right, level(3)}},
+                         kind);
     for (const double t : {0.0, 1.0, 1.999}) {
       CHECK(path.at(at(t)).position == utm);
       CHECK(heading(path.at(at(t))) == support::relative(1, 1e-14));
@@ -121,14 +123,16 @@ TEST_CASE("cubic positions pass through the waypoints, and their velocity does n
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<TimedPose> points;
-    for (double t = 0; points.size() < 12; t += any.log_uniform(0.1, 10)) points.push_back({.time = t, .position = any.point(100)});
+    for (double t = 0; points.size() < 12; t += any.log_uniform(0.1, 10))
+      points.push_back({.time = t, .position = any.point(100)});
     const Waypoints path(points, Interpolation::cubic);
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
       CAPTURE(i);
       const double t = points[i].time, dt = 1e-5;
       const Vec3 here = path.at(at(t)).position;
       CHECK(length(here - points[i].position) < 1e-11);
-      const Vec3 before = (here - path.at(at(t - dt)).position) / dt, after = (path.at(at(t + dt)).position - here) / dt;
+      const Vec3 before = (here - path.at(at(t - dt)).position) / dt,
+                 after = (path.at(at(t + dt)).position - here) / dt;
       CHECK(length(after - before) < 2);  // the acceleration, up to 1e5 m/s^2, for dt; a kink would be hundreds
     }
   }
@@ -156,7 +160,9 @@ TEST_CASE("waypoints keep the laws of a motion") {
   }
 }
 
-TEST_CASE("where a time stands twice, a body jumps: it arrives as the first waypoint says, and is from then on where the last one does") {
+TEST_CASE(
+    "where a time stands twice, a body jumps: it arrives as the first waypoint says, and is from then on where the "
+    "last one does") {
   const std::vector<TimedPose> points{{0, utm, level(1)},
                                       {2, utm + 4.0 * axis::right, level(1)},
                                       {2, utm, level(3)},
@@ -164,7 +170,8 @@ TEST_CASE("where a time stands twice, a body jumps: it arrives as the first wayp
                                       {4, utm + 5.0 * axis::up, level(2)},
                                       {5, utm + 5.0 * axis::up, level(2)}};
   for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
-    const Waypoints path(points, kind), before({points[0], points[1]}, kind), after({points[3], points[4], points[5]}, kind);
+    const Waypoints path(points, kind), before({points[0], points[1]}, kind),
+        after({points[3], points[4], points[5]}, kind);
     for (double t = 0; t < 2; t += 0.125) CHECK(path.at(at(t)).position == before.at(at(t)).position);
     for (double t = 2; t < 6; t += 0.125) CHECK(path.at(at(t)).position == after.at(at(t)).position);
     CHECK(length(path.at(at(2 - 1e-9)).position - points[1].position) < 1e-8);
@@ -182,7 +189,8 @@ TEST_CASE("a rotation of single precision is made unit") {
   support::Generator any(3);
   for (int k = 0; k < 1000; ++k) {
     const Rotation r = any.rotation();
-    const Rotation rounded{static_cast<float>(r.w), static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z)};
+    const Rotation rounded{static_cast<float>(r.w), static_cast<float>(r.x), static_cast<float>(r.y),
+                           static_cast<float>(r.z)};
     CHECK(length(Waypoints({{.rotation = rounded}}).at({}).rotation) == support::relative(1, 1e-15));
   }
 }
@@ -206,7 +214,8 @@ TEST_CASE("waypoints refuse times that do not ascend and poses that cannot be, a
   CHECK(refused({{.time = 1, .rotation = Rotation{1.0011, 0, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
   CHECK(refused({{.time = 1}, {.time = 2}}) == "");
   CHECK_THROWS_WITH_AS(Waypoints({{0, {}}, {5e-324, axis::right}, {1, axis::up}}, Interpolation::cubic),
-                       "Waypoints::points[1] (velocity from the previous one) is inf m/s, but must be finite", SettingError);
+                       "Waypoints::points[1] (velocity from the previous one) is inf m/s, but must be finite",
+                       SettingError);
 }
 
 TEST_CASE("bodies without a heading look along their path") {
@@ -232,7 +241,8 @@ TEST_CASE("bodies without a heading look along their path") {
 
   const auto of_jump = with_headings({{0, {0, 0, 0}}, {1, {9, 0, 0}}, {1, {0, -9, 0}}, {2, {0, 0, 0}}, {2, {5, 5, 0}}});
   const int expected[] = {90, 90, 0, 0, 0};
-  for (std::size_t k = 0; k < 5; ++k) CHECK(std::lround(degrees(heading_of(of_jump[k].rotation * axis::forward))) == expected[k]);
+  for (std::size_t k = 0; k < 5; ++k)
+    CHECK(std::lround(degrees(heading_of(of_jump[k].rotation * axis::forward))) == expected[k]);
 }
 
 TEST_CASE("a path at constant speed reaches each position when its length says") {

@@ -26,7 +26,8 @@ namespace {
 
 /// A wall of 8 m by 5 m, 10 m to the north.
 const Scene<TriangleMesh<>>& wall() {
-  static const MeshData mesh{.vertices = {{-4, 10, 0}, {4, 10, 0}, {4, 10, 5}, {-4, 10, 5}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  static const MeshData mesh{.vertices = {{-4, 10, 0}, {4, 10, 0}, {4, 10, 5}, {-4, 10, 5}},
+                             .triangles = {{0, 1, 2}, {0, 2, 3}}};
   static const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh), .object = 42}});
   return scene;
 }
@@ -34,8 +35,10 @@ const Scene<TriangleMesh<>>& wall() {
 /// Two lines up and down the wall and beyond it.
 auto survey_of(PulseIndex pulses, double record) {
   const Scanner scanner{.pulse_rate = 10_kHz, .pulses = pulses};
-  const Platform stand{Tripod{.position = {0, 0, 2}}, Mount{}, Deflector{PolygonMirror{.lines_per_second = 100_Hz}, scanner}};
-  return Survey{stand, SunflowerFootprint{7}, wall(), Receiver{}, FullWaveform{WaveformSettings{.record_length = record}}, 3};
+  const Platform stand{Tripod{.position = {0, 0, 2}}, Mount{},
+                       Deflector{PolygonMirror{.lines_per_second = 100_Hz}, scanner}};
+  return Survey{
+      stand, SunflowerFootprint{7}, wall(), Receiver{}, FullWaveform{WaveformSettings{.record_length = record}}, 3};
 }
 using WallSurvey = decltype(survey_of(1, 0));
 
@@ -43,10 +46,11 @@ using WallSurvey = decltype(survey_of(1, 0));
 struct Lost {
   Pose<frame::Body, frame::World> at(Tick) const noexcept { return {no_rotation, {0, 0, std::nan("")}}; }
 };
-using LostSurvey = decltype(Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{}}}, SingleRay{}, wall(), Receiver{},
-                                   FirstHit{}});
+using LostSurvey = decltype(Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{}}}, SingleRay{}, wall(),
+                                   Receiver{}, FirstHit{}});
 LostSurvey lost_survey() {
-  return Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 10}}}, SingleRay{}, wall(), Receiver{}, FirstHit{}};
+  return Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 10}}}, SingleRay{}, wall(),
+                Receiver{}, FirstHit{}};
 }
 
 /// Throws what a reader throws.
@@ -124,9 +128,12 @@ TEST_CASE("points and pulses in Python are those of the same survey in C++, to t
   }
   const auto waveforms = scope["result"].attr("waveforms").cast<py::array_t<float>>();
   CHECK(std::vector<float>(waveforms.data(), waveforms.data() + waveforms.size()) == samples);
-  CHECK(said(scope, "result.fates['returned'] == len(result.points) and result.slots == 200 and result.complete") == "True");
-  py::exec("row = int(numpy.flatnonzero(result.pulses['samples'])[1])\nfirst = result.pulses['first_sample'][row]", scope);
-  CHECK(said(scope, "first > 0 and numpy.array_equal(result.waveform_of(row), result.waveforms[first:first + 16])") == "True");
+  CHECK(said(scope, "result.fates['returned'] == len(result.points) and result.slots == 200 and result.complete") ==
+        "True");
+  py::exec("row = int(numpy.flatnonzero(result.pulses['samples'])[1])\nfirst = result.pulses['first_sample'][row]",
+           scope);
+  CHECK(said(scope, "first > 0 and numpy.array_equal(result.waveform_of(row), result.waveforms[first:first + 16])") ==
+        "True");
   CHECK(said(scope, "[scans.FATES[f] for f in sorted(set(result.pulses['fate']))]") == "['returned', 'missed']");
 }
 
@@ -172,22 +179,27 @@ TEST_CASE("what a callback raises ends the run") {
   py::dict scope = names();
   py::exec(
       "def take(batch): raise KeyError('enough')\n"
-      "try:\n  scans.WallSurvey(20000).run(threads=2, callback=take, every_pulses=1)\nexcept KeyError as e:\n  error = e",
+      "try:\n  scans.WallSurvey(20000).run(threads=2, callback=take, every_pulses=1)\nexcept KeyError as e:\n  error = "
+      "e",
       scope);
   CHECK(said(scope, "error") == "'enough'");
 }
 
 TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is back") {
   py::dict scope = names();
-  py::exec("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)", scope);  // the test framework took it
+  py::exec("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)",
+           scope);  // the test framework took it
   py::exec(
       "def stop(*progress): scans.interrupt()\n"
       "try:\n  scans.WallSurvey(100_000_000).run(progress=stop)\nexcept scans.Interrupted as e:\n  result = e.result\n",
       scope);
   CHECK(said(scope, "0 < result.slots < 100_000_000 and not result.complete") == "True");
-  CHECK(said(scope, "len(result.pulses) == result.slots and list(result.pulses['pulse']) == list(range(result.slots))") == "True");
+  CHECK(
+      said(scope, "len(result.pulses) == result.slots and list(result.pulses['pulse']) == list(range(result.slots))") ==
+      "True");
   CHECK(said(scope, "issubclass(scans.Interrupted, KeyboardInterrupt)") == "True");
-  CHECK_THROWS_WITH(py::exec("scans.interrupt()\nfor i in range(1000000): pass", scope), doctest::Contains("KeyboardInterrupt"));
+  CHECK_THROWS_WITH(py::exec("scans.interrupt()\nfor i in range(1000000): pass", scope),
+                    doctest::Contains("KeyboardInterrupt"));
 }
 
 TEST_CASE("a pose of a user's own trajectory that is not finite is a RuntimeError that names the pulse") {
@@ -200,7 +212,8 @@ except RuntimeError as error:
     said = str(error)
 )",
            scope);
-  CHECK(said(scope, "said") == "pulse 0 at 0 s has a pose that is not finite: check the trajectory, optic or pose errors");
+  CHECK(said(scope, "said") ==
+        "pulse 0 at 0 s has a pose that is not finite: check the trajectory, optic or pose errors");
 }
 
 TEST_CASE("the energy of a batch is the ledger of its run") {
@@ -208,9 +221,10 @@ TEST_CASE("the energy of a batch is the ledger of its run") {
   py::exec("energy = scans.WallSurvey(200, 0).run(threads=1).energy", scope);
   const EnergyLedger e = run(survey_of(200, 0), {.threads = 1}).energy;
   const auto term = [&](const char* name) { return scope["energy"][name].cast<double>(); };
-  CHECK(said(scope, "list(energy)") == "['sent', 'missed', 'out_of_range', 'absorbed', 'scattered', 'cut', 'received']");
-  CHECK(EnergyLedger{term("sent"), term("missed"), term("out_of_range"), term("absorbed"), term("scattered"), term("cut"),
-                     term("received")} == e);
+  CHECK(said(scope, "list(energy)") ==
+        "['sent', 'missed', 'out_of_range', 'absorbed', 'scattered', 'cut', 'received']");
+  CHECK(EnergyLedger{term("sent"), term("missed"), term("out_of_range"), term("absorbed"), term("scattered"),
+                     term("cut"), term("received")} == e);
   CHECK(e.missed > 0);
   CHECK(e.scattered > 0);
   CHECK(e.received > 0);
@@ -227,7 +241,8 @@ TEST_CASE("points by column are those of the rows, with their extras") {
   CHECK(said(scope, "list(columns) == list(rows.columns) == [*rows.points.dtype.names, *extras]") == "True");
   CHECK(said(scope, "all(columns[name].tobytes() == rows.columns[name].tobytes() for name in columns)") == "True");
   CHECK(said(scope, "len(rows.points) > 20 and set(columns['height']) == {5.0}") == "True");
-  CHECK(said(scope, "(columns['red'] == numpy.where(columns['z'] > 2, 65535, 0)).all() and len(set(columns['red']))") == "2");
+  CHECK(said(scope, "(columns['red'] == numpy.where(columns['z'] > 2, 65535, 0)).all() and len(set(columns['red']))") ==
+        "2");
 }
 
 TEST_CASE("a consumer of the Arrow stream may take it apart and keep a column after all else is gone") {

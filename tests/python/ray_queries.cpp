@@ -47,7 +47,8 @@ PYBIND11_EMBEDDED_MODULE(doors, m) {
 
 TEST_CASE("rays of several times meet a moving part of a scene of one's own") {
   py::dict scope = support::python_names("import doors, numpy");
-  py::exec("hits = doors.Door().closest_hits([[0, 0, 0.5], [6, 0, 0.5], [6, 0, 0.5]], [[0, 1, 0]] * 3, time=[0, 0, 3])", scope);
+  py::exec("hits = doors.Door().closest_hits([[0, 0, 0.5], [6, 0, 0.5], [6, 0, 0.5]], [[0, 1, 0]] * 3, time=[0, 0, 3])",
+           scope);
   CHECK(py::eval("hits['range'].tolist()", scope).cast<std::vector<double>>() ==
         std::vector<double>{10, std::numeric_limits<double>::infinity(), 10});
   CHECK(py::eval("hits['velocity'][:, 0].tolist()", scope).cast<std::vector<double>>() == std::vector<double>{2, 0, 2});

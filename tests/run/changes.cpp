@@ -28,7 +28,9 @@ namespace {
 using BodyPose = Pose<frame::Body, frame::World>;
 
 /// Pose after so many jumps: another one each time, above the floor.
-BodyPose jump(int k) { return {rotation_about(axis::up, 0.7 * k), {3 * std::sin(k), 2.5 * std::cos(2 * k), 2 + std::sin(3 * k)}}; }
+BodyPose jump(int k) {
+  return {rotation_about(axis::up, 0.7 * k), {3 * std::sin(k), 2.5 * std::cos(2 * k), 2 + std::sin(3 * k)}};
+}
 
 /// Trajectory that refers to a pose, which the program sets between runs.
 struct Live {
@@ -48,8 +50,8 @@ static_assert(Trajectory<Live> && MovesInLanes<LiveInLanes>);
 
 /// A floor of 100 m, and a wall of 2 m upon it.
 std::shared_ptr<const TriangleMesh<>> floor_mesh() {
-  return std::make_shared<const TriangleMesh<>>(
-      MeshData{.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  return std::make_shared<const TriangleMesh<>>(MeshData{
+      .vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
 }
 std::shared_ptr<const TriangleMesh<>> wall_mesh() {
   return std::make_shared<const TriangleMesh<>>(
@@ -60,12 +62,14 @@ const Scene<TriangleMesh<>> ground({{.geometry = floor_mesh()}, {.geometry = wal
 constexpr PulseIndex slots = 5002;
 const Scanner scanner{.pulse_rate = 10_kHz, .pulses = slots, .laser = {.divergence = 3_mrad}};
 const Mount downwards{.lever_arm = {0.1, 0.2, 0.3}, .boresight = rotation_about(axis::right, -40_deg)};
-const Deflector mirror{PolygonMirror{.lines_per_second = 50, .sweep = 60_deg, .angle_min = -50_deg, .angle_max = 40_deg}, scanner};
+const Deflector mirror{
+    PolygonMirror{.lines_per_second = 50, .sweep = 60_deg, .angle_min = -50_deg, .angle_max = 40_deg}, scanner};
 
 /// The law for a source, whose pose jumps.
 template <class Source>
 std::string laws_of(const Source& source, BodyPose& pose) {
-  return support::change_laws(Survey{source, SingleRay{}, ground, Receiver{}, FirstHit{}}, [&](int k) { pose = jump(k); });
+  return support::change_laws(Survey{source, SingleRay{}, ground, Receiver{}, FirstHit{}},
+                              [&](int k) { pose = jump(k); });
 }
 
 }  // namespace
@@ -90,7 +94,8 @@ TEST_CASE("a pose that jumps between runs is that of all their pulses, whatever 
 
 TEST_CASE("a map that changes between runs is met by all their pulses, as it then is") {
   BodyPose pose;
-  const Survey still{Platform{Live{&pose}, downwards, mirror}, SunflowerFootprint{7}, ground, Receiver{}, FullWaveform{}};
+  const Survey still{Platform{Live{&pose}, downwards, mirror}, SunflowerFootprint{7}, ground, Receiver{},
+                     FullWaveform{}};
   CHECK(support::change_laws(still, [&](int k) { pose = jump(k); }) == "");
 
   using World = Scene<TriangleMesh<>>;
@@ -103,17 +108,21 @@ TEST_CASE("a map that changes between runs is met by all their pulses, as it the
   };
   const Platform tripod{Tripod{.position = {0, 0, 4}}, downwards, mirror};
   CHECK(support::change_laws(Survey{tripod, SunflowerFootprint{7}, world, Receiver{}, FullWaveform{}}, place) == "");
-  const LightPaths light{
-      .scattering = {.orders = 2, .paths = 2}, .air = Media({{.medium = {.scattering = 1e-3, .backscatter = 1e-4}}}), .volume_cells = 256};
-  CHECK(support::change_laws(Survey{tripod, SingleRay{}, world, light, Receiver{.range_max = 50}, FullWaveform{}}, place) == "");
+  const LightPaths light{.scattering = {.orders = 2, .paths = 2},
+                         .air = Media({{.medium = {.scattering = 1e-3, .backscatter = 1e-4}}}),
+                         .volume_cells = 256};
+  CHECK(support::change_laws(Survey{tripod, SingleRay{}, world, light, Receiver{.range_max = 50}, FullWaveform{}},
+                             place) == "");
 }
 
 TEST_CASE("a scene that moves by itself is met from where the pose has jumped, with what the surfaces do then") {
   BodyPose pose;
   const auto motion = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {1, 2, 0}, .rate = 2});
-  const MovingScene<TriangleMesh<>> scene({{.geometry = floor_mesh()}, {.geometry = wall_mesh(), .motion = motion}}, {.to = 2});
-  CHECK(support::change_laws(Survey{Platform{Live{&pose}, downwards, mirror}, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{}},
-                             [&](int k) { pose = jump(k); }) == "");
+  const MovingScene<TriangleMesh<>> scene({{.geometry = floor_mesh()}, {.geometry = wall_mesh(), .motion = motion}},
+                                          {.to = 2});
+  CHECK(support::change_laws(
+            Survey{Platform{Live{&pose}, downwards, mirror}, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{}},
+            [&](int k) { pose = jump(k); }) == "");
 }
 
 namespace {
@@ -121,10 +130,13 @@ namespace {
 /// Rangefinder at 100 Hz that looks along x towards a wall at 100 m, from where the program has driven it.
 struct Rangefinder {
   BodyPose pose{rotation_about(axis::up, -90_deg), {}};
-  Scene<TriangleMesh<>> wall{{{.geometry = std::make_shared<const TriangleMesh<>>(
-                                   MeshData{.vertices = {{100, -9, -9}, {100, 9, -9}, {100, 0, 9}}, .triangles = {{0, 1, 2}}})}}};
-  Platform<Live, Deflector<FixedBeam, Scanner>> platform{Live{&pose}, Mount{}, {FixedBeam{}, {.pulse_rate = 100_Hz, .pulses = 1000}}};
-  Survey<decltype(platform), SingleRay, Scene<TriangleMesh<>>, FirstHit> survey{platform, SingleRay{}, wall, Receiver{}, FirstHit{}};
+  Scene<TriangleMesh<>> wall{
+      {{.geometry = std::make_shared<const TriangleMesh<>>(
+            MeshData{.vertices = {{100, -9, -9}, {100, 9, -9}, {100, 0, 9}}, .triangles = {{0, 1, 2}}})}}};
+  Platform<Live, Deflector<FixedBeam, Scanner>> platform{
+      Live{&pose}, Mount{}, {FixedBeam{}, {.pulse_rate = 100_Hz, .pulses = 1000}}};
+  Survey<decltype(platform), SingleRay, Scene<TriangleMesh<>>, FirstHit> survey{platform, SingleRay{}, wall, Receiver{},
+                                                                                FirstHit{}};
 };
 
 /// A survey of a user's: only what a run requires.
@@ -141,10 +153,13 @@ struct LeastSurvey {
 
 }  // namespace
 
-TEST_CASE("a rangefinder that drives 2 m a step reads 100, 98, 96 and so on, by runs and by single calls, step by step or slot 0 again") {
+TEST_CASE(
+    "a rangefinder that drives 2 m a step reads 100, 98, 96 and so on, by runs and by single calls, step by step or "
+    "slot 0 again") {
   Rangefinder r;
   const LeastSurvey<decltype(r.survey)> least{r.survey};
-  static_assert(PulseSurvey<decltype(least)> && !SimulatesInOrder<decltype(least)> && SimulatesInOrder<decltype(r.survey)>);
+  static_assert(PulseSurvey<decltype(least)> && !SimulatesInOrder<decltype(least)> &&
+                SimulatesInOrder<decltype(r.survey)>);
   ThreadPool pool(2);
   auto workspace = r.survey.workspace();
   for (int time = 0; time < 5; ++time)
@@ -161,7 +176,8 @@ TEST_CASE("a rangefinder that drives 2 m a step reads 100, 98, 96 and so on, by 
         run(least, {.executor = pool, .first = slot, .end = slot + 1}, add);
         read.push_back(r.survey(slot, workspace).echoes[0].range);
         REQUIRE(read.size() == 4);
-        for (const double range : read) REQUIRE(range == doctest::Approx(100 - 2 * static_cast<double>(step)).epsilon(1e-12));
+        for (const double range : read)
+          REQUIRE(range == doctest::Approx(100 - 2 * static_cast<double>(step)).epsilon(1e-12));
       }
 }
 

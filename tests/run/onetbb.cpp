@@ -32,7 +32,8 @@ static_assert(Executor<OneTbb>);
 MeshData bumps(std::uint32_t n) {
   MeshData mesh;
   for (std::uint32_t i = 0; i <= n; ++i)
-    for (std::uint32_t j = 0; j <= n; ++j) mesh.vertices.push_back({0.1 * i - 0.05 * n, 0.1 * j - 0.05 * n, (i * j) % 7 * 0.05});
+    for (std::uint32_t j = 0; j <= n; ++j)
+      mesh.vertices.push_back({0.1 * i - 0.05 * n, 0.1 * j - 0.05 * n, (i * j) % 7 * 0.05});
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = 0; j < n; ++j) {
       const std::uint32_t k = i * (n + 1) + j;
@@ -49,7 +50,8 @@ TEST_CASE("oneTBB builds a mesh and runs a survey, and a survey in its sink, to 
   const MeshData mesh = bumps(100);
   const Scene<TriangleMesh<>> of_one({{.geometry = std::make_shared<const TriangleMesh<>>(mesh, 1U)}});
   const Scene<TriangleMesh<>> of_tbb({{.geometry = std::make_shared<const TriangleMesh<>>(mesh, tbb)}});
-  const Platform tripod{Tripod{}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{PolygonMirror{}, Scanner{.pulses = 20'000}}};
+  const Platform tripod{Tripod{}, Mount{.lever_arm = {0, 0, 1.7}},
+                        Deflector{PolygonMirror{}, Scanner{.pulses = 20'000}}};
   const Survey plain{tripod, SingleRay{}, of_one, Receiver{}, FullWaveform{}};
   const Survey survey{tripod, SingleRay{}, of_tbb, Receiver{}, FullWaveform{}};
   support::LawfulSink expected;

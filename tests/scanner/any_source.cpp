@@ -49,7 +49,8 @@ TEST_CASE("legs of different platforms follow each other") {
   const Fixed device{FixedBeam{}, scanner};
   const Platform standing{Tripod{.position = {1, 2, 3}}, Mount{}, device};
   const Platform flying{StraightLine{.from = {0, 0, 100}, .to = {100, 0, 100}, .speed = 50}, Mount{}, device};
-  const Legs legs{std::vector<AnySource<std::decay_t<decltype(standing)>, std::decay_t<decltype(flying)>>>{standing, flying}};
+  const Legs legs{
+      std::vector<AnySource<std::decay_t<decltype(standing)>, std::decay_t<decltype(flying)>>>{standing, flying}};
   CHECK(legs.pulse(3)->origin() == standing.pulse(3)->origin());
   CHECK(legs.pulse(53)->origin() == flying.pulse(3)->origin());
 }

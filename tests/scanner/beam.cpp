@@ -76,7 +76,8 @@ TEST_CASE("an exit refuses what no optics can do") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   CHECK_NOTHROW(BeamExit{}.validate());
   CHECK_NOTHROW(BeamExit{.focus = -infinity}.validate());
-  for (const double bad : {0.0, -1.0, nan, infinity}) CHECK_THROWS_AS(BeamExit{.diameter = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan, infinity})
+    CHECK_THROWS_AS(BeamExit{.diameter = bad}.validate(), SettingError);
   for (const double bad : {0.0, nan}) CHECK_THROWS_AS(BeamExit{.focus = bad}.validate(), SettingError);
   for (const double bad : {0.99, nan, infinity}) CHECK_THROWS_AS(BeamExit{.quality = bad}.validate(), SettingError);
   CHECK_THROWS_AS((void)gaussian_beam({}, Laser{.wavelength = 0}), SettingError);

@@ -37,8 +37,9 @@ std::vector<Beam> fan(std::size_t n, PulseIndex pulses = 1000) {
   std::vector<Beam> beams;
   for (std::size_t k = 0; k < n; ++k) {
     const double place = static_cast<double>(k);
-    beams.emplace_back(FixedBeam{aimed_at(0, radians(-15 + 30 * place / static_cast<double>(n - 1)), {0, 0, 0.001 * place})},
-                       Scanner{.pulse_rate = 20_kHz, .pulses = pulses, .delay = place * 1_us});
+    beams.emplace_back(
+        FixedBeam{aimed_at(0, radians(-15 + 30 * place / static_cast<double>(n - 1)), {0, 0, 0.001 * place})},
+        Scanner{.pulse_rate = 20_kHz, .pulses = pulses, .delay = place * 1_us});
   }
   return beams;
 }
@@ -83,17 +84,21 @@ TEST_CASE("a spinning sensor of many beams draws one cone per beam, each beam tu
   const std::vector<Emitter> emitters = robot.emitters();
   for (PulseIndex i = 0; i < robot.size(); i += 101) {
     const auto p = robot.pulse(i);
-    const double elevation = radians(-15 + 30 * static_cast<double>(emitters[p->emitter].channel) / 31), azimuth = rate * p->tick.seconds();
+    const double elevation = radians(-15 + 30 * static_cast<double>(emitters[p->emitter].channel) / 31),
+                 azimuth = rate * p->tick.seconds();
     const double level = std::cos(elevation);
     CAPTURE(i);
-    CHECK(length(p->direction() - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-12);
+    CHECK(length(p->direction() - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) <
+          1e-12);
   }
 }
 
 TEST_CASE("channels may differ in laser and in optic, and one may be blocked while another is open") {
   std::vector<Deflector<PolygonMirror, Scanner>> two;
-  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_min = 0}, Scanner{.pulses = 5000, .laser = {.wavelength = 1064_nm}});
-  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_max = 0}, Scanner{.pulses = 5000, .laser = {.wavelength = 532_nm}});
+  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_min = 0},
+                   Scanner{.pulses = 5000, .laser = {.wavelength = 1064_nm}});
+  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_max = 0},
+                   Scanner{.pulses = 5000, .laser = {.wavelength = 532_nm}});
   const Channels device{two};
   CHECK(support::source_laws(device) == "");
   const std::vector<Emitter> emitters = device.emitters();
@@ -105,7 +110,9 @@ TEST_CASE("channels may differ in laser and in optic, and one may be blocked whi
 
   std::vector<Deflector<RisleyPrisms, Scanner>> three;
   for (const double aside : {-0.1, 0.0, 0.1})
-    three.emplace_back(RisleyPrisms{.prisms = {{.turns_per_second = 77}, {.turns_per_second = -33}}, .incident = {aside, 1, 0}}, Scanner{});
+    three.emplace_back(
+        RisleyPrisms{.prisms = {{.turns_per_second = 77}, {.turns_per_second = -33}}, .incident = {aside, 1, 0}},
+        Scanner{});
   const Channels rosettes{three};
   CHECK(support::source_laws(rosettes) == "");
   CHECK(rosettes.pulse(0)->direction().x < rosettes.pulse(1)->direction().x);
@@ -123,7 +130,8 @@ TEST_CASE("several lasers may share one mirror") {
 
 TEST_CASE("channels of several emitters each list all of them, under the number of their channel") {
   const auto pair = [](double first, double second) {
-    return Channels{std::vector<Scanner>{{.laser = {.wavelength = first}, .receiver = 1}, {.laser = {.wavelength = second}}}};
+    return Channels{
+        std::vector<Scanner>{{.laser = {.wavelength = first}, .receiver = 1}, {.laser = {.wavelength = second}}}};
   };
   const Channels device{std::vector{pair(905_nm, 1064_nm), pair(1310_nm, 1550_nm)}};
   CHECK(support::source_laws(device) == "");
@@ -160,7 +168,8 @@ TEST_CASE("channels whose time would go backwards are refused") {
   CHECK_THROWS_AS(device({0, 2_us, 2_us, 2_us, 1_us}), SettingError);
 }
 
-TEST_CASE("channels out of order are found wherever their optics open, and wherever a source of one's own goes astray") {
+TEST_CASE(
+    "channels out of order are found wherever their optics open, and wherever a source of one's own goes astray") {
   // a mirror that is closed in the first 19 ms of a line, and at the end, too
   const auto pair = [](double first, double second) {
     const PolygonMirror late{.lines_per_second = 33, .angle_min = 30_deg};

@@ -101,7 +101,8 @@ TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian bea
   std::size_t inside = 0;
   for (std::size_t j = 0; j < n; ++j) {
     REQUIRE(f.share(j) == f.share(0));
-    if (j > 0) REQUIRE(radius(f.offset(j)) > radius(f.offset(j - 1)) - 5e-4);  // but for the map of the whole to the moments
+    if (j > 0)
+      REQUIRE(radius(f.offset(j)) > radius(f.offset(j - 1)) - 5e-4);  // but for the map of the whole to the moments
     second_moment += f.share(j) * std::pow(radius(f.offset(j)), 2);
     inside += radius(f.offset(j)) < 1;
   }
@@ -113,7 +114,8 @@ TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian bea
 TEST_CASE("the subrays of a sunflower are at the middles of equal energies, a golden angle apart") {
   const SunflowerFootprint f(2);
   const double first = std::sqrt(-0.5 * std::log(1 - 0.25)), second = std::sqrt(-0.5 * std::log(1 - 0.75));
-  const double apart = std::sqrt(first * first + second * second - 2 * first * second * std::cos(pi * (3 - std::sqrt(5.0))));
+  const double apart =
+      std::sqrt(first * first + second * second - 2 * first * second * std::cos(pi * (3 - std::sqrt(5.0))));
   const Vec2 between = f.offset(1) - f.offset(0);
   CHECK(std::hypot(between.x, between.y) == support::relative(apart, 1e-14));
 }
@@ -126,7 +128,9 @@ TEST_CASE("a lattice's subrays carry equal energy and spread as a Gaussian beam 
   std::size_t inside = 0;
   for (std::size_t j = 0; j < n; ++j) {
     REQUIRE(f.share(j) == f.share(0));
-    if (j > 0) REQUIRE(f.offset(j).x > f.offset(j - 1).x - 5e-4);  // each has a column of its own, but for the map to the moments
+    if (j > 0)
+      REQUIRE(f.offset(j).x >
+              f.offset(j - 1).x - 5e-4);  // each has a column of its own, but for the map to the moments
     const Vec2 offset = f.offset(j);
     xx += f.share(j) * offset.x * offset.x;
     yy += f.share(j) * offset.y * offset.y;
@@ -283,7 +287,8 @@ TEST_CASE("second moments are those of a Gaussian beam: a quarter of the squared
     check(moments(LatticeFootprint(n)), n);
     check(moments(SunflowerFootprint(n)), n);
   }
-  for (const std::size_t circles : {2UL, 3UL, 5UL, 40UL}) check(moments(RingFootprint(circles, RingMoments::whole)), circles);
+  for (const std::size_t circles : {2UL, 3UL, 5UL, 40UL})
+    check(moments(RingFootprint(circles, RingMoments::whole)), circles);
   const Moments within = moments(RingFootprint(3));
   CHECK(4 * within.across == doctest::Approx(0.68).epsilon(0.03));
   CHECK(RingFootprint(1, RingMoments::whole).offset(0) == Vec2{0, 0});

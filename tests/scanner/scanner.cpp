@@ -61,7 +61,8 @@ TEST_CASE("a scanner refuses what no laser can do") {
     CHECK_THROWS_AS(Scanner{.laser = {.peak_power = bad}}.validate(), SettingError);
     CHECK_THROWS_AS(Scanner{.laser = {.pulse_length = bad}}.validate(), SettingError);
   }
-  for (const double bad : {-0.001, nan, infinity, 4.0}) CHECK_THROWS_AS(Scanner{.laser = {.divergence = bad}}.validate(), SettingError);
+  for (const double bad : {-0.001, nan, infinity, 4.0})
+    CHECK_THROWS_AS(Scanner{.laser = {.divergence = bad}}.validate(), SettingError);
   for (const double bad : {-1e-9, nan, infinity, 10_us})
     CHECK_THROWS_AS((Scanner{.pulse_rate = 100_kHz, .delay = bad}.validate()), SettingError);
   CHECK_NOTHROW(Scanner{.pulse_rate = 100_kHz, .delay = 9.9_us}.validate());
@@ -72,7 +73,9 @@ TEST_CASE("a scanner refuses what no laser can do") {
     CHECK_THROWS_AS((Scanner{.laser = {.divergence = {1_mrad, bad}}}.validate()), SettingError);
     CHECK_THROWS_AS((Scanner{.laser = {.divergence = {bad, 1_mrad}}}.validate()), SettingError);
   }
-  for (const double bad : {-0.001, nan, infinity}) CHECK_THROWS_AS(Scanner{.laser = {.waist_diameter = bad}}.validate(), SettingError);
-  for (const double bad : {nan, infinity}) CHECK_THROWS_AS(Scanner{.laser = {.waist_range = bad}}.validate(), SettingError);
+  for (const double bad : {-0.001, nan, infinity})
+    CHECK_THROWS_AS(Scanner{.laser = {.waist_diameter = bad}}.validate(), SettingError);
+  for (const double bad : {nan, infinity})
+    CHECK_THROWS_AS(Scanner{.laser = {.waist_range = bad}}.validate(), SettingError);
   CHECK_NOTHROW((Scanner{.laser = {.waist_diameter = 5_mm, .waist_range = -2}}.validate()));
 }

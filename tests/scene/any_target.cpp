@@ -43,7 +43,8 @@ struct Unique {
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept { return plane->closest_hit(ray); }
 };
 
-static_assert(BundleTarget<Map> && BundleTarget<MapOrOwn> && BundleTarget<AnyTarget<Plane>> && BundleTarget<AnyTarget<Unique, Plane>>);
+static_assert(BundleTarget<Map> && BundleTarget<MapOrOwn> && BundleTarget<AnyTarget<Plane>> &&
+              BundleTarget<AnyTarget<Unique, Plane>>);
 static_assert(!RayTarget<Map> && !RayTarget<MapOrOwn>);
 static_assert(AnswersRays<Meshes> && AnswersRays<Moving> && !AnswersRays<Plane> && !AnswersRays<Layered<Meshes>>);
 static_assert(AnswersRays<Map> && !AnswersRays<MapOrOwn>);
@@ -56,20 +57,25 @@ concept Grounded = requires(const M& map) {
   map.ground_height({0, 0});
 };
 static_assert(Bounded<Map> && Grounded<Map> && !Bounded<MapOrOwn> && !Grounded<MapOrOwn>);
-static_assert(std::is_constructible_v<Map, Terrain> && !std::is_constructible_v<Map, Plane> && !std::is_default_constructible_v<Map>);
+static_assert(std::is_constructible_v<Map, Terrain> && !std::is_constructible_v<Map, Plane> &&
+              !std::is_default_constructible_v<Map>);
 
-std::shared_ptr<const Mesh> random_mesh(Generator& random) { return std::make_shared<const Mesh>(support::soup(random, 60, 10)); }
+std::shared_ptr<const Mesh> random_mesh(Generator& random) {
+  return std::make_shared<const Mesh>(support::soup(random, 60, 10));
+}
 
 Terrain random_terrain(Generator& random) {
   Raster raster{.columns = 9, .rows = 9, .first = {-10, 10}, .pixel = {2.5, 2.5}};
   for (std::size_t k = 0; k < 81; ++k) raster.heights.push_back(static_cast<float>(random.point(3).z));
-  return Terrain({{.geometry = std::make_shared<const HeightField>(std::move(raster)), .materials = material_table({{.ground = true}})}});
+  return Terrain({{.geometry = std::make_shared<const HeightField>(std::move(raster)),
+                   .materials = material_table({{.ground = true}})}});
 }
 
 /// Ray from outside towards the maps, at any time of a second.
 Ray random_ray(Generator& random) {
   const Vec3 origin = 20.0 * random.unit();
-  return {.origin = origin, .direction = normalize(random.point(8) - origin), .tick = Tick::of_seconds(random.uniform())};
+  return {
+      .origin = origin, .direction = normalize(random.point(8) - origin), .tick = Tick::of_seconds(random.uniform())};
 }
 
 template <class Target>
@@ -80,8 +86,8 @@ Hit ask(const Target& target, const RayBundle& rays) {
 }
 
 bool same(const Hit& a, const Hit& b) {
-  return a.range == b.range && a.cos_incidence == b.cos_incidence && a.backscatter == b.backscatter && a.object == b.object &&
-         a.classification == b.classification;
+  return a.range == b.range && a.cos_incidence == b.cos_incidence && a.backscatter == b.backscatter &&
+         a.object == b.object && a.classification == b.classification;
 }
 
 /// Compares a target with itself among several, by random rays.
@@ -123,7 +129,8 @@ TEST_CASE("each of several maps answers as it does alone") {
     Generator random(seed);
     const Meshes still({{.geometry = random_mesh(random)}, {.geometry = random_mesh(random), .object = 2}});
     const auto drift = std::make_shared<const PartMotion>(SteadyMotion{.velocity = random.point(5)});
-    const Moving moving({{.geometry = random_mesh(random)}, {.geometry = random_mesh(random), .motion = drift}}, {.to = 1});
+    const Moving moving({{.geometry = random_mesh(random)}, {.geometry = random_mesh(random), .motion = drift}},
+                        {.to = 1});
     const Terrain terrain = random_terrain(random);
     compare(still, Map(still), random);
     compare(moving, Map(moving), random);

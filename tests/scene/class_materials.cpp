@@ -24,7 +24,8 @@ const Vec3 red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1};
 
 TEST_CASE("each code that occurs gets the colour of the table, in its material or a copy of the first") {
   const Raster codes{.columns = 3, .rows = 2, .heights = {0, 2, 1.5F, missing, 9, 2}};
-  ClassMaterials classes{.materials = {{.name = "ground", .reflectance = 0.3}, {.name = "water", .reflectance = 0.1}}, .listed = {{2, 1}}};
+  ClassMaterials classes{.materials = {{.name = "ground", .reflectance = 0.3}, {.name = "water", .reflectance = 0.1}},
+                         .listed = {{2, 1}}};
   colour_classes(classes, codes, std::vector<Vec3>{red, green, blue});
   REQUIRE(classes.materials.size() == 3);  // code 1 does not occur, and 9 is not in the table
   CHECK(classes.materials[0].colour == Vec3{1, 1, 1});

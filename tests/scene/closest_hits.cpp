@@ -90,8 +90,8 @@ TEST_CASE("many rays meet what each of them meets alone, to the last bit") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);
     support::Generator random(seed);
-    const Scene<Mesh> scene(
-        {{.geometry = random_mesh(random, 2000)}, {.geometry = random_mesh(random, 10), .placement = {.translation = {3, 4, 5}}}});
+    const Scene<Mesh> scene({{.geometry = random_mesh(random, 2000)},
+                             {.geometry = random_mesh(random, 10), .placement = {.translation = {3, 4, 5}}}});
     const std::vector<Ray> rays = random_rays(random, 3000);
     check(scene, rays);
   }
@@ -101,8 +101,9 @@ TEST_CASE("rays with ends, times and directions of their own meet what each of t
   const std::uint64_t seed = 5;
   support::Generator random(seed);
   const auto drift = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {1, 2, 3}});
-  const MovingScene<Mesh> scene({{.geometry = random_mesh(random, 500)}, {.geometry = random_mesh(random, 500), .motion = drift}},
-                                MovingIndexSettings{.to = 10});
+  const MovingScene<Mesh> scene(
+      {{.geometry = random_mesh(random, 500)}, {.geometry = random_mesh(random, 500), .motion = drift}},
+      MovingIndexSettings{.to = 10});
   std::vector<Ray> rays = random_rays(random, 3000);
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -120,12 +121,15 @@ TEST_CASE("rays with ends, times and directions of their own meet what each of t
 TEST_CASE("rays that meet leaves at random keep their own keys") {
   VoxelData data{.edge = 1, .cells = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}};
   data.densities.assign(4, 0.7F);
-  const Scene<VoxelGrid<TransmissiveVoxels>> scene({{.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(data)}});
+  const Scene<VoxelGrid<TransmissiveVoxels>> scene(
+      {{.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(data)}});
   CHECK(!scene.keyless());
   std::vector<Ray> rays;
-  for (std::uint64_t k = 0; k < 300; ++k) rays.push_back({.origin = {-1, 0.5, 0.5}, .direction = axis::right, .seed = 4, .pulse = k});
+  for (std::uint64_t k = 0; k < 300; ++k)
+    rays.push_back({.origin = {-1, 0.5, 0.5}, .direction = axis::right, .seed = 4, .pulse = k});
   check(scene, rays);
-  CHECK(std::any_of(rays.begin(), rays.end(), [&](const Ray& ray) { return scene.closest_hit(ray) != scene.closest_hit(rays[0]); }));
+  CHECK(std::any_of(rays.begin(), rays.end(),
+                    [&](const Ray& ray) { return scene.closest_hit(ray) != scene.closest_hit(rays[0]); }));
 }
 
 TEST_CASE("neighbouring rays are traced together in any order, and rays with nobody beside them alone") {

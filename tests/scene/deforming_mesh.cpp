@@ -37,7 +37,8 @@ void require_same(const Mesh& mesh, const MeshData& data, Generator& any, double
   for (int k = 0; k < 40; ++k) {
     const Triangle aimed = data.triangle(any.whole(data.triangles.size()));
     const Vec3 from = any.point(2 * reach), at = any.coin() ? aimed.a : (aimed.a + aimed.b + aimed.c) / 3.0;
-    const RayBundle rays = any.cone(from, normalize(at - from), 0.01, any.coin() ? 1 : 1 + any.whole(RayBundle::capacity));
+    const RayBundle rays =
+        any.cone(from, normalize(at - from), 0.01, any.coin() ? 1 : 1 + any.whole(RayBundle::capacity));
     ClosestHits hits(rays), expected(rays);
     mesh.closest(rays, hits);
     fresh.closest(rays, expected);
@@ -45,7 +46,8 @@ void require_same(const Mesh& mesh, const MeshData& data, Generator& any, double
       REQUIRE(hits.id[j] == expected.id[j]);
       REQUIRE(hits.range[j] == expected.range[j]);
       if (hits.met(j))
-        REQUIRE(mesh.surface(hits.primitive_of(j), rays, j).material == fresh.surface(hits.primitive_of(j), rays, j).material);
+        REQUIRE(mesh.surface(hits.primitive_of(j), rays, j).material ==
+                fresh.surface(hits.primitive_of(j), rays, j).material);
     }
   }
 }
@@ -76,7 +78,8 @@ TEST_CASE("texture coordinates and masks stay when the index is built anew") {
 }
 
 TEST_CASE("a floor that is raised is met where it is, and the mesh before where it was") {
-  DeformingMesh floor({.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  DeformingMesh floor(
+      {.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
   const auto range = [](const Mesh& mesh) {
     const RayBundle rays = bundle_of({{0.2, 0.1, 10}, {0, 0, -1}});
     ClosestHits nearest(rays);
@@ -84,7 +87,8 @@ TEST_CASE("a floor that is raised is met where it is, and the mesh before where 
     return nearest.range[0];
   };
   const std::shared_ptr<const Mesh> before = floor.mesh();
-  const std::vector<Vec3> raised{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}, higher{{-1, -1, 3}, {1, -1, 3}, {1, 1, 3}, {-1, 1, 3}};
+  const std::vector<Vec3> raised{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}},
+      higher{{-1, -1, 3}, {1, -1, 3}, {1, 1, 3}, {-1, 1, 3}};
   CHECK(range(*floor.refit(raised)) == 8);
   CHECK(range(*before) == 10);
   CHECK(range(*floor.refit(higher)) == 7);
@@ -99,7 +103,8 @@ TEST_CASE("a refitted mesh meets what a new mesh of the same triangles meets") {
     const double reach = any.log_uniform(1, 1e4);
     MeshData data = seed % 2 ? support::soup(any, 1 + any.whole(800), reach) : support::icosphere(3);
     if (seed % 3 == 0)
-      for (std::size_t i = 0; i < data.triangles.size(); ++i) data.materials.push_back(static_cast<std::uint32_t>(any.whole(300)));
+      for (std::size_t i = 0; i < data.triangles.size(); ++i)
+        data.materials.push_back(static_cast<std::uint32_t>(any.whole(300)));
     DeformingMesh mesh(data, 1);
     require_same(*mesh.mesh(), data, any, reach);
     for (int step = 0; step < 4; ++step) {  // the last tears the mesh apart
@@ -123,7 +128,8 @@ TEST_CASE("vertices that begin at one place may part") {
 
 TEST_CASE("a mesh of several blocks is refitted") {
   Generator any(3);
-  MeshData data = support::net(150, [](std::uint32_t, std::uint32_t) { return 0.0; });  // 45,000 triangles, three blocks
+  MeshData data =
+      support::net(150, [](std::uint32_t, std::uint32_t) { return 0.0; });  // 45,000 triangles, three blocks
   DeformingMesh mesh(data, 1);
   for (Vec3& vertex : data.vertices) vertex.z = any.uniform();
   mesh.refit(data.vertices);
@@ -161,7 +167,8 @@ TEST_CASE("vertices of another number, or out of range, are refused, and the mes
   DeformingMesh mesh({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}}, .triangles = {{0, 1, 2}}});
   const auto before = mesh.mesh();
   std::vector<Vec3> vertices(3);
-  CHECK_THROWS_WITH_AS(mesh.refit(vertices), "DeformingMesh::vertices (number) is 3, but must be from 4 to 4", SettingError);
+  CHECK_THROWS_WITH_AS(mesh.refit(vertices), "DeformingMesh::vertices (number) is 3, but must be from 4 to 4",
+                       SettingError);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {nan, std::numeric_limits<double>::infinity(), 2e18}) {
     vertices = {{0, 0, 0}, {1, bad, 0}, {0, 1, 0}, {9, 9, 9}};
@@ -184,7 +191,8 @@ TEST_CASE("copies of meshes stay as they are, whatever is refitted") {
   std::vector<MeshData> steps;
   std::vector<Mesh> copies;
   for (int step = 0; step < 6; ++step) {
-    for (std::size_t i = 0; i < data.vertices.size(); ++i) data.vertices[i] = first.vertices[i] + Vec3{3.0 * step, 0, 0};
+    for (std::size_t i = 0; i < data.vertices.size(); ++i)
+      data.vertices[i] = first.vertices[i] + Vec3{3.0 * step, 0, 0};
     steps.push_back(data);
     copies.push_back(*mesh.refit(data.vertices));
   }

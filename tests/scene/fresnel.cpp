@@ -60,7 +60,8 @@ TEST_CASE("refracted and mirrored directions are unit, in the plane of incidence
 }
 
 TEST_CASE("a pane shifts rays, delays them, and keeps the energy") {
-  const SmoothInterface pane{.kind = InterfaceKind::pane, .thickness = 0.02, .inside = {.index = 1.5, .group_index = 1.53}};
+  const SmoothInterface pane{
+      .kind = InterfaceKind::pane, .thickness = 0.02, .inside = {.index = 1.5, .group_index = 1.53}};
   for (int degrees = 0; degrees < 90; ++degrees) {
     const double a = degrees * 1_deg, b = std::asin(std::sin(a) / 1.5);
     const PaneSplit split = pane_split(std::cos(a), pane);

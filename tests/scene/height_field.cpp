@@ -39,8 +39,9 @@ Raster raster_of(std::uint32_t columns, std::uint32_t rows, Height height, Vec2 
 
 /// z = 10 + x/2 - y/4 at the pixels, from (100, 200) on towards the south-east.
 Raster slope() {
-  return raster_of(21, 11, [](std::uint32_t c, std::uint32_t r) { return 10 + (100 + 2.0 * c) / 2 - (200 - 4.0 * r) / 4; }, {100, 200},
-                   {2, 4});
+  return raster_of(21, 11,
+                   [](std::uint32_t c, std::uint32_t r) { return 10 + (100 + 2.0 * c) / 2 - (200 - 4.0 * r) / 4; },
+                   {100, 200}, {2, 4});
 }
 
 /// The raster's mesh, with its triangles numbered as the height field's are.
@@ -66,7 +67,9 @@ class RasterMesh {
     for (std::size_t j = 0; j < rays.size; ++j)
       if (nearest.met(j)) nearest.id[j] = numbers_[nearest.primitive_of(j)];
   }
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept { return mesh_.surface(i, rays, j); }
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept {
+    return mesh_.surface(i, rays, j);
+  }
 
  private:
   MeshData data_;
@@ -108,8 +111,8 @@ Comparison compared(const Raster& raster, std::uint64_t seed, std::size_t times)
   Generator random(seed);
   Comparison result;
   for (std::size_t time = 0; time < times; ++time)
-    for (const std::size_t size :
-         {std::size_t{1}, std::size_t{1}, std::size_t{1}, std::size_t{19}, std::size_t{64}, std::size_t{random.whole(64) + 1}})
+    for (const std::size_t size : {std::size_t{1}, std::size_t{1}, std::size_t{1}, std::size_t{19}, std::size_t{64},
+                                   std::size_t{random.whole(64) + 1}})
       compare(mesh, field, "HeightField", bundle(random, mesh.data(), mesh.bounds(), size), result);
   return result;
 }
@@ -179,7 +182,8 @@ TEST_CASE("a pixel has the material of its two triangles, as in the mesh, in as 
     CAPTURE(materials);
     Raster raster = raster_of(23, 14, [&](std::uint32_t, std::uint32_t) { return random.uniform(0, 3); });
     raster.heights[40] = missing;
-    for (std::size_t i = 0; i < raster.heights.size(); ++i) raster.materials.push_back(static_cast<std::uint8_t>(random.whole(materials)));
+    for (std::size_t i = 0; i < raster.heights.size(); ++i)
+      raster.materials.push_back(static_cast<std::uint8_t>(random.whole(materials)));
     raster.materials[100] = static_cast<std::uint8_t>(materials - 1);
     const HeightField field(raster);
     const RasterMesh<Bvh<float>> mesh(raster);
@@ -198,7 +202,8 @@ TEST_CASE("a pixel has the material of its two triangles, as in the mesh, in as 
 }
 
 TEST_CASE("two materials over a raster take less than a twelfth of the memory that the mesh takes") {
-  Raster raster = raster_of(600, 600, [](std::uint32_t c, std::uint32_t r) { return 300 + 15 * std::sin(c / 9.0) * std::cos(r / 7.0); });
+  Raster raster = raster_of(
+      600, 600, [](std::uint32_t c, std::uint32_t r) { return 300 + 15 * std::sin(c / 9.0) * std::cos(r / 7.0); });
   for (std::uint32_t i = 0; i < 360'000; ++i) raster.materials.push_back(i / 600 / 50 % 2);
   CHECK(12 * HeightField(raster).memory() <= TriangleMesh<>(raster.mesh()).memory());
 }
@@ -215,7 +220,9 @@ TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a 
   const Vec2 utm{4.7e5, 5.4e6};
   const auto rough = [&](std::uint32_t, std::uint32_t) { return random.uniform(0, 3); };
   const auto hills = [](std::uint32_t c, std::uint32_t r) { return 300 + 15 * std::sin(c / 9.0) * std::cos(r / 7.0); };
-  const auto holes = [&](std::uint32_t c, std::uint32_t r) { return random.whole(4) == 0 ? static_cast<double>(missing) : hills(c, r); };
+  const auto holes = [&](std::uint32_t c, std::uint32_t r) {
+    return random.whole(4) == 0 ? static_cast<double>(missing) : hills(c, r);
+  };
   const auto pits = [&](std::uint32_t c, std::uint32_t r) {
     return (c / 20 + r / 10) % 2 == 0 ? static_cast<double>(missing) : hills(c, r);
   };
@@ -270,8 +277,11 @@ TEST_CASE("packed heights give the hits of the same heights in floating point, t
   };
   Generator random(17);
   std::size_t rays = 0, met = 0;
-  for (const Scale& scale :
-       {Scale{1, 0, 0, 0}, {0.01, 0, 32768, 0}, {0.1, -431.7, 0, 65535}, {1.0 / 3, 8000.123, 7, {}}, {0.3048, 0, 0, 33000}})
+  for (const Scale& scale : {Scale{1, 0, 0, 0},
+                             {0.01, 0, 32768, 0},
+                             {0.1, -431.7, 0, 65535},
+                             {1.0 / 3, 8000.123, 7, {}},
+                             {0.3048, 0, 0, 33000}})
     for (const Vec2 first : {Vec2{}, Vec2{4.7e5 + 0.1, 5.4e6 + 0.3}}) {
       CAPTURE(scale.step);
       Raster packed{.columns = 61, .rows = 47, .first = first, .pixel = {9 * scale.step, 7 * scale.step}};
@@ -312,14 +322,16 @@ TEST_CASE("packed heights give the hits of the same heights in floating point, t
 TEST_CASE("packed heights take two bytes a pixel") {
   Generator random(3);
   Raster packed{.columns = 600, .rows = 600, .packed = {.scale = 0.01, .missing = 0}};
-  for (std::size_t i = 0; i < packed.pixels(); ++i) packed.packed.numbers.push_back(static_cast<std::uint16_t>(40'000 + random.whole(300)));
+  for (std::size_t i = 0; i < packed.pixels(); ++i)
+    packed.packed.numbers.push_back(static_cast<std::uint16_t>(40'000 + random.whole(300)));
   packed.packed.numbers[77] = 0;
   const HeightField wide(packed.unpacked()), field(std::move(packed));
   CHECK(wide.memory() - field.memory() == 2 * 360'000 - 301 * sizeof(float));  // of 300 heights and a missing one
 }
 
 TEST_CASE("where all packed heights are missing nothing is met, and a table that is too short is noticed") {
-  const HeightField empty(Raster{.columns = 9, .rows = 9, .packed = {.numbers = std::vector<std::uint16_t>(81, 5), .missing = 5}});
+  const HeightField empty(
+      Raster{.columns = 9, .rows = 9, .packed = {.numbers = std::vector<std::uint16_t>(81, 5), .missing = 5}});
   CHECK(empty.bounds().empty());
   CHECK(empty.is_consistent());
   CHECK(height_at(empty, 3, -3) == -1);
@@ -330,7 +342,9 @@ TEST_CASE("where all packed heights are missing nothing is met, and a table that
     const auto set = [&](auto&... members) {
       const auto change = [&](auto& member) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, pulsecast::detail::PixelHeights>) {
-          auto spoil = [&](SharedArray<float>&, SharedArray<std::uint16_t>& places) { places = SharedArray<std::uint16_t>(numbers); };
+          auto spoil = [&](SharedArray<float>&, SharedArray<std::uint16_t>& places) {
+            places = SharedArray<std::uint16_t>(numbers);
+          };
           member.archive(spoil);
         }
       };
@@ -343,9 +357,11 @@ TEST_CASE("where all packed heights are missing nothing is met, and a table that
 
 TEST_CASE("triangles and normals are those of the mesh, bit for bit") {
   Generator random(5);
-  const Raster raster = raster_of(
-      40, 30, [&](std::uint32_t, std::uint32_t) { return random.whole(5) == 0 ? static_cast<double>(missing) : random.uniform(0, 9); },
-      {4.7e5 + 0.1, 5.4e6 + 0.3}, {0.3, 0.7});
+  const Raster raster = raster_of(40, 30,
+                                  [&](std::uint32_t, std::uint32_t) {
+                                    return random.whole(5) == 0 ? static_cast<double>(missing) : random.uniform(0, 9);
+                                  },
+                                  {4.7e5 + 0.1, 5.4e6 + 0.3}, {0.3, 0.7});
   const RasterMesh<Linear<>> mesh(raster);
   const HeightField field(raster);
   for (std::size_t i = 0; i < mesh.numbers().size(); ++i) {
@@ -365,9 +381,11 @@ TEST_CASE("nothing falls through the ground: not at corners, not along edges, at
     for (int time = 0; time < 20000; ++time) {
       // at whole pixels, at halves, and anywhere
       const double step = time % 3 == 0 ? 1 : time % 3 == 1 ? 0.5 : 1e-9;
-      const double x = std::round(random.uniform(20, 40) / step) * step, y = std::round(random.uniform(20, 30) / step) * step;
+      const double x = std::round(random.uniform(20, 40) / step) * step,
+                   y = std::round(random.uniform(20, 30) / step) * step;
       const Vec3 aim{first.x + x, first.y - y, 1};
-      const Vec3 from = aim + (random.coin() ? axis::up * random.uniform(3, 1000) : Vec3{random.uniform(-9, 9), random.uniform(-9, 9), 3});
+      const Vec3 from = aim + (random.coin() ? axis::up * random.uniform(3, 1000)
+                                             : Vec3{random.uniform(-9, 9), random.uniform(-9, 9), 3});
       escapes += escaped(field, random.cone(from, normalize(aim - from), 1e-3, 1 + random.whole(8)));
     }
     CHECK(escapes == 0);
@@ -375,10 +393,12 @@ TEST_CASE("nothing falls through the ground: not at corners, not along edges, at
 }
 
 TEST_CASE("what is left of a raster in the middle of nothing is met, however wide the nothing is") {
-  // Walls of the nodes that are looked at first are sums of large numbers in single precision, off by centimetres here: hence their pad.
+  // Walls of the nodes that are looked at first are sums of large numbers in single precision, off by centimetres here:
+  // hence their pad.
   Generator random(11);
   for (const bool tall : {false, true})
-    for (const std::uint32_t first : {393216U, 229376U, 475136U, 344064U, 163840U}) {  // where nodes begin, but not the largest
+    for (const std::uint32_t first :
+         {393216U, 229376U, 475136U, 344064U, 163840U}) {  // where nodes begin, but not the largest
       CAPTURE(tall);
       CAPTURE(first);
       const std::uint32_t last = first + 4, length = 2 * first + 5;
@@ -387,14 +407,15 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
         return at < first || at > last ? static_cast<double>(missing) : random.uniform(0, 3);
       };
       const double pixel = random.uniform(0.5, 1), start = 0.5 * length * pixel;
-      const Raster raster =
-          tall ? raster_of(2, length, rough, {0.5, start}, {0.9, pixel}) : raster_of(length, 2, rough, {-start, 0.5}, {pixel, 0.9});
+      const Raster raster = tall ? raster_of(2, length, rough, {0.5, start}, {0.9, pixel})
+                                 : raster_of(length, 2, rough, {-start, 0.5}, {pixel, 0.9});
       const pulsecast::detail::RasterGrid grid = raster.grid();
       const std::vector<float> heights = raster.heights;
       const HeightField field(raster);
       std::size_t met = 0, lost = 0;
       for (int time = 0; time < 10000; ++time) {
-        // level, so that the whole length is looked at, towards the first end or the last one from within millimetres to centimetres of it
+        // level, so that the whole length is looked at, towards the first end or the last one from within millimetres
+        // to centimetres of it
         const bool back = random.coin();
         const auto corner = [&](std::uint32_t on, std::uint32_t aside) {
           const std::uint32_t at = (back ? first : last - 1) + on, column = tall ? aside : at, row = tall ? at : aside;
@@ -410,8 +431,9 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
         ClosestHits nearest(rays);
         for (std::uint32_t c = first; c < last; ++c)
           for (const int which : {0, 1})
-            intersect(pulsecast::detail::RasterCell(grid, heights.data(), tall ? 0 : c, tall ? c : 0).triangle(grid, which),
-                      2 * c + static_cast<PrimitiveIndex>(which), rays, nearest);
+            intersect(
+                pulsecast::detail::RasterCell(grid, heights.data(), tall ? 0 : c, tall ? c : 0).triangle(grid, which),
+                2 * c + static_cast<PrimitiveIndex>(which), rays, nearest);
         if (!nearest.met(0)) continue;
         ++met;
         lost += range_of(field, ray) != nearest.range[0];
@@ -447,7 +469,8 @@ TEST_CASE("a height field holds less than 6 bytes a cell, and less than a tenth 
   };
   Generator random(11);
   for (const auto& size : {Size{1041, 713}, {65, 65}, {1001, 1003}, {4000, 18}}) {
-    const Raster raster = raster_of(size.columns, size.rows, [&](std::uint32_t, std::uint32_t) { return random.uniform(); });
+    const Raster raster =
+        raster_of(size.columns, size.rows, [&](std::uint32_t, std::uint32_t) { return random.uniform(); });
     const HeightField field(raster);
     CAPTURE(size.columns);
     CHECK(field.memory() < 6 * std::size_t{size.columns - 1} * (size.rows - 1));

@@ -24,14 +24,16 @@ constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 Raster plane(double east, double north) {
   Raster raster{.columns = 7, .rows = 6, .first = {100, 200}, .pixel = {2, 4}};
   for (std::uint32_t r = 0; r < 6; ++r)
-    for (std::uint32_t c = 0; c < 7; ++c) raster.heights.push_back(static_cast<float>(1000 + 2.0 * c * east - 4.0 * r * north));
+    for (std::uint32_t c = 0; c < 7; ++c)
+      raster.heights.push_back(static_cast<float>(1000 + 2.0 * c * east - 4.0 * r * north));
   return raster;
 }
 
 /// Shade of a plane, from its normal and the direction of the sun by azimuth and elevation.
 std::uint8_t expected(double east, double north, const HillshadeSettings& s) {
   const Vec3 normal = normalize(Vec3{-east * s.vertical_scale, -north * s.vertical_scale, 1});
-  const Vec3 sun{std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation), std::sin(s.elevation)};
+  const Vec3 sun{std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation),
+                 std::sin(s.elevation)};
   return static_cast<std::uint8_t>(1 + std::lround(254 * std::max(0.0, dot(normal, sun))));
 }
 
@@ -43,7 +45,8 @@ TEST_CASE("a plane has the cosine of incidence everywhere, at its edges too") {
       for (const double azimuth : {0.0, 1.0, 3.0, 5.5})
         for (const double elevation : {0.0, 0.3, 1.2, pi / 2})
           for (const double exaggeration : {1.0, 3.0}) {
-            const HillshadeSettings settings{.azimuth = azimuth, .elevation = elevation, .vertical_scale = exaggeration};
+            const HillshadeSettings settings{
+                .azimuth = azimuth, .elevation = elevation, .vertical_scale = exaggeration};
             const std::vector<std::uint8_t> found = hillshade(plane(east, north), settings);
             CHECK(found == std::vector<std::uint8_t>(42, expected(east, north, settings)));
           }
@@ -74,7 +77,8 @@ TEST_CASE("a missing pixel is 0, and a plane about it stays a plane") {
 
 TEST_CASE("the slope in the middle of nine pixels is that of Horn") {
   Raster raster{.columns = 3, .rows = 3, .pixel = {2, 3}, .heights = {1, 5, 2, 4, 9, 7, 3, 8, 6}};
-  const double east = ((2 + 2 * 7 + 6) - (1 + 2 * 4 + 3)) / (8 * 2.0), north = ((1 + 2 * 5 + 2) - (3 + 2 * 8 + 6)) / (8 * 3.0);
+  const double east = ((2 + 2 * 7 + 6) - (1 + 2 * 4 + 3)) / (8 * 2.0),
+               north = ((1 + 2 * 5 + 2) - (3 + 2 * 8 + 6)) / (8 * 3.0);
   const HillshadeSettings low{.azimuth = 2, .elevation = 0.4};
   CHECK(hillshade(raster, low)[4] == expected(east, north, low));
 }
@@ -82,7 +86,8 @@ TEST_CASE("the slope in the middle of nine pixels is that of Horn") {
 TEST_CASE("packed heights have the shades of the same heights in floating point") {
   support::Generator random(5);
   Raster packed{.columns = 40, .rows = 30, .packed = {.scale = 0.1, .missing = 7}};
-  for (std::size_t i = 0; i < packed.pixels(); ++i) packed.packed.numbers.push_back(static_cast<std::uint16_t>(random.whole(12)));
+  for (std::size_t i = 0; i < packed.pixels(); ++i)
+    packed.packed.numbers.push_back(static_cast<std::uint16_t>(random.whole(12)));
   CHECK(hillshade(packed) == hillshade(packed.unpacked()));
 }
 

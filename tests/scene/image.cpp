@@ -36,7 +36,9 @@ TEST_CASE("the middle of each pixel has its number, counted from the top left") 
       CHECK(texel_at(width, height, {(column + 0.5) / width, 1 - (row + 0.5) / height}) == row * width + column);
 }
 
-TEST_CASE("texture coordinates on a border belong to the pixel to the right and above, and a whole number begins the next picture") {
+TEST_CASE(
+    "texture coordinates on a border belong to the pixel to the right and above, and a whole number begins the next "
+    "picture") {
   CHECK(texel_at(4, 2, {0, 0}) == 4);     // the lower left pixel
   CHECK(texel_at(4, 2, {0.25, 0}) == 5);  // its right border
   CHECK(texel_at(4, 2, {0, 0.5}) == 0);   // its upper one
@@ -70,7 +72,8 @@ TEST_CASE("texture coordinates just below a whole number are of the last pixel, 
 
 TEST_CASE("a picture of one pixel is the same everywhere") {
   const Image image{1, 1, 3, std::vector<std::uint8_t>{255, 51, 0}};
-  for (const Vec2 at : {Vec2(0, 0), Vec2(1, 1), Vec2(-0.3, 12.7), Vec2(std::nextafter(0.0, -1.0), std::nextafter(1.0, 0.0))}) {
+  for (const Vec2 at :
+       {Vec2(0, 0), Vec2(1, 1), Vec2(-0.3, 12.7), Vec2(std::nextafter(0.0, -1.0), std::nextafter(1.0, 0.0))}) {
     CHECK(texel_at(1, 1, at) == 0);
     CHECK(image.colour(at) == Vec3(1, 51 / 255.0, 0));
   }

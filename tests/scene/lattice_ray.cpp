@@ -57,7 +57,8 @@ TEST_CASE("a box beside a ray is not gone through, whichever axis says so") {
         out = std::min(out, std::max(low / d[k], high / d[k]));
       }
     }
-    const auto passage = LatticeRay({0, 0, 0}, 1, rays, 0).through({box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z});
+    const auto passage =
+        LatticeRay({0, 0, 0}, 1, rays, 0).through({box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z});
     CHECK(passage.in.before(passage.out) == (in < out));
   }
 }

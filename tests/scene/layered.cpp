@@ -45,7 +45,9 @@ Hit ask(const Map& map, const Ray& ray) {
 
 /// Hit of range NaN.
 struct Broken {
-  std::optional<Hit> closest_hit(const Ray&) const noexcept { return Hit{.range = std::numeric_limits<double>::quiet_NaN()}; }
+  std::optional<Hit> closest_hit(const Ray&) const noexcept {
+    return Hit{.range = std::numeric_limits<double>::quiet_NaN()};
+  }
 };
 
 static_assert(BundleTarget<Layered<Discs, Discs>> && BundleTarget<Layered<support::LeastRayTarget, Discs>>);
@@ -100,7 +102,8 @@ TEST_CASE("no layer is traced beyond the far end, nor beyond the hits of those b
   const Discs none({}), floor({disc({}, 1)});
   const FarEnd last;
   const Layered world{none, floor, last};
-  const Ray near{.origin = {0, 0, 10}, .direction = -axis::up, .far = 5}, far{.origin = {0, 0, 10}, .direction = -axis::up, .far = 50};
+  const Ray near{.origin = {0, 0, 10}, .direction = -axis::up, .far = 5},
+      far{.origin = {0, 0, 10}, .direction = -axis::up, .far = 50};
   CHECK_FALSE(ask(world, near).met());
   CHECK(last.far == 5);
   CHECK(ask(world, far).range == 10);
@@ -114,7 +117,8 @@ TEST_CASE("at equal range the first layer is met") {
 }
 
 TEST_CASE("the ground of layers is the highest of theirs") {
-  const Discs low({disc({}, 1, true)}), high({disc({.translation = {0.5, 0, 2}}, 2, true), disc({.translation = {0, 0, 5}}, 3)});
+  const Discs low({disc({}, 1, true)}),
+      high({disc({.translation = {0.5, 0, 2}}, 2, true), disc({.translation = {0, 0, 5}}, 3)});
   const Layered world{low, high};
   CHECK(world.ground_height({0, 0}) == 2);
   CHECK(world.ground_height({-0.9, 0}) == 0);
@@ -156,7 +160,8 @@ TEST_CASE("layers meet what one scene of all their parts meets") {
     const Discs a(layers[0]), b(layers[1]), c(layers[2]), together(all);
     const Layered world{a, b, c};
     for (int k = 0; k < 20; ++k) {
-      const RayBundle rays = any.cone(any.point(40), any.unit(), any.log_uniform(1e-3, 1), 1 + any.whole(RayBundle::capacity));
+      const RayBundle rays =
+          any.cone(any.point(40), any.unit(), any.log_uniform(1e-3, 1), 1 + any.whole(RayBundle::capacity));
       std::array<Hit, RayBundle::capacity> hits, expected;
       world.closest(rays, hits);
       together.closest(rays, expected);
@@ -196,7 +201,8 @@ TEST_CASE("light goes on through layers as through one scene of all their parts"
     std::vector<World::Part> all, still, moving;
     for (std::uint32_t k = 0; k < 14; ++k) {
       const Vec3 right = 5.0 * any.unit();
-      all.push_back(support::rectangle(any.point(12), right, 5.0 * normalize(cross(right, any.unit())), kinds[k % 4], k));
+      all.push_back(
+          support::rectangle(any.point(12), right, 5.0 * normalize(cross(right, any.unit())), kinds[k % 4], k));
       (any.uniform() < 0.5 ? still : moving).push_back(all.back());
     }
     const World one(all), first(still), second(moving);
@@ -219,7 +225,8 @@ TEST_CASE("light goes on through layers as through one scene of all their parts"
       }
       reflections += expected.reflections.size();
       REQUIRE(seen.continuous.size() == expected.continuous.size());
-      for (std::size_t j = 0; j < expected.continuous.size(); ++j) REQUIRE(seen.continuous[j].power() == expected.continuous[j].power());
+      for (std::size_t j = 0; j < expected.continuous.size(); ++j)
+        REQUIRE(seen.continuous[j].power() == expected.continuous[j].power());
       stretches += expected.continuous.size();
     }
   }

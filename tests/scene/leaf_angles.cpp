@@ -136,7 +136,8 @@ TEST_CASE("G depends on neither length, nor azimuth, nor sense of the direction"
   const LeafAngles all[] = {LeafAngles::planophile(), LeafAngles::ellipsoidal(3)};
   for (int i = 0; i < 1000; ++i) {
     const Vec3 d = random.unit();
-    const Vec3 other = rotation_about(axis::up, random.uniform(0, 6)) * (d * (random.coin() ? -1.0 : 1.0)) * random.log_uniform(1e-3, 1e3);
+    const Vec3 other = rotation_about(axis::up, random.uniform(0, 6)) * (d * (random.coin() ? -1.0 : 1.0)) *
+                       random.log_uniform(1e-3, 1e3);
     for (const LeafAngles& leaves : all) CHECK(std::fabs(leaves.projection(d) - leaves.projection(other)) < 1e-12);
   }
 }
@@ -167,7 +168,8 @@ TEST_CASE("a table with a hole, a repeated angle or an impossible number is refu
   const std::string hole = "rad, but must be followed by another within 0.1745 rad";
   CHECK(with([](auto& e) { e.clear(); }).find(hole) != std::string::npos);
   CHECK(with([](auto& e) { e.erase(e.begin() + 4); }).find(hole) != std::string::npos);
-  CHECK(with([](auto& e) { e = std::vector<LeafProjection>(e.begin() + 2, e.end()); }).find("zenith is 0 " + hole) != std::string::npos);
+  CHECK(with([](auto& e) { e = std::vector<LeafProjection>(e.begin() + 2, e.end()); }).find("zenith is 0 " + hole) !=
+        std::string::npos);
   CHECK(with([](auto& e) { e.resize(8); }).find(hole) != std::string::npos);
   CHECK(with([](auto& e) { e.push_back(e[4]); }).find("unique") != std::string::npos);
   CHECK(with([](auto& e) { e[3].zenith = -0.1; }).find("LeafProjection::zenith is -0.1 rad") != std::string::npos);
@@ -193,7 +195,8 @@ TEST_CASE("leaves send back as their mean squared cosine by their mean cosine, o
       }
       CAPTURE(zenith);
       CHECK(named.leaves.incidence_cosine(at_zenith(zenith)) == doctest::Approx(second / first).epsilon(1e-4));
-      CHECK(named.leaves.incidence_cosine(-7.0 * at_zenith(zenith)) == named.leaves.incidence_cosine(7.0 * at_zenith(zenith)));
+      CHECK(named.leaves.incidence_cosine(-7.0 * at_zenith(zenith)) ==
+            named.leaves.incidence_cosine(7.0 * at_zenith(zenith)));
     }
   }
   CHECK(LeafAngles::spherical().incidence_cosine(axis::up) == doctest::Approx(2.0 / 3).epsilon(1e-12));
@@ -202,8 +205,10 @@ TEST_CASE("leaves send back as their mean squared cosine by their mean cosine, o
 TEST_CASE("leaves that are all level or all upright send back as those do") {
   // Source: of level ones G and its mean square are cos and cos^2; of upright ones (2/pi) sin and sin^2 / 2
   for (const double zenith : {0.2, 0.7, 1.3}) {
-    CHECK(LeafAngles::ellipsoidal(1e5).incidence_cosine(at_zenith(zenith)) == doctest::Approx(std::cos(zenith)).epsilon(2e-3));
-    CHECK(LeafAngles::ellipsoidal(1e-5).incidence_cosine(at_zenith(zenith)) == doctest::Approx(pi / 4 * std::sin(zenith)).epsilon(2e-3));
+    CHECK(LeafAngles::ellipsoidal(1e5).incidence_cosine(at_zenith(zenith)) ==
+          doctest::Approx(std::cos(zenith)).epsilon(2e-3));
+    CHECK(LeafAngles::ellipsoidal(1e-5).incidence_cosine(at_zenith(zenith)) ==
+          doctest::Approx(pi / 4 * std::sin(zenith)).epsilon(2e-3));
   }
   // G of spherical leaves as a table
   CHECK(LeafAngles::table({{0, 0.5},

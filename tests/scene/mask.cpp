@@ -96,9 +96,11 @@ TEST_CASE("light goes on through the holes of a mask, and meets what is behind")
   data.materials = {0, 0, 1, 1};
   data.texture.insert(data.texture.end(), floor.texture.begin(), floor.texture.end());
   const TriangleMesh<> mesh(data);
-  const Scene<TriangleMesh<>> scene(
-      {{.geometry = std::make_shared<const TriangleMesh<>>(mesh), .materials = material_table(std::vector<Material>(2))}});
-  const auto range = [&](double x) { return scene.closest_hit(Ray{.origin = {x, 0.3, 5}, .direction = -axis::up})->range; };
+  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+                                      .materials = material_table(std::vector<Material>(2))}});
+  const auto range = [&](double x) {
+    return scene.closest_hit(Ray{.origin = {x, 0.3, 5}, .direction = -axis::up})->range;
+  };
   CHECK(range(0.25) == 5);
   CHECK(range(0.75) == 3);
   std::size_t hits = 0;
@@ -114,7 +116,8 @@ TEST_CASE("light goes on through the holes of a mask, and meets what is behind")
 TEST_CASE("masked leaves are met as the same leaves cut out, by bundles of any size and by single rays") {
   for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}}) {
     Generator random(seed);
-    const Mask mask = Mask::of(grey(13, 9, [&](std::size_t) { return static_cast<std::uint8_t>(random.uniform(0, 256)); }), 0);
+    const Mask mask =
+        Mask::of(grey(13, 9, [&](std::size_t) { return static_cast<std::uint8_t>(random.uniform(0, 256)); }), 0);
     // two sheets, one behind another
     MeshData masked = card(1, mask), solid = cut(1, mask);
     const auto add = [](MeshData& to, const MeshData& more) {
@@ -160,7 +163,8 @@ TEST_CASE("the gap fraction of masked leaves is that of their outline") {
   const std::uint32_t side = 512;
   const Mask leaf = Mask::of(grey(side, side,
                                   [](std::size_t i) {
-                                    const double x = (double(i % side) + 0.5) / side - 0.5, y = (double(i / side) + 0.5) / side - 0.5;
+                                    const double x = (double(i % side) + 0.5) / side - 0.5,
+                                                 y = (double(i / side) + 0.5) / side - 0.5;
                                     return static_cast<std::uint8_t>(x * x / 0.25 + y * y / 0.0625 <= 1 ? 255 : 0);
                                   }),
                              0);

@@ -31,7 +31,8 @@ TEST_CASE("a Lambertian surface sends back its reflectance times the cosine of t
   CHECK(m.backscatter(0, nir) == 0);
 }
 
-TEST_CASE("a surface by Phong's law has a glossy lobe about the mirror direction, which ends at 45 degrees of incidence") {
+TEST_CASE(
+    "a surface by Phong's law has a glossy lobe about the mirror direction, which ends at 45 degrees of incidence") {
   const Material m{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.3, .specular_exponent = 10};
   CHECK(m.backscatter(1, nir) == support::relative(0.5, 1e-15));
   // 0.5 (0.7 cos 20 + 0.3 cos^10 40)
@@ -43,12 +44,14 @@ TEST_CASE("a surface by Phong's law has a glossy lobe about the mirror direction
 }
 
 TEST_CASE("rays of a bundle see the glossy lobes that single rays see, beside surfaces without, and beside nothing") {
-  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 30}, matt{.reflectance = 0.3};
-  const Material dull{.reflectance = 0.9, .scattering = Scattering::phong, .specular_share = 0.7, .specular_exponent = 2.5};
+  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 30},
+      matt{.reflectance = 0.3};
+  const Material dull{
+      .reflectance = 0.9, .scattering = Scattering::phong, .specular_share = 0.7, .specular_exponent = 2.5};
   const auto strip = [](double x, const Material& material) {
     return Part<TriangleMesh<Linear<>>>{
-        .geometry = std::make_shared<const TriangleMesh<Linear<>>>(
-            MeshData{.vertices = {{x, -9, 0}, {x + 1, -9, 0}, {x + 1, 9, 0}, {x, 9, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}}),
+        .geometry = std::make_shared<const TriangleMesh<Linear<>>>(MeshData{
+            .vertices = {{x, -9, 0}, {x + 1, -9, 0}, {x + 1, 9, 0}, {x, 9, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}}),
         .materials = material_table({material})};
   };
   const Scene<TriangleMesh<Linear<>>> scene({strip(0, glossy), strip(1, matt), strip(2, dull), strip(4, glossy)});
@@ -57,7 +60,8 @@ TEST_CASE("rays of a bundle see the glossy lobes that single rays see, beside su
     rays.origin = {2.5, 0, 2};
     rays.size = size;
     for (std::size_t j = 0; j < size; ++j) {
-      const double aside = -2.49 + 4.98 * static_cast<double>(j) / static_cast<double>(size - 1), length = std::hypot(aside, 2);
+      const double aside = -2.49 + 4.98 * static_cast<double>(j) / static_cast<double>(size - 1),
+                   length = std::hypot(aside, 2);
       rays.set_direction(j, {aside / length, 0, -2 / length});
     }
     rays.pad();
@@ -81,8 +85,10 @@ TEST_CASE("rays of a bundle see the glossy lobes that single rays see, beside su
 }
 
 TEST_CASE("Phong's law without a glossy share is Lambert's") {
-  const Material phong{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0}, lambert{.reflectance = 0.5};
-  for (double cosine = 0; cosine <= 1; cosine += 0.05) CHECK(phong.backscatter(cosine, nir) == lambert.backscatter(cosine, nir));
+  const Material phong{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0},
+      lambert{.reflectance = 0.5};
+  for (double cosine = 0; cosine <= 1; cosine += 0.05)
+    CHECK(phong.backscatter(cosine, nir) == lambert.backscatter(cosine, nir));
 }
 
 TEST_CASE("a direction-independent surface sends back its reflectance from everywhere") {
@@ -109,7 +115,8 @@ TEST_CASE("a material with a spectrum answers for the wavelength of the light, b
       const Material coloured{.reflectance = 0.9, .scattering = law, .specular_share = 0.3, .spectrum = spectrum};
       const Material grey{.reflectance = spectrum->reflectance(wavelength), .scattering = law, .specular_share = 0.3};
       CHECK(coloured.reflectance_at(wavelength) == grey.reflectance);
-      for (const double cosine : {0.0, 0.3, 0.9, 1.0}) CHECK(coloured.backscatter(cosine, wavelength) == grey.backscatter(cosine, nir));
+      for (const double cosine : {0.0, 0.3, 0.9, 1.0})
+        CHECK(coloured.backscatter(cosine, wavelength) == grey.backscatter(cosine, nir));
     }
 }
 
@@ -126,11 +133,15 @@ TEST_CASE("a material refuses what no surface can do") {
 TEST_CASE("the lobe of normalized Phong holds its share of the energy, by quadrature over the hemisphere") {
   for (const double exponent : {0.0, 1.0, 7.5, 30.0, 100.0})
     for (const double share : {0.2, 1.0}) {
-      const Material m{
-          .reflectance = 0.6, .scattering = Scattering::normalized_phong, .specular_share = share, .specular_exponent = exponent};
-      // Source: Lafortune & Willems 1994: reflectance ((1 - share) / pi + share (n + 2) / 2 pi cos^n of the angle to the mirror direction)
+      const Material m{.reflectance = 0.6,
+                       .scattering = Scattering::normalized_phong,
+                       .specular_share = share,
+                       .specular_exponent = exponent};
+      // Source: Lafortune & Willems 1994: reflectance ((1 - share) / pi + share (n + 2) / 2 pi cos^n of the angle to
+      // the mirror direction)
       const auto brdf = [&](double cos_to_mirror) {
-        return 0.6 * ((1 - share) / pi + share * (exponent + 2) / (2 * pi) * std::pow(std::fmax(cos_to_mirror, 0), exponent));
+        return 0.6 *
+               ((1 - share) / pi + share * (exponent + 2) / (2 * pi) * std::pow(std::fmax(cos_to_mirror, 0), exponent));
       };
       for (const double incidence : {0.0, 0.3, 0.6}) {
         CHECK(m.backscatter(std::cos(incidence), nir) ==
@@ -140,7 +151,8 @@ TEST_CASE("the lobe of normalized Phong holds its share of the energy, by quadra
         for (int i = 0; i < n; ++i)
           for (int k = 0; k < n; ++k) {
             const double zenith = pi / 2 * (i + 0.5) / n, azimuth = 2 * pi * (k + 0.5) / n;
-            const double to_mirror = std::sin(zenith) * std::cos(azimuth) * std::sin(incidence) + std::cos(zenith) * std::cos(incidence);
+            const double to_mirror =
+                std::sin(zenith) * std::cos(azimuth) * std::sin(incidence) + std::cos(zenith) * std::cos(incidence);
             energy += brdf(to_mirror) * std::cos(zenith) * std::sin(zenith) * (pi / 2 / n) * (2 * pi / n);
           }
         INFO("exponent ", exponent, ", incidence ", incidence);
@@ -151,7 +163,10 @@ TEST_CASE("the lobe of normalized Phong holds its share of the energy, by quadra
 }
 
 TEST_CASE("a retroreflector has its coefficient at normal incidence, and half of its light at its half angle") {
-  Material m{.reflectance = 0.1, .scattering = Scattering::retroreflective, .retroreflection = 70, .retroreflection_half_angle = 30_deg};
+  Material m{.reflectance = 0.1,
+             .scattering = Scattering::retroreflective,
+             .retroreflection = 70,
+             .retroreflection_half_angle = 30_deg};
   CHECK(m.backscatter(1, nir) == support::relative(0.1 + 70 * pi, 1e-13));
   CHECK(m.backscatter(std::cos(30_deg), nir) == support::relative(0.1 * std::cos(30_deg) + 35 * pi, 1e-13));
   CHECK(m.backscatter(0, nir) == 0);
@@ -162,9 +177,10 @@ TEST_CASE("a retroreflector has its coefficient at normal incidence, and half of
 }
 
 TEST_CASE("measured backscatter is linear in the angle between the rows, and constant beyond") {
-  const Material m{.reflectance = 0.5,
-                   .scattering = Scattering::tabulated,
-                   .backscatter_table = SharedArray<BackscatterAtIncidence>({{10_deg, 3.0}, {20_deg, 1.0}, {60_deg, 0.5}})};
+  const Material m{
+      .reflectance = 0.5,
+      .scattering = Scattering::tabulated,
+      .backscatter_table = SharedArray<BackscatterAtIncidence>({{10_deg, 3.0}, {20_deg, 1.0}, {60_deg, 0.5}})};
   CHECK(m.backscatter(1, nir) == support::relative(1.5, 1e-13));
   CHECK(m.backscatter(std::cos(15_deg), nir) == support::relative(1, 1e-13));
   CHECK(m.backscatter(std::cos(40_deg), nir) == support::relative(0.375, 1e-13));
@@ -177,14 +193,16 @@ TEST_CASE("a table without rows, which validation refuses, is black") {
 }
 
 TEST_CASE("lanes have the backscatter of one, by every law") {
-  const Material laws[]{{.scattering = Scattering::normalized_phong, .specular_share = 0.4, .specular_exponent = 12.5},
-                        {.scattering = Scattering::retroreflective, .retroreflection = 200},
-                        {.scattering = Scattering::tabulated,
-                         .backscatter_table = SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}};
+  const Material laws[]{
+      {.scattering = Scattering::normalized_phong, .specular_share = 0.4, .specular_exponent = 12.5},
+      {.scattering = Scattering::retroreflective, .retroreflection = 200},
+      {.scattering = Scattering::tabulated,
+       .backscatter_table = SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}};
   for (const Material& m : laws) {
     const Backscatter law = m.backscatter(nir);
     for (double cosine = 0; cosine < 0.9; cosine += 0.01) {
-      const simd::Doubles cosines = simd::generate([&](std::size_t lane) { return cosine + 0.02 * static_cast<double>(lane); });
+      const simd::Doubles cosines =
+          simd::generate([&](std::size_t lane) { return cosine + 0.02 * static_cast<double>(lane); });
       const simd::Doubles all = law.glossy(cosines);
       for (std::size_t lane = 0; lane < simd::lane_count; ++lane) CHECK(all[lane] == law(cosines[lane]));
     }
@@ -244,7 +262,8 @@ TEST_CASE("retroreflectors and tables that cannot be are refused") {
   CHECK_THROWS_AS(Material{.retroreflection_half_angle = 0}.validate(), SettingError);
   CHECK_THROWS_AS(Material{.scattering = Scattering::tabulated}.validate(), SettingError);
   const auto table = [](std::vector<BackscatterAtIncidence> rows) {
-    return Material{.scattering = Scattering::tabulated, .backscatter_table = SharedArray<BackscatterAtIncidence>(std::move(rows))};
+    return Material{.scattering = Scattering::tabulated,
+                    .backscatter_table = SharedArray<BackscatterAtIncidence>(std::move(rows))};
   };
   CHECK_NOTHROW(table({{0.1, 1}}).validate());
   CHECK_THROWS_AS(table({{0.2, 1}, {0.1, 1}}).validate(), SettingError);

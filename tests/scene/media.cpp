@@ -77,7 +77,8 @@ TEST_CASE("the cells of a region are met as points along the ray find them") {
     double expected = 0;
     const int steps = 40000;
     for (int k = 0; k < steps; ++k) {
-      const Vec3 p = origin + (near + (k + 0.5) / steps * (far - near)) * direction - region.bounds.min, size = region.bounds.size();
+      const Vec3 p = origin + (near + (k + 0.5) / steps * (far - near)) * direction - region.bounds.min,
+                 size = region.bounds.size();
       if (p.x < 0 || p.y < 0 || p.z < 0 || p.x >= size.x || p.y >= size.y || p.z >= size.z) continue;
       const auto cell = [&](int axis, std::size_t count) {
         return static_cast<std::size_t>(p[axis] / size[axis] * static_cast<double>(count));
@@ -95,10 +96,13 @@ TEST_CASE("media that cannot be are refused, with the number of their region") {
   CHECK_THROWS_AS(Media({{.medium = {.scattering = 0.1, .backscatter = 0.2}}}), SettingError);
   CHECK_THROWS_AS(Media({{.bounds = Box{}}}), SettingError);
   CHECK_THROWS_AS(Media({{.densities = std::vector<float>{1}}}), SettingError);
-  CHECK_THROWS_AS(Media({{.bounds = {{0, 0, 0}, {1, 1, 1}}, .cells = {1, 2, 1}, .densities = std::vector<float>{1}}}), SettingError);
+  CHECK_THROWS_AS(Media({{.bounds = {{0, 0, 0}, {1, 1, 1}}, .cells = {1, 2, 1}, .densities = std::vector<float>{1}}}),
+                  SettingError);
   CHECK_THROWS_AS(Media({{.bounds = {{0, 0, 0}, {1, 1, 1}}, .densities = std::vector<float>{-1}}}), SettingError);
-  const MediumRegion a{.bounds = {{0, 0, 0}, {2, 2, 2}}}, b{.bounds = {{1, 1, 1}, {3, 3, 3}}}, c{.bounds = {{2, 0, 0}, {3, 1, 1}}};
-  CHECK_THROWS_WITH_AS(Media({a, b}), "Media (region) is 1, but must be one that is inside another, around it, or apart from it",
+  const MediumRegion a{.bounds = {{0, 0, 0}, {2, 2, 2}}}, b{.bounds = {{1, 1, 1}, {3, 3, 3}}},
+      c{.bounds = {{2, 0, 0}, {3, 1, 1}}};
+  CHECK_THROWS_WITH_AS(Media({a, b}),
+                       "Media (region) is 1, but must be one that is inside another, around it, or apart from it",
                        SettingError);
   CHECK_THROWS_AS(Media({a, a}), SettingError);
   CHECK_NOTHROW(Media({a, c}));

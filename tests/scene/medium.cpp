@@ -21,7 +21,8 @@ TEST_CASE("light is as late as its index says, unless there is one of its own fo
 
 TEST_CASE("a medium that cannot be is refused") {
   CHECK_NOTHROW(Medium{.index = 4, .group_index = 1, .absorption = 0, .scattering = 1, .backscatter = 1}.validate());
-  CHECK_THROWS_WITH_AS(Medium{.index = 0.99}.validate(), "Medium::index is 0.99, but must be from 1 to 4", SettingError);
+  CHECK_THROWS_WITH_AS(Medium{.index = 0.99}.validate(), "Medium::index is 0.99, but must be from 1 to 4",
+                       SettingError);
   CHECK_THROWS_AS((Medium{.group_index = 0.5}.validate()), SettingError);
   CHECK_THROWS_AS((Medium{.absorption = -1}.validate()), SettingError);
   CHECK_THROWS_AS((Medium{.scattering = -1}.validate()), SettingError);

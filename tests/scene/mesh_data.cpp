@@ -42,15 +42,19 @@ TEST_CASE("data of a mesh that cannot be are refused, and the refusal says what 
         "MeshData::vertices is inf m, but must be finite; see vertex 2");
   CHECK(refusal([](MeshData& m) { m.vertices[3].z = std::numeric_limits<double>::quiet_NaN(); }) ==
         "MeshData::vertices is nan m, but must be finite; see vertex 3");
-  CHECK(refusal([](MeshData& m) { m.materials.pop_back(); }) == "MeshData::materials is 1, but must be as many as triangles, 2, or none");
-  CHECK(refusal([](MeshData& m) { m.texture.pop_back(); }) == "MeshData::texture is 1, but must be as many as triangles, 2, or none");
+  CHECK(refusal([](MeshData& m) { m.materials.pop_back(); }) ==
+        "MeshData::materials is 1, but must be as many as triangles, 2, or none");
+  CHECK(refusal([](MeshData& m) { m.texture.pop_back(); }) ==
+        "MeshData::texture is 1, but must be as many as triangles, 2, or none");
   CHECK(refusal([](MeshData& m) { m.texture[1][0].y = 1e31; }) ==
         "MeshData::texture is 1e+31, but must be from -1e+30 to 1e+30; see triangle 1");
 }
 
 TEST_CASE("masks need texture coordinates, and as many bits as pixels") {
   CHECK(refusal([](MeshData& m) { m.masks = {{}, {2, 1, {1}}}; }) == "");
-  CHECK(refusal([](MeshData& m) { m.masks = {{2, 100, {1}}}; }) == "Mask::bits (number of words) is 1, but must be from 4 to 4");
+  CHECK(refusal([](MeshData& m) {
+          m.masks = {{2, 100, {1}}};
+        }) == "Mask::bits (number of words) is 1, but must be from 4 to 4");
   CHECK(refusal([](MeshData& m) {
           m.masks = {{2, 1, {1}}};
           m.texture.clear();

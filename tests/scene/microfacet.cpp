@@ -24,7 +24,8 @@ double over_hemisphere(const F& f, int steps = 400) {
     const double angle = (i + 0.5) / steps * pi / 2;
     for (int k = 0; k < steps; ++k) {
       const double turn = (k + 0.5) / steps * 2 * pi;
-      sum += f(Vec3{std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle)}) * std::sin(angle);
+      sum += f(Vec3{std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle)}) *
+             std::sin(angle);
     }
   }
   return sum * pi / 2 / steps * 2 * pi / steps;
@@ -37,9 +38,10 @@ Vec3 at_angle(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
 TEST_CASE("the facets' normals fill the plane, with the variance of their slope") {
   for (const double slope : {0.05, 0.2, 0.5, 1.0}) {
     const Microfacets rough{.slope = slope};
-    CHECK(over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * n.z; }, 2000) == doctest::Approx(1).epsilon(1e-3));
-    const double variance =
-        over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * n.z * (n.x * n.x + n.y * n.y) / (n.z * n.z); }, 2000);
+    CHECK(over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * n.z; }, 2000) ==
+          doctest::Approx(1).epsilon(1e-3));
+    const double variance = over_hemisphere(
+        [&](const Vec3& n) { return rough.density(n.z) * n.z * (n.x * n.x + n.y * n.y) / (n.z * n.z); }, 2000);
     CHECK(variance == doctest::Approx(slope * slope).epsilon(2e-3));
   }
 }
@@ -50,7 +52,8 @@ TEST_CASE("the area of facets that is seen from a direction is that of the plane
     for (const double angle : {0.0, 0.5, 1.0, 1.4}) {
       const Microfacets rough{.slope = slope};
       const Vec3 to = at_angle(angle);
-      const double facing = over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * std::max(0.0, dot(n, to)); }, 1500);
+      const double facing =
+          over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * std::max(0.0, dot(n, to)); }, 1500);
       CHECK(facing / (1 + rough.hidden(to.z)) == doctest::Approx(to.z).epsilon(2e-3));
     }
 }
@@ -73,7 +76,8 @@ TEST_CASE("facets scatter no more than they reflect, and the same both ways") {
     Vec3 a = any.unit(), b = any.unit();
     a.z = std::fabs(a.z);
     b.z = std::fabs(b.z);
-    CHECK(rough.scattered(a, b, axis::up) * a.z == doctest::Approx(rough.scattered(b, a, axis::up) * b.z).epsilon(1e-9));
+    CHECK(rough.scattered(a, b, axis::up) * a.z ==
+          doctest::Approx(rough.scattered(b, a, axis::up) * b.z).epsilon(1e-9));
   }
 }
 
@@ -82,7 +86,8 @@ TEST_CASE("what returns to its source is the lobe's value there, up to what hide
     for (const double angle : {0.0, 0.2, 0.6, 1.2}) {
       const Microfacets rough{.slope = slope, .index = 1.33};
       const Vec3 to = at_angle(angle);
-      const double hidden = rough.hidden(to.z), once = pi * rough.scattered(to, to, axis::up) * (1 + 2 * hidden) / (1 + hidden);
+      const double hidden = rough.hidden(to.z),
+                   once = pi * rough.scattered(to, to, axis::up) * (1 + 2 * hidden) / (1 + hidden);
       CHECK(rough.backscatter(to.z) == doctest::Approx(once).epsilon(1e-9));
     }
   CHECK(Microfacets{}.backscatter(0) == 0);

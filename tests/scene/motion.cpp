@@ -55,8 +55,8 @@ class Walker {
   Rotation attitude_ = no_rotation;
 };
 
-Vec3 walked(const std::vector<MotionSequence>& sequences, std::optional<std::size_t> again_from, double seconds, const Vec3& point,
-            const Vec3& centre) {
+Vec3 walked(const std::vector<MotionSequence>& sequences, std::optional<std::size_t> again_from, double seconds,
+            const Vec3& point, const Vec3& centre) {
   Walker walker(centre);
   for (std::size_t i = 0; i < sequences.size() && seconds > 0;) {
     seconds = walker.walk(sequences[i], seconds);
@@ -130,8 +130,8 @@ TEST_CASE("a loop there and back is after a year as exact as in the first second
     const Tick late = Tick::of(static_cast<PulseIndex>(passes), 1 / period) + Tick::of_seconds(t);
     // 1 / period rounds: the very time since the start of the pass
     const double rest = std::fmod(std::fmod(static_cast<double>(late.second), period) + late.fraction, period);
-    CHECK(length(motion.at(late, utm).point(utm + Vec3{3, 2, 1}) - motion.at(Tick::of_seconds(rest), utm).point(utm + Vec3{3, 2, 1})) <
-          2e-8);
+    CHECK(length(motion.at(late, utm).point(utm + Vec3{3, 2, 1}) -
+                 motion.at(Tick::of_seconds(rest), utm).point(utm + Vec3{3, 2, 1})) < 2e-8);
   }
 }
 
@@ -195,7 +195,8 @@ TEST_CASE("the same tick gives the same displacement, in any order and from a co
 }
 
 TEST_CASE("a body passes its timed poses, straight and at constant rates between them, and rests after the last") {
-  const PartMotion motion(std::vector<TimedPose>{{1, {10, 0, 0}}, {3, {10, 4, 0}, rotation_about(axis::up, pi / 2)}, {4, {0, 4, 0}}});
+  const PartMotion motion(
+      std::vector<TimedPose>{{1, {10, 0, 0}}, {3, {10, 4, 0}, rotation_about(axis::up, pi / 2)}, {4, {0, 4, 0}}});
   const Vec3 p{1, 0, 0};
   CHECK(length(moved(motion, 0, p) - Vec3{11, 0, 0}) < 1e-14);  // before the first pose it is there
   CHECK(length(moved(motion, 1, p) - Vec3{11, 0, 0}) < 1e-14);
@@ -219,7 +220,8 @@ TEST_CASE("between any timed poses the attitude is that of spherical interpolati
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const TimedPose a{0.5, any.point(100), any.rotation()}, b{0.5 + any.log_uniform(0.01, 10), any.point(100), any.rotation()};
+    const TimedPose a{0.5, any.point(100), any.rotation()},
+        b{0.5 + any.log_uniform(0.01, 10), any.point(100), any.rotation()};
     const PartMotion motion(std::vector<TimedPose>{a, b});
     const double s = any.uniform();
     const Vec3 p = any.point(5);
@@ -247,9 +249,11 @@ TEST_CASE("a step done again and again is a steady motion") {
 
 TEST_CASE("the velocity of a point is what a body does at that time") {
   const auto at = [](double seconds) { return Tick::of_seconds(seconds); };
-  const PartMotion orbit(SteadyMotion{.velocity = {0, 0, 1}, .rate = 2, .centre = Vec3{10, 0, 0}, .spin = Vec3{}, .duration = 5});
+  const PartMotion orbit(
+      SteadyMotion{.velocity = {0, 0, 1}, .rate = 2, .centre = Vec3{10, 0, 0}, .spin = Vec3{}, .duration = 5});
   // a Ferris wheel's cabin: every point of it moves as its centre does
-  for (const double x : {-3.0, 0.0, 4.0}) CHECK(length(orbit.velocity(at(0), {13, 0, 0}, {13 + x, 1, 0}) - Vec3{0, 6, 1}) < 1e-12);
+  for (const double x : {-3.0, 0.0, 4.0})
+    CHECK(length(orbit.velocity(at(0), {13, 0, 0}, {13 + x, 1, 0}) - Vec3{0, 6, 1}) < 1e-12);
   CHECK(orbit.velocity(at(6), {13, 0, 0}, {13, 0, 0}) == Vec3{});
   CHECK(orbit.velocity({-1, 0.5}, {13, 0, 0}, {13, 0, 0}) == Vec3{});
   const PartMotion poses({{1, {0, 0, 0}, no_rotation}, {3, {4, 0, 0}, rotation_about(axis::up, 1)}});
@@ -263,7 +267,8 @@ TEST_CASE("the velocity of any motion is the difference quotient of its places")
     CAPTURE(seed);
     support::Generator any(seed);
     const Plan plan = any_plan(any);
-    const PartMotion motion = any.whole(4) == 0 ? PartMotion(any_poses(any)) : PartMotion(plan.sequences, plan.again_from);
+    const PartMotion motion =
+        any.whole(4) == 0 ? PartMotion(any_poses(any)) : PartMotion(plan.sequences, plan.again_from);
     const Vec3 centre = any.point(5), p = centre + any.point(2);
     for (int k = 0; k < 10; ++k) {
       const double seconds = any.uniform(0.01, 20), h = 1e-5;
@@ -299,7 +304,8 @@ TEST_CASE("what a body sweeps is inside of the box, whatever it does and however
     Box passed;
     for (int k = 0; k < 200; ++k) {
       const double t = k == 0 ? from : k == 1 ? from + span : any.uniform(from, from + span);
-      const Vec3 p = moved(motion, t, box.min + box.size() * Vec3{any.uniform(), any.uniform(), any.uniform()}, box.centre());
+      const Vec3 p =
+          moved(motion, t, box.min + box.size() * Vec3{any.uniform(), any.uniform(), any.uniform()}, box.centre());
       const Vec3 corner = moved(motion, t, corners[any.whole(8)], box.centre());
       passed.extend(p);
       passed.extend(corner);
@@ -314,15 +320,17 @@ TEST_CASE("what a body sweeps is inside of the box, whatever it does and however
 }
 
 TEST_CASE("what a body sweeps on a polygon of many turns and steps is inside of the box") {
-  // Each pass turns about one point and then steps aside so that all in all it turns about another, the middle of the polygon.
+  // Each pass turns about one point and then steps aside so that all in all it turns about another, the middle of the
+  // polygon.
   for (const double all : {0.5, 1.5, 1.9, 2.1, 4.0, 2 * pi}) {
     CAPTURE(all);
     const int passes = 100;
     const double turn = -all / passes;
     const Vec3 middle{0, 100, 0};
-    const PartMotion motion({{.motions = {{.rate = turn, .centre = Vec3{}, .duration = 1},
-                                          {.velocity = middle - rotation_about(axis::up, turn) * middle, .duration = 1}}}},
-                            0);
+    const PartMotion motion(
+        {{.motions = {{.rate = turn, .centre = Vec3{}, .duration = 1},
+                      {.velocity = middle - rotation_about(axis::up, turn) * middle, .duration = 1}}}},
+        0);
     const Vec3 start = middle + rotation_about(axis::up, all / 2) * Vec3{0, 100, 0};
     const Box swept = motion.swept({start, start}, {}, {0, 0}, {2 * passes, 0});
     Box passed;
@@ -343,7 +351,8 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
   const double radius = length(box.max);
   const Box spin = PartMotion(SteadyMotion{.rate = 10}).swept(box, {}, {0, 0}, {1000, 0});
   CHECK(max_norm(spin.max) < radius + 1e-5);
-  const PartMotion there_and_back({{.motions = {{.velocity = {3, 0, 0}, .duration = 1}, {.velocity = {-3, 0, 0}, .duration = 1}}}}, 0);
+  const PartMotion there_and_back(
+      {{.motions = {{.velocity = {3, 0, 0}, .duration = 1}, {.velocity = {-3, 0, 0}, .duration = 1}}}}, 0);
   const Box year = there_and_back.swept(box, {}, {0, 0}, {31'536'000, 0});
   CHECK(year.max.x < 3 + radius + 1e-5);
   CHECK(year.min.x > -radius - 1e-5);
@@ -352,7 +361,8 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
 TEST_CASE("what a body sweeps after very many short motions is inside of the box") {
   const MotionSequence rests{.motions = {{.duration = 0.01}}, .times = 40},
       steps{.motions = {{.velocity = axis::right, .duration = 0.01}}, .times = 1000};
-  const MotionSequence turn{.motions = {{.rate = 2 * pi, .centre = Vec3{}, .duration = 1}}}, way{.motions = {{.velocity = axis::right}}};
+  const MotionSequence turn{.motions = {{.rate = 2 * pi, .centre = Vec3{}, .duration = 1}}},
+      way{.motions = {{.velocity = axis::right}}};
   const MotionSequence there{.motions = {{.velocity = axis::right, .duration = 1}}},
       back{.motions = {{.velocity = -axis::right, .duration = 1}}};
   const Vec3 start{10, 0, 0};
@@ -378,7 +388,8 @@ TEST_CASE("timed poses and steps of single precision move rigidly") {
   const PartMotion poses(std::vector<TimedPose>{{0, {}, rounded}, {1, axis::right, rounded}}),
       step(steady_motion({rounded, axis::right}, 1));
   for (const PartMotion& motion : {poses, step})
-    for (const double t : {0.0, 0.5, 1.0, 2.0}) CHECK(std::fabs(length(motion.at(Tick::of_seconds(t), {}).rotation) - 1) < 1e-14);
+    for (const double t : {0.0, 0.5, 1.0, 2.0})
+      CHECK(std::fabs(length(motion.at(Tick::of_seconds(t), {}).rotation) - 1) < 1e-14);
 }
 
 TEST_CASE("a motion refuses what cannot be") {

@@ -29,7 +29,8 @@ struct Cube {
 };
 
 MovingIndex index_of(const std::vector<Cube>& cubes, const MovingIndexSettings& time) {
-  return {cubes.size(), time, [&](PrimitiveIndex i, const Tick& from, const Tick& to) { return cubes[i].swept(from, to); },
+  return {cubes.size(), time,
+          [&](PrimitiveIndex i, const Tick& from, const Tick& to) { return cubes[i].swept(from, to); },
           [](PrimitiveIndex) { return 1.0; }};
 }
 
@@ -46,12 +47,14 @@ std::multiset<PrimitiveIndex> offered(const MovingIndex& index, const Vec2& plac
 
 }  // namespace
 
-TEST_CASE("what stands at a place at a time is offered there and then, once, whatever its speed and the time's windows") {
+TEST_CASE(
+    "what stands at a place at a time is offered there and then, once, whatever its speed and the time's windows") {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<Cube> cubes;
-    for (std::uint64_t n = 1 + any.whole(20); cubes.size() < n;) cubes.push_back({any.point(50), any.log_uniform(1e-3, 1e3) * any.unit()});
+    for (std::uint64_t n = 1 + any.whole(20); cubes.size() < n;)
+      cubes.push_back({any.point(50), any.log_uniform(1e-3, 1e3) * any.unit()});
     const double from = any.uniform(-10, 1000), to = from + any.log_uniform(0.1, 1000);
     const MovingIndex index = index_of(cubes, {from, to, any.coin() ? std::size_t{1} << 14 : 1 + any.whole(1000)});
     for (int k = 0; k < 50; ++k) {

@@ -42,7 +42,9 @@ using Discs = MovingScene<LeastGeometry>;
 
 static_assert(BundleTarget<Discs> && BundleTarget<MovingScene<LeastGeometry, Mesh>>);
 
-std::shared_ptr<const PartMotion> moving(const SteadyMotion& motion) { return std::make_shared<const PartMotion>(motion); }
+std::shared_ptr<const PartMotion> moving(const SteadyMotion& motion) {
+  return std::make_shared<const PartMotion>(motion);
+}
 
 Disc disc(const Similarity& placement, ObjectId object, std::shared_ptr<const PartMotion> motion = nullptr) {
   static const auto shape = std::make_shared<const LeastGeometry>();
@@ -71,7 +73,8 @@ MeshData cube() {
 std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
   if (any.whole(4) == 0) {
     std::vector<TimedPose> poses;
-    for (double t = any.uniform(0, 2); poses.size() < 5; t += any.uniform(0.2, 5)) poses.push_back({t, any.point(10), any.rotation()});
+    for (double t = any.uniform(0, 2); poses.size() < 5; t += any.uniform(0.2, 5))
+      poses.push_back({t, any.point(10), any.rotation()});
     return std::make_shared<const PartMotion>(poses, any.coin() ? AfterLastPose::rest : AfterLastPose::start_again);
   }
   std::vector<MotionSequence> sequences(1 + any.whole(2));
@@ -94,7 +97,8 @@ std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
 
 TEST_CASE("a motion comes on top of the placement, and turns about the part's own centre if it has none of its own") {
   // twice as large, upright, facing north; it turns about up
-  const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))}, {.to = 5});
+  const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))},
+                    {.to = 5});
   CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).range == support::relative(8, 1e-12));
   CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).cos_incidence == support::relative(1, 1e-12));
   CHECK(ask(scene, {{7, 0, 10.9}, axis::forward}, {0, 0.5}).cos_incidence == support::relative(std::sqrt(0.5), 1e-12));
@@ -110,7 +114,8 @@ TEST_CASE("a scene of moving parts answers as one of still parts that stand wher
     support::Generator any(seed);
     std::vector<Part<Mesh, LeastGeometry>> parts;
     for (ObjectId k = 0; k < 12; ++k) {
-      Part<Mesh, LeastGeometry> part{.geometry = mesh, .placement = {any.rotation(), any.log_uniform(0.2, 4), any.point(15)}, .object = k};
+      Part<Mesh, LeastGeometry> part{
+          .geometry = mesh, .placement = {any.rotation(), any.log_uniform(0.2, 4), any.point(15)}, .object = k};
       if (any.coin()) part.geometry = std::make_shared<const LeastGeometry>();
       if (any.whole(3) > 0) part.motion = any_motion(any);
       parts.push_back(part);
@@ -150,7 +155,8 @@ TEST_CASE("of parts in the same place the first in the list is met, moving or no
   for (int moves = 0; moves < 8; ++moves) {
     CAPTURE(moves);
     std::vector<Disc> parts;
-    for (ObjectId k = 0; k < 3; ++k) parts.push_back(disc({}, 10 + k, moves >> k & 1 ? moving({.velocity = {0.25, 0, 0}}) : nullptr));
+    for (ObjectId k = 0; k < 3; ++k)
+      parts.push_back(disc({}, 10 + k, moves >> k & 1 ? moving({.velocity = {0.25, 0, 0}}) : nullptr));
     CHECK(ask(Discs(parts, {.to = 5}), {{0, 0, 10}, -axis::up}, {1, 0}).object == 10);
   }
 }
@@ -180,7 +186,8 @@ TEST_CASE("a part that rests in the pose of its motion costs one box, however lo
   CHECK(hour.memory() == Discs(parts, {0, 1}).memory());
   for (const double seconds : {-1.0, 0.0, 7.5, 3600.0, 1e6}) {
     CAPTURE(seconds);
-    const auto hit = hour.closest_hit({.origin = {5, 30, 10}, .direction = {0, 0, -1}, .tick = Tick::of_seconds(seconds)});
+    const auto hit =
+        hour.closest_hit({.origin = {5, 30, 10}, .direction = {0, 0, -1}, .tick = Tick::of_seconds(seconds)});
     REQUIRE(hit.has_value());
     CHECK(hit->part == 10);
     CHECK(hit->range == 9);
@@ -207,16 +214,23 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
   const auto box = std::make_shared<const Mesh>(cube());
   const auto floor = std::make_shared<const LeastGeometry>();
   const MovingScene<support::UnitBall, Mesh, LeastGeometry> scene(
-      {{.geometry = ball, .placement = {.translation = {10, 0, 0}}, .object = 1, .motion = moving({.rate = orbit, .centre = Vec3{}})},
-       {.geometry = box, .placement = {.translation = start}, .object = 2, .motion = moving({.velocity = drift, .rate = spin})},
+      {{.geometry = ball,
+        .placement = {.translation = {10, 0, 0}},
+        .object = 1,
+        .motion = moving({.rate = orbit, .centre = Vec3{}})},
+       {.geometry = box,
+        .placement = {.translation = start},
+        .object = 2,
+        .motion = moving({.velocity = drift, .rate = spin})},
        {.geometry = floor,
         .placement = {.scale = 30, .translation = {0, 0, -9}},
         .object = 3,
         .motion = moving({.velocity = {0, 0, climb}})}},
       {.to = 4});
   const Scanner laser{.pulse_rate = 25e3, .pulses = 100'000};
-  const Platform platform{Tripod{}, Mount{},
-                          Deflector{RotatingHead{.rate = 4 * pi}, Deflector{PolygonMirror{.lines_per_second = 300}, laser}}};
+  const Platform platform{
+      Tripod{}, Mount{},
+      Deflector{RotatingHead{.rate = 4 * pi}, Deflector{PolygonMirror{.lines_per_second = 300}, laser}}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
   Cloud cloud, threads;
   run(survey, {.threads = 1}, cloud);
@@ -248,7 +262,8 @@ TEST_CASE("the user's threads build both indices of a moving scene, which is the
     support::Generator any(12);
     std::vector<Disc> discs;
     for (ObjectId k = 0; k < 10'000; ++k)
-      discs.push_back(disc({.scale = 5, .translation = any.point(200)}, k, moves ? moving({.velocity = any.point(1)}) : nullptr));
+      discs.push_back(
+          disc({.scale = 5, .translation = any.point(200)}, k, moves ? moving({.velocity = any.point(1)}) : nullptr));
     const Discs alone(discs, {.to = 1}, 1), shared(discs, {.to = 1}, executor);
     CHECK(executor.calls() > 0);
     int met = 0;
@@ -283,8 +298,9 @@ TEST_CASE("no ray meets anything at the tick of a cone that is said to meet noth
 
 TEST_CASE("a cone meets a part while it passes, and outside of the time it may meet any") {
   const auto mesh = std::make_shared<const Mesh>(cube());
-  const MovingScene<Mesh> scene({{.geometry = mesh, .placement = {.translation = {-50, 0, 0}}, .motion = moving({.velocity = {10, 0, 0}})}},
-                                {0, 10});
+  const MovingScene<Mesh> scene(
+      {{.geometry = mesh, .placement = {.translation = {-50, 0, 0}}, .motion = moving({.velocity = {10, 0, 0}})}},
+      {0, 10});
   RayCone cone{.origin = {0, -20, 0}, .spread = 1e-3};
   for (const double seconds : {0.0, 2.0, 4.0, 6.0, 8.0}) {
     cone.tick = Tick::of_seconds(seconds);

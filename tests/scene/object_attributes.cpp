@@ -27,8 +27,10 @@ using Map = Scene<TriangleMesh<>>;
 
 /// Triangle of an object with attributes.
 Map::Part part(ObjectId object, std::vector<Attribute> all) {
-  static const auto triangle = std::make_shared<const TriangleMesh<>>(MeshData{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
-  return {.geometry = triangle, .object = object, .attributes = all.empty() ? Attributes{} : attributes(std::move(all))};
+  static const auto triangle =
+      std::make_shared<const TriangleMesh<>>(MeshData{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  return {
+      .geometry = triangle, .object = object, .attributes = all.empty() ? Attributes{} : attributes(std::move(all))};
 }
 
 std::vector<double> values_of(const ObjectAttributes& all, ObjectId object) {
@@ -81,7 +83,8 @@ TEST_CASE("several parts of an object give it all their attributes, and may repe
   CHECK(tree.of(1)[2] == 21);
 
   const auto refused = [](double first, double second) {
-    const std::vector<Map::Part> parts{part(3, {{"age", first}}), part(4, {{"age", second}}), part(3, {{"age", second}})};
+    const std::vector<Map::Part> parts{part(3, {{"age", first}}), part(4, {{"age", second}}),
+                                       part(3, {{"age", second}})};
     return refused_field([&] { ObjectAttributes{std::span(std::as_const(parts))}; });
   };
   CHECK(refused(1, 1).empty());
@@ -92,7 +95,8 @@ TEST_CASE("several parts of an object give it all their attributes, and may repe
 
 TEST_CASE("of very many objects, each has its own values") {
   std::vector<Map::Part> parts;
-  for (ObjectId n = 0; n < 1000; ++n) parts.push_back(part(n * 2654435761u, {{"number", 1.0 * n}, {n % 2 == 0 ? "even" : "odd", 1}}));
+  for (ObjectId n = 0; n < 1000; ++n)
+    parts.push_back(part(n * 2654435761u, {{"number", 1.0 * n}, {n % 2 == 0 ? "even" : "odd", 1}}));
   const ObjectAttributes known{std::span(std::as_const(parts))};
   REQUIRE(known.names().size() == 3);
   for (ObjectId n = 0; n < 1000; ++n) {
@@ -104,7 +108,9 @@ TEST_CASE("of very many objects, each has its own values") {
 }
 
 TEST_CASE("attributes without a name, and two of one name, are refused") {
-  const auto refused = [](std::vector<Attribute> all) { return refused_field([&] { (void)attributes(std::move(all)); }); };
+  const auto refused = [](std::vector<Attribute> all) {
+    return refused_field([&] { (void)attributes(std::move(all)); });
+  };
   CHECK(refused({}).empty());
   CHECK(refused({{"age", 1}, {"Age", 1}}).empty());
   CHECK(refused({{"", 1}}) == "Attribute::name (number of '')");

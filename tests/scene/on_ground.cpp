@@ -47,13 +47,16 @@ std::optional<double> height(const std::optional<Part<Mesh>>& part) {
 
 TEST_CASE("a part stands by its origin, by its lowest point, by the first that touches, or sunk until nothing hovers") {
   const Part<Mesh> part{.geometry = top(), .placement = {.translation = {20, 0, 500}}};
-  const auto stands = [&](GroundPlacement ground_placement) { return height(on_ground(part, slope, ground_placement)).value(); };
+  const auto stands = [&](GroundPlacement ground_placement) {
+    return height(on_ground(part, slope, ground_placement)).value();
+  };
   CHECK(stands(GroundPlacement::origin) == support::relative(20, 1e-12));
   CHECK(stands(GroundPlacement::lowest_point) == support::relative(20 + 1, 1e-12));
   CHECK(height(on_ground(part, slope)).value() == stands(GroundPlacement::lowest_point));
   CHECK(stands(GroundPlacement::touching) ==
         support::relative(20 + 1, 1e-12));  // the other corners are 3 m above a ground that rises by 1 m
-  CHECK(stands(GroundPlacement::sunk) == support::relative(20 - 1 + 1, 1e-12));  // the lower corners of its box are over ground at 19 m
+  CHECK(stands(GroundPlacement::sunk) ==
+        support::relative(20 - 1 + 1, 1e-12));  // the lower corners of its box are over ground at 19 m
 }
 
 TEST_CASE("a part is turned and scaled first, then it stands") {
@@ -69,7 +72,8 @@ TEST_CASE("a placement of single precision is unit on the ground and in a scene"
 }
 
 TEST_CASE("shapes without triangles stand by the corners of their box") {
-  const Part<LeastGeometry> disc{.geometry = std::make_shared<const LeastGeometry>(), .placement = {.translation = {20, 0, 0}}};
+  const Part<LeastGeometry> disc{.geometry = std::make_shared<const LeastGeometry>(),
+                                 .placement = {.translation = {20, 0, 0}}};
   CHECK(on_ground(disc, slope, GroundPlacement::touching)->placement.translation.z == support::relative(20.5, 1e-12));
   CHECK(on_ground(disc, slope, GroundPlacement::lowest_point)->placement.translation.z == support::relative(20, 1e-12));
 }
@@ -77,7 +81,9 @@ TEST_CASE("shapes without triangles stand by the corners of their box") {
 TEST_CASE("where there is no ground, nothing stands") {
   for (const GroundPlacement ground_placement :
        {GroundPlacement::origin, GroundPlacement::lowest_point, GroundPlacement::touching, GroundPlacement::sunk}) {
-    CHECK_FALSE(on_ground(Part<Mesh>{.geometry = top(), .placement = {.translation = {200, 0, 0}}}, slope, ground_placement).has_value());
+    CHECK_FALSE(
+        on_ground(Part<Mesh>{.geometry = top(), .placement = {.translation = {200, 0, 0}}}, slope, ground_placement)
+            .has_value());
     CHECK_THROWS_AS((void)on_ground(Part<Mesh>{}, slope, ground_placement), SettingError);
   }
   // at the edge, the points over the ground decide
@@ -91,7 +97,9 @@ TEST_CASE("any part stands on any ground as it is meant to") {
     CAPTURE(seed);
     support::Generator any(seed);
     const double a = any.uniform(-1, 1), b = any.uniform(-1, 1), wave = any.uniform(0, 2);
-    const auto hills = [&](const Vec2& p) { return std::optional(a * p.x + b * p.y + wave * std::sin(p.x) * std::cos(p.y)); };
+    const auto hills = [&](const Vec2& p) {
+      return std::optional(a * p.x + b * p.y + wave * std::sin(p.x) * std::cos(p.y));
+    };
     MeshData data;
     for (int k = 0; k < 30; ++k) data.vertices.push_back(any.point(3));
     for (std::uint32_t k = 0; k < 30; ++k) data.triangles.push_back({k, (k + 1) % 30, (k + 2) % 30});

@@ -43,7 +43,8 @@ TEST_CASE("the height of a number is offset and scale times the steps from zero"
   const PackedHeights scaled{.numbers = {100, 104, 96}, .scale = 0.25, .offset = 1000, .zero = 100};
   CHECK(heights_of(scaled) == std::vector<float>{1000, 1001, 999});
   const PackedHeights both_signs{.numbers = {0, 32768, 65535}, .scale = 0.1, .zero = 32768};
-  CHECK(heights_of(both_signs) == std::vector<float>{static_cast<float>(-32768 * 0.1), 0, static_cast<float>(32767 * 0.1)});
+  CHECK(heights_of(both_signs) ==
+        std::vector<float>{static_cast<float>(-32768 * 0.1), 0, static_cast<float>(32767 * 0.1)});
 }
 
 TEST_CASE("missing numbers are missing below, among, above and in place of the others") {

@@ -16,7 +16,9 @@ using namespace pulsecast;
 
 namespace {
 
-Similarity any_similarity(support::Generator& any) { return {any.rotation(), any.log_uniform(1e-3, 1e3), any.point(1e6)}; }
+Similarity any_similarity(support::Generator& any) {
+  return {any.rotation(), any.log_uniform(1e-3, 1e3), any.point(1e6)};
+}
 
 }  // namespace
 
@@ -43,7 +45,8 @@ TEST_CASE("the box around a placed box holds all of its points, and is no larger
     const double rounding = 1e-14 * (max_norm(placed.min) + max_norm(placed.max));
     Box corners;
     for (int c = 0; c < 8; ++c)
-      corners.extend(s.point({c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
+      corners.extend(
+          s.point({c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
     CHECK(placed == corners);
     for (int k = 0; k < 50; ++k) {
       const Vec3 p = s.point(box.min + box.size() * Vec3{any.uniform(), any.uniform(), any.uniform()});
@@ -89,7 +92,8 @@ TEST_CASE("rays in a part's own frame reach at the same range the point that the
 TEST_CASE("a similarity refuses what is none") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   CHECK_NOTHROW(Similarity{}.validate());
-  for (const double bad : {0.0, -1.0, nan, infinity}) CHECK_THROWS_AS(Similarity{.scale = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan, infinity})
+    CHECK_THROWS_AS(Similarity{.scale = bad}.validate(), SettingError);
   CHECK_THROWS_AS((Similarity{.rotation = Rotation{1, 1, 0, 0}}.validate()), SettingError);
   CHECK_THROWS_AS((Similarity{.rotation = Rotation{nan, 0, 0, 0}}.validate()), SettingError);
   CHECK_THROWS_AS((Similarity{.translation = {0, nan, 0}}.validate()), SettingError);

@@ -24,8 +24,8 @@ namespace {
 
 using Map = Scene<TriangleMesh<>>;
 
-/// Wall of 2 m by 2 m across the view, 10 m ahead, whose lower left corner has the texture coordinates (0, 0) and its upper right one (1,
-/// 1).
+/// Wall of 2 m by 2 m across the view, 10 m ahead, whose lower left corner has the texture coordinates (0, 0) and its
+/// upper right one (1, 1).
 Map::Part wall(Material material) {
   return {.geometry = std::make_shared<const TriangleMesh<>>(
               MeshData{.vertices = {{-1, 10, -1}, {1, 10, -1}, {1, 10, 1}, {-1, 10, 1}},
@@ -37,7 +37,8 @@ Map::Part wall(Material material) {
 
 /// Red and green above, blue and a grey below.
 std::shared_ptr<const Image> four_pixels() {
-  return std::make_shared<const Image>(Image{2, 2, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 102, 102, 102}});
+  return std::make_shared<const Image>(
+      Image{2, 2, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 102, 102, 102}});
 }
 
 /// Colour of the echo where a ray from the origin meets the wall at a place on it [m].
@@ -85,8 +86,8 @@ TEST_CASE("a picture is multiplied by the colour of its material; without one, t
 
 TEST_CASE("without texture coordinates, a picture does not count") {
   Map::Part part = wall({.reflectance = 0, .colour = {1, 0.4, 0}, .picture = four_pixels()});
-  part.geometry =
-      std::make_shared<const TriangleMesh<>>(MeshData{{{-1, 10, -1}, {1, 10, -1}, {1, 10, 1}, {-1, 10, 1}}, {{0, 1, 2}, {0, 2, 3}}});
+  part.geometry = std::make_shared<const TriangleMesh<>>(
+      MeshData{{{-1, 10, -1}, {1, 10, -1}, {1, 10, 1}, {-1, 10, 1}}, {{0, 1, 2}, {0, 2, 3}}});
   const Map scene({part});
   CHECK(colour_at(colours_of(scene), -0.5, 0.5) == PointColour{65535, 26214, 0});
 }

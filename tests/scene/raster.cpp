@@ -20,7 +20,9 @@ namespace {
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
 /// Two cells from west to east; the pixels are 2 m by 4 m, the north-western one at (100, 200).
-Raster two_cells() { return {.columns = 3, .rows = 2, .first = {100, 200}, .pixel = {2, 4}, .heights = {1, 2, 3, 4, 5, 6}}; }
+Raster two_cells() {
+  return {.columns = 3, .rows = 2, .first = {100, 200}, .pixel = {2, 4}, .heights = {1, 2, 3, 4, 5, 6}};
+}
 
 std::string refusal(const Raster& raster) {
   try {
@@ -33,7 +35,9 @@ std::string refusal(const Raster& raster) {
 
 }  // namespace
 
-TEST_CASE("a raster's mesh has its pixels as vertices, and two triangles a cell along its south-west to north-east diagonal") {
+TEST_CASE(
+    "a raster's mesh has its pixels as vertices, and two triangles a cell along its south-west to north-east "
+    "diagonal") {
   const MeshData mesh = two_cells().mesh();
   REQUIRE(mesh.vertices.size() == 6);
   REQUIRE(mesh.triangles.size() == 4);
@@ -64,7 +68,8 @@ TEST_CASE("a mosaic of tiles is the raster that they were cut from") {
   for (std::size_t i = 0; i < 35; ++i) whole.heights.push_back(static_cast<float>(i));
   for (std::size_t i = 0; i < 35; ++i) whole.materials.push_back(i % 3 == 0 ? 1 : 0);
   const auto cut = [&](std::uint32_t west, std::uint32_t north, std::uint32_t columns, std::uint32_t rows) {
-    Raster tile{.columns = columns, .rows = rows, .first = whole.first + Vec2{west * 0.3, north * -0.7}, .pixel = whole.pixel};
+    Raster tile{
+        .columns = columns, .rows = rows, .first = whole.first + Vec2{west * 0.3, north * -0.7}, .pixel = whole.pixel};
     for (std::uint32_t r = north; r < north + rows; ++r)
       for (std::uint32_t c = west; c < west + columns; ++c) {
         tile.heights.push_back(whole.heights[7 * r + c]);
@@ -106,7 +111,10 @@ TEST_CASE("a mosaic of tiles is the raster that they were cut from") {
 
 TEST_CASE("a mosaic of packed tiles is packed, where they are packed alike and there is a number for gaps") {
   const auto tile = [](double east, std::vector<std::uint16_t> numbers) {
-    return Raster{.columns = 2, .rows = 2, .first = {east, 0}, .packed = {.numbers = std::move(numbers), .scale = 0.5, .missing = 9}};
+    return Raster{.columns = 2,
+                  .rows = 2,
+                  .first = {east, 0},
+                  .packed = {.numbers = std::move(numbers), .scale = 0.5, .missing = 9}};
   };
   const Raster all = mosaic({tile(0, {1, 2, 3, 9}), tile(1, {5, 6, 7, 8}), tile(4, {1, 1, 1, 1})});
   CHECK(all.packed.numbers == std::vector<std::uint16_t>{1, 2, 6, 9, 1, 1, 3, 7, 8, 9, 1, 1});
@@ -130,19 +138,26 @@ TEST_CASE("a mosaic of packed tiles is packed, where they are packed alike and t
 TEST_CASE("a raster takes its materials from one of codes with other pixels") {
   Raster ground = two_cells();  // pixels at 100, 102, 104 m east and 200, 196 m north
   // codes in pixels of 3 m, from 99 to 105 m east and from 201 to 195 m north
-  const Raster codes{.columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .heights = {21, 7, missing, 30}};
+  const Raster codes{
+      .columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .heights = {21, 7, missing, 30}};
   CHECK(set_materials(ground, codes, {{7, 2}, {21, 1}, {30, 3}}, 9) == 1);
   CHECK(ground.materials == std::vector<std::uint8_t>{1, 2, 2, 9, 3, 3});
-  CHECK(set_materials(ground, codes, {{30, 3}, {static_cast<double>(missing), 5}, {30, 4}}) == 4);  // of equal codes, the first counts
+  CHECK(set_materials(ground, codes, {{30, 3}, {static_cast<double>(missing), 5}, {30, 4}}) ==
+        4);  // of equal codes, the first counts
   CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 3, 3});
   const Raster elsewhere{.columns = 2, .rows = 2, .first = {103, 197}, .pixel = {1, 1}, .heights = {5, 5, 5, 5}};
-  CHECK(set_materials(ground, elsewhere, {{5, 1}}) == 5);  // of pixels from 102.5 to 104.5 m east and from 197.5 to 195.5 m north
+  CHECK(set_materials(ground, elsewhere, {{5, 1}}) ==
+        5);  // of pixels from 102.5 to 104.5 m east and from 197.5 to 195.5 m north
   CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 0, 1});
   const Raster edges{.columns = 2, .rows = 2, .first = {101, 199}, .pixel = {2, 2}, .heights = {1, 2, 3, 4}};
   Raster within = two_cells();  // whose pixels are on the edges of those codes
   CHECK(set_materials(within, edges, {{1, 1}, {2, 2}, {3, 3}, {4, 4}}) == 0);
   CHECK(within.materials == std::vector<std::uint8_t>{1, 2, 2, 3, 4, 4});
-  Raster packed{.columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .packed = {.numbers = {21, 7, 0, 30}, .missing = 0}};
+  Raster packed{.columns = 2,
+                .rows = 2,
+                .first = {100.5, 199.5},
+                .pixel = {3, 3},
+                .packed = {.numbers = {21, 7, 0, 30}, .missing = 0}};
   Raster both = two_cells();
   CHECK(set_materials(both, packed, {{7, 2}, {21, 1}, {30, 3}}, 9) == 1);
   CHECK(both.materials == std::vector<std::uint8_t>{1, 2, 2, 9, 3, 3});
@@ -160,8 +175,11 @@ TEST_CASE("a raster that cannot be is refused, and the refusal says what is wron
   CHECK(refusal(two_cells()) == "");
   CHECK(with([](Raster& r) { r.columns = 1; }) == "Raster::columns is 1, but must be from 2 to 134217728");
   CHECK(with([](Raster& r) { r.rows = 0; }) == "Raster::rows is 0, but must be from 2 to 134217728");
-  CHECK(with([](Raster& r) { r.columns = r.rows = 60000; }).find("cells between them is 3599880001") != std::string::npos);
-  CHECK(with([](Raster& r) { r.materials = {1, 2}; }) == "Raster::materials is 2, but must be as many as pixels, 6, or none");
+  CHECK(with([](Raster& r) { r.columns = r.rows = 60000; }).find("cells between them is 3599880001") !=
+        std::string::npos);
+  CHECK(with([](Raster& r) {
+          r.materials = {1, 2};
+        }) == "Raster::materials is 2, but must be as many as pixels, 6, or none");
   CHECK(with([](Raster& r) { r.heights.pop_back(); }) == "Raster::heights is 5, but must be as many as pixels, 6");
   CHECK(with([](Raster& r) { r.heights[4] = std::numeric_limits<float>::infinity(); }) ==
         "Raster::heights is inf m, but must be within 1e15 m, or NaN; see pixel 4");

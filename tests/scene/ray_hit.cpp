@@ -35,7 +35,9 @@ using Mesh = TriangleMesh<>;
 
 /// The triangle (0, 0), (2, 0), (0, 2) at height 0, seen anticlockwise from above, with a texture.
 MeshData half_square() {
-  return {.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, .triangles = {{0, 1, 2}}, .texture = {{{Vec2{0, 0}, {1, 0}, {0, 4}}}}};
+  return {.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}},
+          .triangles = {{0, 1, 2}},
+          .texture = {{{Vec2{0, 0}, {1, 0}, {0, 4}}}}};
 }
 
 VoxelData cells_in_a_row(std::initializer_list<std::uint32_t> along_x) {
@@ -99,8 +101,8 @@ Raster some_ground(Generator& any) {
 
 using Everything = MovingScene<Mesh, TriangleMesh<KdTree<>>, HeightField, VoxelGrid<>, VoxelGrid<ScaledVoxels>,
                                VoxelGrid<TransmissiveVoxels>, LeastGeometry, TriangleMesh<LeastAccelerator>>;
-using Believed =
-    MovingScene<TriangleMesh<Linear<>>, HeightField, VoxelGrid<>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>, LeastGeometry>;
+using Believed = MovingScene<TriangleMesh<Linear<>>, HeightField, VoxelGrid<>, VoxelGrid<ScaledVoxels>,
+                             VoxelGrid<TransmissiveVoxels>, LeastGeometry>;
 
 /// The same parts by every accelerator, and by `Linear`.
 struct Pair {
@@ -121,7 +123,8 @@ struct Pair {
     const auto leaves = shared(VoxelGrid<TransmissiveVoxels>(cells));
     const auto own = shared(LeastGeometry{});
     for (ObjectId k = 0; k < 12; ++k) {
-      const Similarity placement = k % 4 == 3 ? Similarity{} : Similarity{any.rotation(), any.log_uniform(0.3, 3), any.point(4)};
+      const Similarity placement =
+          k % 4 == 3 ? Similarity{} : Similarity{any.rotation(), any.log_uniform(0.3, 3), any.point(4)};
       const auto motion = any.whole(3) == 0 ? any_motion(any) : nullptr;
       const auto add = [&](const auto& tested, const auto& oracle) {
         parts.push_back({.geometry = tested, .placement = placement, .object = k, .motion = motion});
@@ -165,9 +168,11 @@ static_assert(sizeof(RayHit) == 16);
 TEST_CASE("a hit names part, primitive and range, and its surface says all there is to know") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
   const auto table = material_table({{.name = "tile", .classification = 2}});
-  const Scene<Mesh> scene(
-      {{.geometry = mesh, .placement = {.translation = {0, 0, -50}}},
-       {.geometry = mesh, .materials = table, .placement = {rotation_about(axis::right, pi / 2), 2, {10, 20, 30}}, .object = 7}});
+  const Scene<Mesh> scene({{.geometry = mesh, .placement = {.translation = {0, 0, -50}}},
+                           {.geometry = mesh,
+                            .materials = table,
+                            .placement = {rotation_about(axis::right, pi / 2), 2, {10, 20, 30}},
+                            .object = 7}});
   // upright now: its corners are (10, 20, 30), (14, 20, 30), (10, 20, 34), and it is seen anticlockwise from the south
   const Ray ray{.origin = {11, 15, 31}, .direction = axis::forward};
   const auto hit = scene.closest_hit(ray);
@@ -240,8 +245,8 @@ TEST_CASE("a ray through voxels meets each where it enters, and the last of a ro
 }
 
 TEST_CASE("a shape of one's own that takes bundles only is asked from each hit on") {
-  const Scene<support::UnitBall> scene(
-      {{.geometry = std::make_shared<const support::UnitBall>(), .placement = {.scale = 2, .translation = {0, 10, 0}}}});
+  const Scene<support::UnitBall> scene({{.geometry = std::make_shared<const support::UnitBall>(),
+                                         .placement = {.scale = 2, .translation = {0, 10, 0}}}});
   const Ray ahead{.origin = {0, 0, 0}, .direction = axis::forward};
   const auto hits = all(scene, ahead);
   REQUIRE(hits.size() == 2);
@@ -255,7 +260,8 @@ TEST_CASE("a shape of one's own that takes bundles only is asked from each hit o
 TEST_CASE("leaves are drawn by the key of the ray: seed, pulse and subray") {
   VoxelData data = cells_in_a_row({0, 1, 2, 3});
   data.densities.assign(4, 0.7F);
-  const Scene<VoxelGrid<TransmissiveVoxels>> scene({{.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(data)}});
+  const Scene<VoxelGrid<TransmissiveVoxels>> scene(
+      {{.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(data)}});
   std::size_t met = 0, different = 0;
   std::optional<double> last;
   for (std::uint32_t k = 0; k < 300; ++k) {
@@ -268,7 +274,8 @@ TEST_CASE("leaves are drawn by the key of the ray: seed, pulse and subray") {
     CHECK(all(scene, ray) == (hit ? std::vector{*hit} : std::vector<RayHit>{}));
     if (!hit) continue;
     CHECK(hit->range == expected.range);
-    CHECK(dot(scene.surface(*hit, ray).normal, ray.direction) == doctest::Approx(-2.0 / 3));  // the mean tilt of spherical leaves
+    CHECK(dot(scene.surface(*hit, ray).normal, ray.direction) ==
+          doctest::Approx(-2.0 / 3));  // the mean tilt of spherical leaves
     different += last && *last != hit->range ? 1U : 0U;
     last = hit->range;
     ++met;
@@ -288,9 +295,14 @@ TEST_CASE("queries of every shape, still and moving, agree with closest, with on
     for (int k = 0; k < 100; ++k) {
       CAPTURE(k);
       const Tick tick = Tick::of_seconds(any.uniform(0, 5));
-      const Vec3 from = any.point(6), to = scene.placement(any.whole(pair.parts.size()), tick).translation + any.point(0.5);
-      Ray ray{
-          .origin = from, .direction = normalize(to - from), .tick = tick, .seed = seed, .pulse = static_cast<PulseIndex>(k), .subray = 3};
+      const Vec3 from = any.point(6),
+                 to = scene.placement(any.whole(pair.parts.size()), tick).translation + any.point(0.5);
+      Ray ray{.origin = from,
+              .direction = normalize(to - from),
+              .tick = tick,
+              .seed = seed,
+              .pulse = static_cast<PulseIndex>(k),
+              .subray = 3};
       if (any.whole(4) == 0) ray.near = any.uniform(0, 5);
       if (any.whole(4) == 0) ray.far = any.uniform(1, 15);
       Hit nearest;
@@ -369,10 +381,12 @@ TEST_CASE("the weights of a hit put its point together, and the texture follows 
 
 TEST_CASE("a moving surface has the velocity of its point") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
-  const auto turning = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .rate = pi / 2, .centre = Vec3{}});
-  const MovingScene<Mesh> scene({{.geometry = mesh, .motion = turning}, {.geometry = mesh, .placement = {.translation = {0, 0, -9}}}},
-                                {.to = 9});
-  const Ray down{.origin = {-0.5, 0.25, 50}, .direction = -axis::up, .tick = {1, 0}};  // turned by 90 degrees, and 3 m up
+  const auto turning =
+      std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .rate = pi / 2, .centre = Vec3{}});
+  const MovingScene<Mesh> scene(
+      {{.geometry = mesh, .motion = turning}, {.geometry = mesh, .placement = {.translation = {0, 0, -9}}}}, {.to = 9});
+  const Ray down{
+      .origin = {-0.5, 0.25, 50}, .direction = -axis::up, .tick = {1, 0}};  // turned by 90 degrees, and 3 m up
   const auto hit = scene.closest_hit(down);
   REQUIRE(hit.has_value());
   CHECK(hit->part == 0);

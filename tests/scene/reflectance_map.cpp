@@ -43,7 +43,8 @@ TEST_CASE("a map is linear between the wavelengths of its channels, and constant
   CHECK(map.reflectance(355e-9, left, 0.9) == 0);
   CHECK(map.reflectance(532e-9, right, 0.9) == 0);
   const ReflectanceMap grey{.image = {1, 1, 1, std::vector<std::uint8_t>{188}}};
-  for (const double wavelength : {355e-9, 532e-9, 1550e-9}) CHECK(grey.reflectance(wavelength, left, 0.9) == doctest::Approx(green));
+  for (const double wavelength : {355e-9, 532e-9, 1550e-9})
+    CHECK(grey.reflectance(wavelength, left, 0.9) == doctest::Approx(green));
 }
 
 TEST_CASE("a pattern keeps the mean of the material's own reflectance") {
@@ -75,7 +76,8 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
   wall.texture = {{{{0, 0}, {1, 0}, {1, 1}}}, {{{0, 0}, {1, 1}, {0, 1}}}};
   Material paint{.reflectance = 0.3, .scattering = Scattering::lambert};
   paint.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap{.image = two_pixels(188, 188, 188)});
-  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(wall), .materials = material_table({paint})}});
+  const Scene<TriangleMesh<>> scene(
+      {{.geometry = std::make_shared<const TriangleMesh<>>(wall), .materials = material_table({paint})}});
   RayBundle rays;
   rays.origin = {0.5, 0.4, 10};
   rays.size = 2;
@@ -93,7 +95,8 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
     const auto hit = scene.closest_hit(rays.ray(j));
     REQUIRE(hit);
     const SurfacePoint point = scene.surface(*hit, rays.ray(j));
-    CHECK(point.material->reflectance_at(rays.wavelength, point.texture) == doctest::Approx(j == 0 ? linear_share(188) : 0));
+    CHECK(point.material->reflectance_at(rays.wavelength, point.texture) ==
+          doctest::Approx(j == 0 ? linear_share(188) : 0));
   }
 }
 

@@ -59,7 +59,8 @@ TEST_CASE("sensors at several heights and attitudes measure their distance from 
   const std::vector<SensorPose> poses{{{1, 0, 0, 0}, {0, 0, 2}},                                  // level
                                       {{half, -half, 0, 0}, {7, -3, 5}},                          // nose down
                                       {{std::cos(pi / 8), -std::sin(pi / 8), 0, 0}, {1, 1, 1}}};  // half way
-  const std::vector<Ray> rays{{.direction = axis::forward}, {.direction = -axis::up}, {.origin = {0, 0, 1}, .direction = -axis::up}};
+  const std::vector<Ray> rays{
+      {.direction = axis::forward}, {.direction = -axis::up}, {.origin = {0, 0, 1}, .direction = -axis::up}};
   std::vector<float> ranges(9);
   run_batch(Floor{}, poses, rays, ranges);
   const float slant = std::numbers::sqrt2_v<float>;
@@ -82,8 +83,9 @@ TEST_CASE("a batch gives the ranges that single rays and the pulses of a platfor
   MeshData mesh;
   for (int i = 0; i < 300; ++i) support::add_triangle(mesh, {random.point(20), random.point(20), random.point(20)});
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}});
-  const Deflector sensor{RotatingHead{.rate = 36'000}, Deflector{PolygonMirror{.lines_per_second = 1000, .angle_min = -1, .angle_max = 1},
-                                                                 Scanner{.pulse_rate = 100'000, .pulses = 700}}};
+  const Deflector sensor{RotatingHead{.rate = 36'000},
+                         Deflector{PolygonMirror{.lines_per_second = 1000, .angle_min = -1, .angle_max = 1},
+                                   Scanner{.pulse_rate = 100'000, .pulses = 700}}};
   const std::vector<Ray> rays = sensor_rays(sensor);
   const std::vector<SensorPose> poses = random_poses(random, 20);
   std::vector<float> ranges(20 * 700), again(20 * 700);
@@ -96,8 +98,9 @@ TEST_CASE("a batch gives the ranges that single rays and the pulses of a platfor
     const Platform at{Tripod{.position = poses[p].position}, Mount{.boresight = poses[p].rotation}, sensor};
     for (std::size_t i = 0; i < 700; ++i) {
       const auto pulse = at.pulse(i);
-      const auto hit = pulse ? scene.closest_hit({.origin = pulse->pose.position, .direction = pulse->pose.direction(axis::forward)})
-                             : std::optional<RayHit>{};
+      const auto hit =
+          pulse ? scene.closest_hit({.origin = pulse->pose.position, .direction = pulse->pose.direction(axis::forward)})
+                : std::optional<RayHit>{};
       CAPTURE(p);
       CAPTURE(i);
       if (hit)
@@ -117,7 +120,8 @@ TEST_CASE("rays of a batch have their own times, near and far ends") {
   const auto slide = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 2, 0}});
   const MovingScene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(door), .motion = slide}},
                                           MovingIndexSettings{.to = 10});
-  const std::vector<Ray> rays{{}, {.tick = Tick::of_seconds(3)}, {.far = 9.5}, {.near = 10.5}, {.near = 10.5, .tick = Tick::of_seconds(3)}};
+  const std::vector<Ray> rays{
+      {}, {.tick = Tick::of_seconds(3)}, {.far = 9.5}, {.near = 10.5}, {.near = 10.5, .tick = Tick::of_seconds(3)}};
   std::vector<float> ranges(5);
   run_batch(scene, std::vector<SensorPose>(1), rays, ranges);
   CHECK(ranges == std::vector<float>{10, 16, none, none, 16});
@@ -139,10 +143,12 @@ TEST_CASE("wrong sizes and poses that are not rigid are refused; empty batches a
   const std::vector<SensorPose> poses(2);
   const std::vector<Ray> rays(3);
   std::vector<float> ranges(6), few(5);
-  CHECK_THROWS_WITH_AS(run_batch(Floor{}, poses, rays, few), doctest::Contains("run_batch: ranges (number)"), SettingError);
+  CHECK_THROWS_WITH_AS(run_batch(Floor{}, poses, rays, few), doctest::Contains("run_batch: ranges (number)"),
+                       SettingError);
   for (const SensorPose& wrong : {SensorPose{{2, 0, 0, 0}, {}}, SensorPose{{1, 0, 0, 0}, {0, std::nan(""), 0}}}) {
     const std::vector<SensorPose> spoilt{{}, wrong};
-    CHECK_THROWS_WITH_AS(run_batch(Floor{}, spoilt, rays, ranges), doctest::Contains("run_batch: pose 1"), SettingError);
+    CHECK_THROWS_WITH_AS(run_batch(Floor{}, spoilt, rays, ranges), doctest::Contains("run_batch: pose 1"),
+                         SettingError);
   }
   run_batch(Floor{}, {}, rays, {});
   run_batch(Floor{}, poses, {}, {});

@@ -84,7 +84,8 @@ int surfaces_asked() {
   RayBundle rays;
   rays.origin = {0, 0, 5};
   rays.size = 7;
-  for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(Vec3{0.01 * static_cast<double>(j), 0, -1}));
+  for (std::size_t j = 0; j < rays.size; ++j)
+    rays.set_direction(j, normalize(Vec3{0.01 * static_cast<double>(j), 0, -1}));
   rays.pad();
   std::vector<Hit> hits(rays.size);
   scene.closest(rays, hits);
@@ -152,8 +153,8 @@ TEST_CASE("an instance of a mesh answers as the same mesh transformed by hand") 
     const MeshData data = some_triangles(any, 200);
     MeshData moved = data;
     for (Vec3& v : moved.vertices) v = placement.point(v);
-    const MaterialTable materials =
-        material_table({{.reflectance = 0.1}, {.reflectance = 0.5, .classification = 2}, {.reflectance = 0.9, .classification = 3}});
+    const MaterialTable materials = material_table(
+        {{.reflectance = 0.1}, {.reflectance = 0.5, .classification = 2}, {.reflectance = 0.9, .classification = 3}});
     using Mesh = TriangleMesh<>;
     const Scene<Mesh> instance({{std::make_shared<const Mesh>(data), materials, placement, 4}});
     const Scene<Mesh> by_hand({{std::make_shared<const Mesh>(moved), materials, {}, 4}});
@@ -183,9 +184,11 @@ TEST_CASE("a bundle's hits are those of its rays asked one by one") {
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<Disc> discs;
-    for (ObjectId k = 0; k < 50; ++k) discs.push_back(disc({any.rotation(), any.log_uniform(0.1, 10), any.point(50)}, k));
+    for (ObjectId k = 0; k < 50; ++k)
+      discs.push_back(disc({any.rotation(), any.log_uniform(0.1, 10), any.point(50)}, k));
     const Scene<LeastGeometry> scene(discs);
-    const RayBundle rays = any.cone(any.point(60), any.unit(), any.log_uniform(1e-4, 1), 1 + any.whole(RayBundle::capacity));
+    const RayBundle rays =
+        any.cone(any.point(60), any.unit(), any.log_uniform(1e-4, 1), 1 + any.whole(RayBundle::capacity));
     std::array<Hit, RayBundle::capacity> hits;
     scene.closest(rays, hits);
     for (std::size_t j = 0; j < rays.size; ++j) {
@@ -205,7 +208,8 @@ TEST_CASE("of many parts the nearest is met, as if each were asked alone") {
     CAPTURE(seed);
     support::Generator any(seed);
     std::vector<Disc> discs;
-    for (ObjectId k = 0; k < 40; ++k) discs.push_back(disc({any.rotation(), any.log_uniform(1, 10), any.point(20)}, 100 + k));
+    for (ObjectId k = 0; k < 40; ++k)
+      discs.push_back(disc({any.rotation(), any.log_uniform(1, 10), any.point(20)}, 100 + k));
     const Scene<LeastGeometry> scene(discs);
     for (int ray_number = 0; ray_number < 20; ++ray_number) {
       const Ray ray{any.point(40), any.unit()};
@@ -232,8 +236,9 @@ TEST_CASE("of parts in the same place the first in the list is met") {
 TEST_CASE("parts of several kinds of geometry stand in one scene") {
   using Mesh = TriangleMesh<>;
   const auto mesh = std::make_shared<const Mesh>(MeshData{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}});
-  const Scene<LeastGeometry, Mesh> scene({{std::make_shared<const LeastGeometry>(), material_table(), {.translation = {0, 0, 1}}, 1},
-                                          {mesh, material_table(), {.translation = {10, 0, 2}}, 2}});
+  const Scene<LeastGeometry, Mesh> scene(
+      {{std::make_shared<const LeastGeometry>(), material_table(), {.translation = {0, 0, 1}}, 1},
+       {mesh, material_table(), {.translation = {10, 0, 2}}, 2}});
   CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}}).object == 1);
   CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}}).range == 9);
   CHECK(ask(scene, {{10, 0, 10}, {0, 0, -1}}).object == 2);
@@ -260,11 +265,12 @@ TEST_CASE("ten thousand trees cost less than twice the memory of one and 300 byt
   const std::size_t alone = Scene<Mesh>({{tree, materials}}).memory();
   std::vector<Part<Mesh>> wood;
   for (ObjectId k = 0; k < 10'000; ++k)
-    wood.push_back({.geometry = tree,
-                    .materials = materials,
-                    .placement = {rotation_about(axis::up, any.uniform(0, 2 * pi)), any.uniform(0.5, 2), any.point(1000)},
-                    .object = k,
-                    .name = "tree " + std::to_string(k)});
+    wood.push_back(
+        {.geometry = tree,
+         .materials = materials,
+         .placement = {rotation_about(axis::up, any.uniform(0, 2 * pi)), any.uniform(0.5, 2), any.point(1000)},
+         .object = k,
+         .name = "tree " + std::to_string(k)});
   const Scene<Mesh> scene(std::move(wood));
   CHECK(scene.memory() < 2 * alone + 10'000 * 300);
   CHECK(scene.memory() > alone + 10'000 * sizeof(Part<Mesh>));
@@ -292,7 +298,8 @@ TEST_CASE("a scene refuses parts that cannot be") {
   CHECK_THROWS_AS(Scene<LeastGeometry>({disc({.scale = 0})}), SettingError);
   CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{nullptr}}), SettingError);
   CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{std::make_shared<const LeastGeometry>(), nullptr}}), SettingError);
-  CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{std::make_shared<const LeastGeometry>(), material_table({})}}), SettingError);
+  CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{std::make_shared<const LeastGeometry>(), material_table({})}}),
+                  SettingError);
 }
 
 TEST_CASE("an empty scene is met nowhere") {
@@ -302,8 +309,9 @@ TEST_CASE("an empty scene is met nowhere") {
 
 TEST_CASE("the height of the ground is that of the highest ground, whatever grows or stands on it") {
   const Material soil{.ground = true}, leaf{};
-  const Scene<LeastGeometry> scene({disc({.translation = {0, 0, 3}}, 1, leaf), disc({.translation = {0, 0, 1}}, 2, soil),
-                                    disc({.translation = {0.5, 0, -2}}, 3, soil), disc({.scale = 2, .translation = {0, 0, 2}}, 4, leaf)});
+  const Scene<LeastGeometry> scene(
+      {disc({.translation = {0, 0, 3}}, 1, leaf), disc({.translation = {0, 0, 1}}, 2, soil),
+       disc({.translation = {0.5, 0, -2}}, 3, soil), disc({.scale = 2, .translation = {0, 0, 2}}, 4, leaf)});
   CHECK(scene.ground_height({0, 0}).value() == 1);
   CHECK(scene.ground_height({1.2, 0}).value() == -2);
   CHECK_FALSE(scene.ground_height({-1.5, 0}).has_value());  // leaves alone
@@ -312,8 +320,9 @@ TEST_CASE("the height of the ground is that of the highest ground, whatever grow
 
 TEST_CASE("of several levels of ground, the one nearest to a height is found") {
   const Material soil{.ground = true}, leaf{};
-  const Scene<LeastGeometry> scene({disc({.translation = {0, 0, 6}}, 1, soil), disc({.translation = {0, 0, 0}}, 2, soil),
-                                    disc({.translation = {0, 0, 3}}, 3, leaf), disc({.translation = {0, 0, -4}}, 4, soil)});
+  const Scene<LeastGeometry> scene(
+      {disc({.translation = {0, 0, 6}}, 1, soil), disc({.translation = {0, 0, 0}}, 2, soil),
+       disc({.translation = {0, 0, 3}}, 3, leaf), disc({.translation = {0, 0, -4}}, 4, soil)});
   const auto near = [&](double height) { return scene.ground_height({0, 0}, height).value(); };
   CHECK(scene.ground_height({0, 0}).value() == 6);
   CHECK(near(std::numeric_limits<double>::infinity()) == 6);
@@ -329,7 +338,8 @@ TEST_CASE("of several levels of ground, the one nearest to a height is found") {
 
 TEST_CASE("ground under a part that lies exactly on it is found, whatever the order of the parts") {
   const auto sheet = [](double z, bool ground) {
-    const MeshData mesh{.vertices = {{-5, -5, z}, {5, -5, z}, {5, 5, z}, {-5, 5, z}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    const MeshData mesh{.vertices = {{-5, -5, z}, {5, -5, z}, {5, 5, z}, {-5, 5, z}},
+                        .triangles = {{0, 1, 2}, {0, 2, 3}}};
     return Scene<TriangleMesh<>>::Part{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
                                        .materials = material_table({{.ground = ground}})};
   };
@@ -342,7 +352,10 @@ TEST_CASE("ground under a part that lies exactly on it is found, whatever the or
 
 TEST_CASE("the ground of a slope at UTM coordinates is where it should be") {
   const double east = 4.7e5, north = 5.4e6;
-  const MeshData slope{.vertices = {{east, north, 100}, {east + 100, north, 110}, {east + 100, north + 100, 130}, {east, north + 100, 120}},
+  const MeshData slope{.vertices = {{east, north, 100},
+                                    {east + 100, north, 110},
+                                    {east + 100, north + 100, 130},
+                                    {east, north + 100, 120}},
                        .triangles = {{0, 1, 2}, {0, 2, 3}}};
   const Scene<TriangleMesh<>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<>>(slope), .materials = material_table({{.ground = true}})}});
@@ -365,7 +378,8 @@ TEST_CASE("a scene of other placements meets what a scene made of these parts me
         if (tick == 4) d.placement = anywhere();  // the index is made anew
         placements.push_back(d.placement);
       }
-      Scene<LeastGeometry> next = tick % 2 ? now.with_placements(placements) : now.with_placements(placements, std::move(unused));
+      Scene<LeastGeometry> next =
+          tick % 2 ? now.with_placements(placements) : now.with_placements(placements, std::move(unused));
       unused = std::exchange(now, std::move(next));
       const Scene<LeastGeometry> fresh(discs);
       for (int k = 0; k < 30; ++k) {
@@ -436,8 +450,8 @@ TEST_CASE("a scene placed in the memory of another one has nothing of the other'
 
 TEST_CASE("placements of another number or out of range are refused") {
   const Scene<LeastGeometry> scene({disc()});
-  CHECK_THROWS_WITH_AS(static_cast<void>(scene.with_placements({})), "Scene::with_placements (number) is 0, but must be from 1 to 1",
-                       SettingError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(scene.with_placements({})),
+                       "Scene::with_placements (number) is 0, but must be from 1 to 1", SettingError);
   const std::array<Similarity, 1> flat{Similarity{.scale = 0}};
   CHECK_THROWS_AS(static_cast<void>(scene.with_placements(flat)), SettingError);
   const std::array<Similarity, 1> coarse{Similarity{.rotation = Rotation{1.0005, 0, 0, 0}}};
@@ -502,7 +516,8 @@ TEST_CASE("no ray meets anything of a cone that is said to meet nothing, and of 
     const Scene<Mesh> alone({{.geometry = mesh}}), turned({{.geometry = mesh, .placement = placed}});
     std::vector<Part<Mesh, LeastGeometry>> parts{{.geometry = mesh, .placement = placed}};
     for (int k = 0; k < 20; ++k)
-      parts.push_back({.geometry = std::make_shared<const LeastGeometry>(), .placement = {any.rotation(), 1, any.point(40)}});
+      parts.push_back(
+          {.geometry = std::make_shared<const LeastGeometry>(), .placement = {any.rotation(), 1, any.point(40)}});
     const Scene<Mesh, LeastGeometry> several(parts);
     std::size_t of_one = 0, of_turned = 0, of_several = 0;
     CHECK(support::cone_laws(alone, support::cones_from(20, seed, 2000), of_one) == "");

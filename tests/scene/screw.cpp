@@ -66,7 +66,8 @@ TEST_CASE("a time is so many periods and a rest, as exact after a year as in the
     const Periods p(time, period);
     REQUIRE(p.rest.seconds() >= 0);
     REQUIRE(p.rest.seconds() < period);
-    const double whole = static_cast<double>(p.whole) * period, lost = std::fma(static_cast<double>(p.whole), period, -whole);
+    const double whole = static_cast<double>(p.whole) * period,
+                 lost = std::fma(static_cast<double>(p.whole), period, -whole);
     const double second = static_cast<double>(time.second);
     REQUIRE(std::fabs((second - whole) + (time.fraction - p.rest.seconds()) - lost) < 1e-15 * (1 + period));
   }

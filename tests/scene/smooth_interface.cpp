@@ -18,7 +18,8 @@ TEST_CASE("surfaces pass on what their kind does") {
 
 TEST_CASE("the glass of panes and bodies is that of windows, at 1.064 um") {
   // Source: Rubin 1985, n = 1.5130 - 0.003169 l^2 + 0.003962 / l^2, l in um; group index n - l dn/dl
-  const double l = 1.064, n = 1.5130 - 0.003169 * l * l + 0.003962 / (l * l), slope = -2 * 0.003169 * l - 2 * 0.003962 / (l * l * l);
+  const double l = 1.064, n = 1.5130 - 0.003169 * l * l + 0.003962 / (l * l),
+               slope = -2 * 0.003169 * l - 2 * 0.003962 / (l * l * l);
   CHECK(SmoothInterface::glass().inside.index == doctest::Approx(n).epsilon(1e-4));
   CHECK(SmoothInterface::pane().inside.group_index == doctest::Approx(n - l * slope).epsilon(1e-4));
 }

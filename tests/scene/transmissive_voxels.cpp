@@ -23,7 +23,8 @@ using Grid = VoxelGrid<TransmissiveVoxels>;
 /// A slab of 20 m by 20 m by 2 m of leaves.
 VoxelData slab(double edge, double density) {
   VoxelData data{.corner = {-10, -10, 0}, .edge = edge};
-  const auto across = static_cast<std::uint32_t>(std::lround(20 / edge)), up = static_cast<std::uint32_t>(std::lround(2 / edge));
+  const auto across = static_cast<std::uint32_t>(std::lround(20 / edge)),
+             up = static_cast<std::uint32_t>(std::lround(2 / edge));
   for (std::uint32_t x = 0; x < across; ++x)
     for (std::uint32_t y = 0; y < across; ++y)
       for (std::uint32_t z = 0; z < up; ++z) {
@@ -34,7 +35,8 @@ VoxelData slab(double edge, double density) {
 }
 
 /// Range of the leaf that a ray meets; infinite if none [m].
-double range_of(const Grid& grid, const Vec3& origin, const Vec3& direction, std::uint64_t seed = 3, PulseIndex pulse = 0) {
+double range_of(const Grid& grid, const Vec3& origin, const Vec3& direction, std::uint64_t seed = 3,
+                PulseIndex pulse = 0) {
   RayBundle rays = bundle_of({origin, direction});
   rays.seed = seed;
   rays.pulse = pulse;
@@ -89,7 +91,8 @@ TEST_CASE("rays closer than a leaf is wide mostly meet the same one, farther one
 TEST_CASE("clumping is a factor of the extinction") {
   const Grid clumped(slab(0.5, 2), {.clumping = 0.5}), even(slab(0.5, 1));
   for (PulseIndex pulse = 0; pulse < 500; ++pulse) {
-    const double a = range_of(clumped, {0, 0, 4}, -axis::up, 3, pulse), b = range_of(even, {0, 0, 4}, -axis::up, 3, pulse);
+    const double a = range_of(clumped, {0, 0, 4}, -axis::up, 3, pulse),
+                 b = range_of(even, {0, 0, 4}, -axis::up, 3, pulse);
     CHECK((std::isinf(a) ? std::isinf(b) : a == doctest::Approx(b).epsilon(1e-12)));
   }
 }

@@ -20,7 +20,8 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-static_assert(Geometry<TriangleMesh<Linear<>>> && Geometry<TriangleMesh<KdTree<>>> && Geometry<TriangleMesh<Bvh<double>>>);
+static_assert(Geometry<TriangleMesh<Linear<>>> && Geometry<TriangleMesh<KdTree<>>> &&
+              Geometry<TriangleMesh<Bvh<double>>>);
 static_assert(std::copyable<TriangleMesh<>>);
 
 namespace {
@@ -152,7 +153,8 @@ MeshData torn_ground(std::uint32_t squares) {
     for (std::uint32_t x = 0; x < squares; ++x)
       for (const std::uint32_t half : {0U, 1U}) {
         const auto first = static_cast<std::uint32_t>(data.vertices.size());
-        for (const Vec3& corner : {point(x + half, y + half), point(x + 1, y), point(x, y + 1)}) data.vertices.push_back(corner);
+        for (const Vec3& corner : {point(x + half, y + half), point(x + 1, y), point(x, y + 1)})
+          data.vertices.push_back(corner);
         data.triangles.push_back({first, first + 1, first + 2});
       }
   return data;
@@ -177,8 +179,8 @@ bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads", Mesh, TriangleMesh<>,
-                   TriangleMesh<KdTree<>>) {
+TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads",
+                   Mesh, TriangleMesh<>, TriangleMesh<KdTree<>>) {
   MeshData data = torn_ground(100);
   data.vertices[4].x = -0.0;
   data.vertices[5].x = 0.0;
@@ -200,7 +202,9 @@ TEST_CASE("corners that are equal are shared") {
   const TriangleMesh<> mesh(data);
   const double bytes = static_cast<double>(mesh.memory() - mesh.index().memory()) / static_cast<double>(mesh.size());
   CAPTURE(bytes);
-  CHECK(bytes < 6 + 4 + 0.6 * sizeof(Vec3));  // numbers, places, and half a corner a triangle, but for some at the ends of blocks
+  CHECK(bytes <
+        6 + 4 +
+            0.6 * sizeof(Vec3));  // numbers, places, and half a corner a triangle, but for some at the ends of blocks
 }
 
 TEST_CASE("a mesh of up to 256 materials spends a byte on each, one of a single material none") {
@@ -208,7 +212,8 @@ TEST_CASE("a mesh of up to 256 materials spends a byte on each, one of a single 
   const std::size_t bare = TriangleMesh<>(data).memory();
   const auto with = [&](std::uint32_t count) {
     data.materials.resize(data.triangles.size());
-    for (std::size_t i = 0; i < data.materials.size(); ++i) data.materials[i] = static_cast<std::uint32_t>(i * 7) % count;
+    for (std::size_t i = 0; i < data.materials.size(); ++i)
+      data.materials[i] = static_cast<std::uint32_t>(i * 7) % count;
     const TriangleMesh<> mesh(data);
     CHECK(mesh.material_count() == count);
     CHECK(mesh.is_consistent());

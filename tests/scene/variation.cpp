@@ -15,7 +15,8 @@ using namespace pulsecast;
 using namespace pulsecast::support;
 
 TEST_CASE("variants fill the range evenly, keep the rest of the material, and can be made again") {
-  const Material leaf{.name = "leaf", .reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.2, .classification = 5};
+  const Material leaf{
+      .name = "leaf", .reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.2, .classification = 5};
   const std::vector<Material> variants = vary_reflectance(leaf, 10'000, 0.2, 7);
   REQUIRE(variants.size() == 10'000);
   CHECK(variants[0].name == "leaf 1");
@@ -29,7 +30,8 @@ TEST_CASE("variants fill the range evenly, keep the rest of the material, and ca
     REQUIRE(m.specular_share == 0.2);
     REQUIRE(m.classification == 5);
   }
-  const double deviation = 0.2 / std::sqrt(3.0);  // of a uniform distribution, as is 0.2^2 sqrt(4 / 45) that of its square
+  const double deviation =
+      0.2 / std::sqrt(3.0);  // of a uniform distribution, as is 0.2^2 sqrt(4 / 45) that of its square
   CHECK(std::fabs(sum / 1e4 - 0.5) < 4 * deviation / 100);
   CHECK(std::fabs(squares / 1e4 - deviation * deviation) < 4 * 0.04 * std::sqrt(4.0 / 45) / 100);
 
@@ -57,7 +59,8 @@ TEST_CASE("variants are clipped to fractions, and none is wanted without a range
 }
 
 TEST_CASE("a spectrum is shifted as a whole, and that of the original stays") {
-  const auto spectrum = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.4}, {1e-6, 0.6}, {1.5e-6, 0.95}});
+  const auto spectrum =
+      std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.4}, {1e-6, 0.6}, {1.5e-6, 0.95}});
   const Material original{.reflectance = 0.5, .spectrum = spectrum};
   for (const Material& m : vary_reflectance(original, 50, 0.2, 3)) {
     REQUIRE(m.spectrum);

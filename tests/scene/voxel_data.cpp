@@ -47,7 +47,8 @@ TEST_CASE("voxels that can be are accepted, with all columns or with none") {
 TEST_CASE("voxels that cannot be are refused, and the refusal says what is wrong") {
   const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
   CHECK(refusal([&](VoxelData& d) { d.corner.y = nan; }).find("VoxelData::corner is") == 0);
-  CHECK(refusal([&](VoxelData& d) { d.corner.z = -infinity; }) == "VoxelData::corner is -inf m, but must be within 1e18 m of the origin");
+  CHECK(refusal([&](VoxelData& d) { d.corner.z = -infinity; }) ==
+        "VoxelData::corner is -inf m, but must be within 1e18 m of the origin");
   for (const double edge : {0.0, -1.0, nan, infinity})
     CHECK(refusal([&](VoxelData& d) { d.edge = edge; }).find("VoxelData::edge is ") == 0);
   CHECK(refusal([](VoxelData& d) { d.edge = 1e12; }) ==
@@ -55,12 +56,16 @@ TEST_CASE("voxels that cannot be are refused, and the refusal says what is wrong
   CHECK(refusal([](VoxelData& d) { d.cells.clear(); }) == "VoxelData::cells is 0, but must be at least one in number");
   CHECK(refusal([](VoxelData& d) { d.normals[1][2] = 0.5F; }).find("VoxelData::normals (length) is 0.5") == 0);
   CHECK(refusal([](VoxelData& d) { d.normals[0][0] = std::nanf(""); }).find("VoxelData::normals (length) is nan") == 0);
-  CHECK(refusal([](VoxelData& d) { d.densities[1] = -1; }) == "VoxelData::densities is -1, but must be finite and at least 0; see entry 1");
-  CHECK(refusal([](VoxelData& d) { d.densities[1] = std::numeric_limits<float>::infinity(); }).find("VoxelData::densities is inf") == 0);
+  CHECK(refusal([](VoxelData& d) { d.densities[1] = -1; }) ==
+        "VoxelData::densities is -1, but must be finite and at least 0; see entry 1");
+  CHECK(refusal([](VoxelData& d) {
+          d.densities[1] = std::numeric_limits<float>::infinity();
+        }).find("VoxelData::densities is inf") == 0);
   for (const float scale : {0.0F, -0.5F, 1.01F, std::nanf("")})
     CHECK(refusal([&](VoxelData& d) { d.scales[0] = scale; }).find("VoxelData::scales is ") == 0);
-  CHECK(refusal([](VoxelData& d) { d.shifts[1][1] = 0.26F; }).find("small enough that the cube is inside its cell; see entry 1") !=
-        std::string::npos);
+  CHECK(refusal([](VoxelData& d) {
+          d.shifts[1][1] = 0.26F;
+        }).find("small enough that the cube is inside its cell; see entry 1") != std::string::npos);
   CHECK(refusal([](VoxelData& d) { d.scales.clear(); }).find("VoxelData::shifts is 0.25, but") == 0);
   CHECK(refusal([](VoxelData& d) { d.shifts[0][0] = std::nanf(""); }).find("VoxelData::shifts is nan") == 0);
 }

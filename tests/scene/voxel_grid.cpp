@@ -102,7 +102,8 @@ struct Inside {
   }
 };
 
-/// Between which ranges a ray meets the first of all cubes, each of which may be larger or smaller by next to nothing. Every one is tested.
+/// Between which ranges a ray meets the first of all cubes, each of which may be larger or smaller by next to nothing.
+/// Every one is tested.
 struct Between {
   double least = infinity, most = infinity;
 };
@@ -136,7 +137,8 @@ RayBundle rays_for(Generator& random, const VoxelData& data, const Box& bounds) 
     }
     return p;
   };
-  RayBundle rays = random.cone(place(random.coin() ? 0 : 1), random.unit(), random.log_uniform(1e-4, 1), 1 + random.whole(64));
+  RayBundle rays =
+      random.cone(place(random.coin() ? 0 : 1), random.unit(), random.log_uniform(1e-4, 1), 1 + random.whole(64));
   for (std::size_t j = 0; j < rays.size; ++j) {
     Vec3 d = on_lattice ? place(0) - rays.origin : rays.direction(j);
     if (random.coin()) d = cube(data, random.whole(data.cells.size())).centre() - rays.origin;
@@ -165,7 +167,8 @@ void compare_with_every_cube(const VoxelData& data, std::uint64_t seed, int bund
       const double found = nearest.met(j) ? nearest.range[j] : infinity;
       const double unsure = nearest.met(j) ? 1e-9 * (1 + found) : 0;
       count += nearest.met(j) ? 1 : 0;
-      if (found >= expected.least - unsure && found <= expected.most + unsure && (!nearest.met(j) || found > rays.near)) continue;
+      if (found >= expected.least - unsure && found <= expected.most + unsure && (!nearest.met(j) || found > rays.near))
+        continue;
       if (++wrong > 3) continue;
       CAPTURE(b);
       CAPTURE(j);
@@ -190,7 +193,8 @@ TEST_CASE("a single cube is entered by its faces") {
       Vec3 out{};
       out[k] = side;
       const Ray ray{Vec3{2.1, 3.2, 4.3} + out * 10.0, -out};
-      const double expected = 10 + side * (Vec3{2.1, 3.2, 4.3}[k] - (side > 0 ? grid.bounds().max[k] : grid.bounds().min[k]));
+      const double expected =
+          10 + side * (Vec3{2.1, 3.2, 4.3}[k] - (side > 0 ? grid.bounds().max[k] : grid.bounds().min[k]));
       CHECK(range(grid, ray) == relative(expected, 1e-14));
       CHECK(normal(grid, ray) == out);
     }
@@ -235,7 +239,8 @@ TEST_CASE("the ground below voxels that are no ground is found at its top") {
   for (const auto& cell : data.cells) data.materials.push_back(cell[2] < 1 ? 1 : 0);
   std::vector<Material> materials(2);
   materials[1].ground = true;
-  const Scene<VoxelGrid<>> scene({{.geometry = std::make_shared<const VoxelGrid<>>(data), .materials = material_table(materials)}});
+  const Scene<VoxelGrid<>> scene(
+      {{.geometry = std::make_shared<const VoxelGrid<>>(data), .materials = material_table(materials)}});
   const auto height = scene.ground_height({0.5, 1.5});
   REQUIRE(height);
   CHECK(*height == relative(1, 1e-14));
@@ -356,8 +361,9 @@ TEST_CASE("through the edges and corners of a closed wall nothing escapes") {
   for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{567890, 5412345, 345}, Vec3{0.1, 0.7, -0.3}})
     for (const std::uint32_t size : {5U, 21U}) {
       VoxelData data = block(size, size, size, 1, corner);
-      std::erase_if(data.cells,
-                    [&](const auto& c) { return std::all_of(c.begin(), c.end(), [&](std::uint32_t x) { return x > 0 && x < size - 1; }); });
+      std::erase_if(data.cells, [&](const auto& c) {
+        return std::all_of(c.begin(), c.end(), [&](std::uint32_t x) { return x > 0 && x < size - 1; });
+      });
       const VoxelGrid<> grid(data);
       std::size_t escaped = 0;
       const int reach = 4;
@@ -388,18 +394,21 @@ TEST_CASE("rays between cells of a block, along its planes and edges, meet it wh
         CHECK(range(grid, {corner + Vec3{i, j, 20}, -axis::up}) == 11);
         CHECK(range(grid, {corner + Vec3{i, -4, j + 0.5}, axis::forward}) == 4);
         CHECK(range(grid, {corner + Vec3{14, i, j}, -axis::right}) == 5);
-        if (i < 8 && j > 0) CHECK(range(grid, {corner + Vec3{i - 1.0, j, -1}, normalize(Vec3{1, 0, 1})}) == relative(std::sqrt(2), 1e-9));
+        if (i < 8 && j > 0)
+          CHECK(range(grid, {corner + Vec3{i - 1.0, j, -1}, normalize(Vec3{1, 0, 1})}) == relative(std::sqrt(2), 1e-9));
       }
   }
 }
 
-TEST_CASE("rays of no number, without direction or without range meet nothing, and their neighbours are not disturbed") {
+TEST_CASE(
+    "rays of no number, without direction or without range meet nothing, and their neighbours are not disturbed") {
   const VoxelGrid<> grid(block(5, 5, 5, 1));
   const double nan = std::nan("");
   RayBundle rays;
   rays.origin = {2.5, 2.5, 9};
   rays.size = 7;
-  const Vec3 directions[] = {-axis::up, {nan, 0, -1}, {0, 0, 0}, {0, 0, -infinity}, {nan, nan, nan}, {0, 1e-320, 0}, {0, 0, -0.5}};
+  const Vec3 directions[] = {-axis::up,       {nan, 0, -1},   {0, 0, 0},   {0, 0, -infinity},
+                             {nan, nan, nan}, {0, 1e-320, 0}, {0, 0, -0.5}};
   for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, directions[j]);
   rays.pad();
   const ClosestHits nearest = met(grid, rays);
@@ -469,7 +478,8 @@ TEST_CASE("no grid takes more than 40 bytes a voxel") {
   check(apart);
 }
 
-// ------------------------------------------------------------------------------------------------------ transmissive voxels
+// ------------------------------------------------------------------------------------------------------ transmissive
+// voxels
 
 namespace {
 
@@ -531,7 +541,8 @@ double errors(double share, double expected, std::size_t n) {
 
 }  // namespace
 
-TEST_CASE("a slab of leaves lets through what Beer and Lambert say: a million rays for each distribution and direction") {
+TEST_CASE(
+    "a slab of leaves lets through what Beer and Lambert say: a million rays for each distribution and direction") {
   const double density = 1.5;
   const std::size_t n = 1'000'000;
   std::uint64_t seed = 10'000;  // each case draws for itself
@@ -595,7 +606,8 @@ TEST_CASE("leaves are met at depths of an exponential distribution, and at the s
   double distance = 0;  // of Kolmogorov and Smirnov
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const double expected = (1 - std::exp(-0.5 * density * depths[i])) / whole;
-    distance = std::max({distance, std::fabs(expected - static_cast<double>(i) / n), std::fabs(expected - static_cast<double>(i + 1) / n)});
+    distance = std::max({distance, std::fabs(expected - static_cast<double>(i) / n),
+                         std::fabs(expected - static_cast<double>(i + 1) / n)});
   }
   CHECK(distance * std::sqrt(n) < 1.63);  // 1 %
 }
@@ -609,16 +621,20 @@ TEST_CASE("through voxels of different densities, and gaps, the depths add up") 
   const VoxelGrid<TransmissiveVoxels> grid(data);
   const std::size_t n = 200'000;
   const double slanted = 1 / std::cos(0.8);
-  CHECK(errors(share_that_passes(grid, {{0, 0, 3}, downwards(0.8)}, n, 427), std::exp(-0.5 * 5 * 0.2 * slanted), n) < 3);
+  CHECK(errors(share_that_passes(grid, {{0, 0, 3}, downwards(0.8)}, n, 427), std::exp(-0.5 * 5 * 0.2 * slanted), n) <
+        3);
   data.densities.assign(data.cells.size(), 0);
   CHECK(share_that_passes(VoxelGrid<TransmissiveVoxels>(data), {{0, 0, 3}, -axis::up}, 1000, 427) == 1);
 }
 
-TEST_CASE("plants behind each other draw for themselves; each keeps its gaps when it is scaled, and its vertical when it is turned") {
+TEST_CASE(
+    "plants behind each other draw for themselves; each keeps its gaps when it is scaled, and its vertical when it is "
+    "turned") {
   using Woods = Scene<VoxelGrid<TransmissiveVoxels>>;
   const double density = 1;
   const LeafAngles leaves = LeafAngles::planophile();
-  const auto plant = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(slab(2, density), TransmissiveVoxels{leaves});
+  const auto plant =
+      std::make_shared<const VoxelGrid<TransmissiveVoxels>>(slab(2, density), TransmissiveVoxels{leaves});
   const std::size_t n = 200'000;
   const double zenith = 0.6, one = std::exp(-leaves.projection(downwards(zenith)) * density / std::cos(zenith));
   const Ray ray{{0, 0, 40}, downwards(zenith)};
@@ -633,7 +649,8 @@ TEST_CASE("plants behind each other draw for themselves; each keeps its gaps whe
   CHECK(errors(share_that_passes(Woods({at(0, 4)}), ray, n, 431), one, n) < 3);
   // leaning so that the beam comes along its own vertical
   const Rotation lean = rotation_about(cross(axis::up, -ray.direction), zenith);
-  CHECK(errors(share_that_passes(Woods({at(0, 1, lean)}), ray, n, 432), std::exp(-leaves.projection(axis::up) * density), n) < 3);
+  CHECK(errors(share_that_passes(Woods({at(0, 1, lean)}), ray, n, 432),
+               std::exp(-leaves.projection(axis::up) * density), n) < 3);
 }
 
 TEST_CASE("no leaf is met at `near` itself, however dense they are") {
@@ -647,7 +664,9 @@ TEST_CASE("no leaf is met at `near` itself, however dense they are") {
   CHECK(range(grid, {{0, 0, 1.5}, -axis::up, 0, 0.4}) == infinity);
 }
 
-TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves are tilted against it by their mean, or not at all") {
+TEST_CASE(
+    "a subray draws the same whatever bundle it comes in, and leaves are tilted against it by their mean, or not at "
+    "all") {
   const VoxelGrid<TransmissiveVoxels> grid(slab(3, 1)), flat(slab(3, 1), TransmissiveVoxels{.tilted_leaves = false});
   Generator random(433);
   RayBundle rays = random.cone({0, 0, 4}, -axis::up, 0.2, 40);

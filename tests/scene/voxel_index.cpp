@@ -80,7 +80,8 @@ TEST_CASE("numbers stand for the cells that the order says") {
     for (const auto& cell : data.cells)
       for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], cell[k]);
     for (std::uint32_t i = 0; i < index.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) CHECK(static_cast<std::uint32_t>(index.cell(i)[k]) == data.cells[order[i]][k] - least[k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(static_cast<std::uint32_t>(index.cell(i)[k]) == data.cells[order[i]][k] - least[k]);
   }
 }
 
@@ -106,13 +107,15 @@ TEST_CASE("a ray visits every occupied cell that it goes through, in order, and 
         if (random.coin()) from -= d * random.uniform(0, 3);
         RayBundle rays = bundle_of({from, normalize(d)});
         const LatticeRay ray = index.ray(rays, 0);
-        const double near = random.coin() ? 0 : random.uniform(0, length(d)), limit = random.coin() ? infinity : near + length(d);
+        const double near = random.coin() ? 0 : random.uniform(0, length(d)),
+                     limit = random.coin() ? infinity : near + length(d);
         std::vector<Visited> visited;
-        index.walk(ray, near, limit, [&](std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) {
-          CHECK(cell == index.cell(number));
-          visited.push_back({number, in, out});
-          return infinity;
-        });
+        index.walk(ray, near, limit,
+                   [&](std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) {
+                     CHECK(cell == index.cell(number));
+                     visited.push_back({number, in, out});
+                     return infinity;
+                   });
         CHECK(visited == by_every_cell(index, ray, near, limit));
         visits += visited.size();
       }

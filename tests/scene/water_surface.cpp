@@ -24,14 +24,17 @@ using namespace pulsecast;
 using namespace pulsecast::support;
 
 static_assert(std::copyable<WaterSurface> && !FlatGeometry<WaterSurface> && KeylessGeometry<WaterSurface>);
-static_assert(!Scene<WaterSurface>::timeless && !Scene<TriangleMesh<>, WaterSurface>::timeless && Scene<TriangleMesh<>>::timeless);
+static_assert(!Scene<WaterSurface>::timeless && !Scene<TriangleMesh<>, WaterSurface>::timeless &&
+              Scene<TriangleMesh<>>::timeless);
 
 namespace {
 
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// Waves about 12 m above datum, over 200 m by 200 m.
-WaterSurface water(std::vector<SineWave> waves) { return WaterSurface({{-100, -100}, {100, 100}, 12}, WaveField(std::move(waves))); }
+WaterSurface water(std::vector<SineWave> waves) {
+  return WaterSurface({{-100, -100}, {100, 100}, 12}, WaveField(std::move(waves)));
+}
 
 /// Closest hit of a ray; -1 if there is none.
 double range_of(const WaterSurface& surface, const Ray& ray) {
@@ -57,7 +60,8 @@ std::vector<HitBuffer::Entry> hits_of(const WaterSurface& surface, const Ray& ra
   return {hits.hits().begin(), hits.hits().end()};
 }
 
-/// First range at which a ray is on the other side of the waves than at its near end, by steps, and by bisection of the step; -1 if none.
+/// First range at which a ray is on the other side of the waves than at its near end, by steps, and by bisection of the
+/// step; -1 if none.
 double searched(const WaterSurface& surface, const Ray& ray, double step) {
   const Box& box = surface.bounds();
   const double level = box.min.z + surface.waves().highest();
@@ -67,7 +71,8 @@ double searched(const WaterSurface& surface, const Ray& ray, double step) {
   };
   double begin = ray.near, end = ray.far;
   for (int k = 0; k < 3; ++k) {
-    const double a = (box.min[k] - ray.origin[k]) / ray.direction[k], b = (box.max[k] - ray.origin[k]) / ray.direction[k];
+    const double a = (box.min[k] - ray.origin[k]) / ray.direction[k],
+                 b = (box.max[k] - ray.origin[k]) / ray.direction[k];
     begin = std::max(begin, std::min(a, b));
     end = std::min(end, std::max(a, b));
   }
@@ -144,7 +149,8 @@ TEST_CASE("a level ray through the crests of a wave meets each of its flanks") {
     std::vector<double> expected;
     for (int wave = -10; wave < 10; ++wave)
       for (const double phase : {pi / 6, 5 * pi / 6})
-        if (const double x = (phase + 2 * pi * wave + frequency * seconds) * 8 / (2 * pi); x > 0 && x <= 40) expected.push_back(x);
+        if (const double x = (phase + 2 * pi * wave + frequency * seconds) * 8 / (2 * pi); x > 0 && x <= 40)
+          expected.push_back(x);
     const auto found = hits_of(surface, ray);
     REQUIRE(found.size() == expected.size());
     for (std::size_t n = 0; n < found.size(); ++n) {
@@ -169,7 +175,8 @@ TEST_CASE("a level ray through the crests of a wave meets each of its flanks") {
 }
 
 TEST_CASE("a ray that touches no crest passes, and one that touches a crest does not") {
-  const WaterSurface surface = water({{.amplitude = 0.5, .wavelength = 8}, {.amplitude = 0.001, .wavelength = 0.01, .toward = 1}});
+  const WaterSurface surface =
+      water({{.amplitude = 0.5, .wavelength = 8}, {.amplitude = 0.001, .wavelength = 0.01, .toward = 1}});
   CHECK(range_of(surface, {{-99, 3, 12.5011}, axis::right}) == -1);
   CHECK(range_of(surface, {{-99, 3, 12.4985}, axis::right}) > 0);
   const WaterSurface smooth = water({{.amplitude = 0.5, .wavelength = 8}});
@@ -194,11 +201,12 @@ TEST_CASE("hits are those of a search by fine steps, from above and from below, 
     const double wavelength = any.log_uniform(0.05, 20);
     steep.push_back({0.06 * wavelength, wavelength, any.uniform(-pi, pi), any.uniform(0, 2 * pi)});
   }
-  const std::vector<Case> cases{{waves_of({.wind_speed = 2, .shortest = 0.02, .components = 32}), 1e-3},
-                                {waves_of({.wind_speed = 8, .fetch = 500, .shortest = 0.05, .components = 48, .seed = 3}), 1e-3},
-                                {steep, 2e-3},
-                                {{{.amplitude = 0.5, .wavelength = 2}}, 1e-2},
-                                {{{.amplitude = 0.5, .wavelength = 2}, {.amplitude = 0.3, .wavelength = 1.3, .toward = 1}}, 1e-2}};
+  const std::vector<Case> cases{
+      {waves_of({.wind_speed = 2, .shortest = 0.02, .components = 32}), 1e-3},
+      {waves_of({.wind_speed = 8, .fetch = 500, .shortest = 0.05, .components = 48, .seed = 3}), 1e-3},
+      {steep, 2e-3},
+      {{{.amplitude = 0.5, .wavelength = 2}}, 1e-2},
+      {{{.amplitude = 0.5, .wavelength = 2}, {.amplitude = 0.3, .wavelength = 1.3, .toward = 1}}, 1e-2}};
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const WaterSurface surface = water(cases[c].waves);
     int met = 0, below = 0;
@@ -307,7 +315,8 @@ TEST_CASE("a ray that starts on the surface does not meet it there") {
 }
 
 TEST_CASE("a ray that leaves through a wall before it comes to the waves meets nothing") {
-  const WaterSurface surface = water({{.amplitude = 0.5, .wavelength = 60}, {.amplitude = 0.5, .wavelength = 50, .toward = pi / 2}});
+  const WaterSurface surface =
+      water({{.amplitude = 0.5, .wavelength = 60}, {.amplitude = 0.5, .wavelength = 50, .toward = pi / 2}});
   Generator random(12);
   int met = 0, passed = 0;
   for (int time = 0; time < 500; ++time) {
@@ -325,7 +334,8 @@ TEST_CASE("a ray that leaves through a wall before it comes to the waves meets n
 
 TEST_CASE("two areas side by side are met as one") {
   const WaveField waves(waves_of({.wind_speed = 5}));
-  const WaterSurface both({{-50, -50}, {50, 50}}, waves), west({{-50, -50}, {0.3, 50}}, waves), east({{0.3, -50}, {50, 50}}, waves);
+  const WaterSurface both({{-50, -50}, {50, 50}}, waves), west({{-50, -50}, {0.3, 50}}, waves),
+      east({{0.3, -50}, {50, 50}}, waves);
   Generator random(4);
   int met = 0;
   for (int time = 0; time < 400; ++time) {
@@ -409,7 +419,8 @@ TEST_CASE("rays that are not numbers meet nothing and spoil nothing") {
 TEST_CASE("areas out of range are refused") {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(WaterSurface({{0, 0}, {0, 0}, 0}));
-  for (const WaterArea& bad : {WaterArea{{1, 0}, {0, 1}, 0}, WaterArea{{0, 1}, {1, 0}, 0}, WaterArea{{nothing, 0}, {1, 1}, 0},
-                               WaterArea{{0, 0}, {1, endless}, 0}, WaterArea{{0, 0}, {1, 1}, nothing}, WaterArea{{0, 0}, {1, 1}, 2e9}})
+  for (const WaterArea& bad :
+       {WaterArea{{1, 0}, {0, 1}, 0}, WaterArea{{0, 1}, {1, 0}, 0}, WaterArea{{nothing, 0}, {1, 1}, 0},
+        WaterArea{{0, 0}, {1, endless}, 0}, WaterArea{{0, 0}, {1, 1}, nothing}, WaterArea{{0, 0}, {1, 1}, 2e9}})
     CHECK_THROWS_AS(WaterSurface{bad}, SettingError);
 }

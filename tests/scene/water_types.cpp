@@ -41,7 +41,8 @@ TEST_CASE("the attenuation of a type is that of the published tables, and linear
   CHECK(water_attenuation(oceanic_ib, 532e-9) == relative(0.0596 + 0.28 * (0.0715 - 0.0596), 1e-12));
   // Jerlov's own figures at 475 nm, which Austin & Petzold kept
   const std::array<double, 10> jerlov{0.018, 0.025, 0.033, 0.062, 0.116, 0.17, 0.29, 0.43, 0.71, 1.23};
-  for (std::size_t i = 0; i < types.size(); ++i) CHECK(std::fabs(water_attenuation(types[i], 475e-9) - jerlov[i]) < 5e-4);
+  for (std::size_t i = 0; i < types.size(); ++i)
+    CHECK(std::fabs(water_attenuation(types[i], 475e-9) - jerlov[i]) < 5e-4);
 }
 
 TEST_CASE("a type is known by its name") {
@@ -56,7 +57,8 @@ TEST_CASE("a type is known by its name") {
 TEST_CASE("a more turbid type weakens more at every wavelength, and none less than pure water") {
   for (double w = 0.35e-6; w <= 1.1e-6; w += 1e-9) {
     CAPTURE(w);
-    for (std::size_t i = 1; i < types.size(); ++i) REQUIRE(water_attenuation(types[i], w) > water_attenuation(types[i - 1], w));
+    for (std::size_t i = 1; i < types.size(); ++i)
+      REQUIRE(water_attenuation(types[i], w) > water_attenuation(types[i - 1], w));
     if (w >= 0.7e-6) REQUIRE(water_attenuation(oceanic_i, w) > pure_water_absorption(w));
   }
 }
@@ -94,12 +96,15 @@ TEST_CASE("pure sea water scatters back as its molecules do") {
   CHECK(water(oceanic_i, 500e-9, fresh).backscatter == relative(1.38e-4 * (1 + 0.91 / 1.09), 1e-12));
   CHECK(water(oceanic_i, 500e-9).backscatter == relative(1.38e-4 * (1 + 0.3 * 35 / 37) * (1 + 0.91 / 1.09), 1e-12));
   // half of the scattering coefficient 8/3 pi beta(90) (2 + delta) / (1 + delta)
-  CHECK(water(oceanic_i, 500e-9, fresh).scattering == relative(0.5 * 8 * std::numbers::pi / 3 * 1.38e-4 * 2.09 / 1.09, 1e-12));
-  CHECK(water(oceanic_i, 400e-9).backscatter / water(oceanic_i, 500e-9).backscatter == relative(std::pow(0.8, -4.32), 1e-12));
+  CHECK(water(oceanic_i, 500e-9, fresh).scattering ==
+        relative(0.5 * 8 * std::numbers::pi / 3 * 1.38e-4 * 2.09 / 1.09, 1e-12));
+  CHECK(water(oceanic_i, 400e-9).backscatter / water(oceanic_i, 500e-9).backscatter ==
+        relative(std::pow(0.8, -4.32), 1e-12));
 }
 
 TEST_CASE("particles scatter as was measured in each type") {
-  const std::array<double, 6> measured{0.124, 0.179, 0.290, 0.432, 0.651, 1.21};  // Williamson & Hollins 2022, water and particles, 532 nm
+  const std::array<double, 6> measured{0.124, 0.179, 0.290,
+                                       0.432, 0.651, 1.21};  // Williamson & Hollins 2022, water and particles, 532 nm
   const std::array<JerlovType, 6> of{oceanic_ib, oceanic_ii, oceanic_iii, coastal_1, coastal_3, coastal_5};
   const double molecules = 2 * water(oceanic_i, 532e-9).scattering;
   for (std::size_t i = 0; i < of.size(); ++i)
@@ -118,7 +123,8 @@ TEST_CASE("the phase function of particles is the mean of Petzold's in San Diego
   struct Station {
     double scattering, straight_back, backward_share;
   };
-  const std::array<Station, 3> stations{{{1.583, 6.2107e-3, 0.019}, {1.824, 5.6857e-3, 0.020}, {1.205, 3.5956e-3, 0.018}}};
+  const std::array<Station, 3> stations{
+      {{1.583, 6.2107e-3, 0.019}, {1.824, 5.6857e-3, 0.020}, {1.205, 3.5956e-3, 0.018}}};
   const detail::MolecularScattering sea(530e-9, 35);
   double straight_back = 0;
   double backward = 0;
@@ -132,7 +138,8 @@ TEST_CASE("the phase function of particles is the mean of Petzold's in San Diego
 }
 
 TEST_CASE("the lidar ratio of sea water is some 100 sr in the green") {
-  for (const JerlovType type : {oceanic_ib, oceanic_ii, oceanic_iii, coastal_1, coastal_3, coastal_5, coastal_7, coastal_9}) {
+  for (const JerlovType type :
+       {oceanic_ib, oceanic_ii, oceanic_iii, coastal_1, coastal_3, coastal_5, coastal_7, coastal_9}) {
     const Medium medium = water(type, 532e-9);
     CHECK(medium.extinction() / medium.backscatter > 65);
     CHECK(medium.extinction() / medium.backscatter < 105);
@@ -175,7 +182,8 @@ TEST_CASE("water that cannot be, or of which nothing is known, is refused by the
     CHECK(refused_field([&] { (void)measured_water(0.1, 1e-3, bad); }) == "water (wavelength)");
   }
   CHECK(refused_field([] { (void)water(static_cast<JerlovType>(10), 532e-9); }) == "water_attenuation (type)");
-  CHECK(refused_field([] { (void)water(oceanic_i, 532e-9, {.salinity_permille = 36}); }) == "WaterState::salinity_permille");
+  CHECK(refused_field([] { (void)water(oceanic_i, 532e-9, {.salinity_permille = 36}); }) ==
+        "WaterState::salinity_permille");
   for (const double bad : {0.0, -0.1, nan_value, infinity})
     CHECK(refused_field([&] { (void)measured_water(bad, 0, 532e-9); }) == "measured_water (attenuation)");
   for (const double bad : {-1e-9, 0.1 * 3.17e-3 / 0.018 * 1.001, nan_value})

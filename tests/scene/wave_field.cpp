@@ -28,7 +28,8 @@ std::vector<SineWave> some_waves(Generator& random, std::size_t count) {
   std::vector<SineWave> waves;
   for (std::size_t i = 0; i < count; ++i) {
     const double wavelength = random.log_uniform(2e-3, 300);
-    waves.push_back({random.uniform(0.001, 0.03) * wavelength, wavelength, random.uniform(-pi, pi), random.uniform(0, 2 * pi)});
+    waves.push_back(
+        {random.uniform(0.001, 0.03) * wavelength, wavelength, random.uniform(-pi, pi), random.uniform(0, 2 * pi)});
   }
   return waves;
 }
@@ -97,7 +98,8 @@ TEST_CASE("a wave moves at its phase speed, after a year as in the first second"
   const double hertz = wave_frequency(2 * pi / 0.01) / (2 * pi);
   for (const std::int64_t second : {1, 86400, 31536000}) {
     const Tick t{second, 0};
-    CHECK(std::fabs(quick.height({}, t) + std::sin(2 * pi * t.phase(hertz))) < 3e-9 + 1e-15 * static_cast<double>(second) * hertz);
+    CHECK(std::fabs(quick.height({}, t) + std::sin(2 * pi * t.phase(hertz))) <
+          3e-9 + 1e-15 * static_cast<double>(second) * hertz);
   }
 }
 
@@ -146,7 +148,9 @@ TEST_CASE("heights and slopes depend on place and time only, and are those of a 
   Generator random(5);
   const WaveField field(some_waves(random, 40));
   const std::vector<Tick> ticks = some_ticks(6);
-  const auto place = [](std::size_t k) { return Vec2{0.37 * static_cast<double>(k), -11.0 * static_cast<double>(k % 7)}; };
+  const auto place = [](std::size_t k) {
+    return Vec2{0.37 * static_cast<double>(k), -11.0 * static_cast<double>(k % 7)};
+  };
   const auto all = [&](const WaveField& f, std::size_t k) {
     const Vec2 slope = f.slope(place(k), ticks[k]);
     return Vec3{slope.x, slope.y, f.height(place(k), ticks[k])};

@@ -32,8 +32,10 @@ const double pi = std::numbers::pi;
 /// Integral over the diameters of a precipitation by Gauss and Legendre with five points in each of 2000 intervals.
 template <class Function>
 double quadrature(const Precipitation& p, const Function& f) {
-  const std::array<double, 5> nodes{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
-  const std::array<double, 5> weights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const std::array<double, 5> nodes{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                                    0.9061798459386640};
+  const std::array<double, 5> weights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                      0.2369268850561891};
   const int count = 2000;
   const double half = (p.most - p.least) / (2 * count);
   double sum = 0;
@@ -62,7 +64,8 @@ struct Sphere {
   double extinction, scattering, backscatter;
 };
 
-/// Sphere of a size, pi times its diameter by the wavelength, and an index of refraction, by Mie's series. Source: Bohren & Huffman 1983.
+/// Sphere of a size, pi times its diameter by the wavelength, and an index of refraction, by Mie's series. Source:
+/// Bohren & Huffman 1983.
 Sphere sphere(double size, std::complex<double> index) {
   using Complex = std::complex<double>;
   const Complex inner = size * index;
@@ -96,7 +99,8 @@ Sphere sphere(double size, std::complex<double> index) {
 
 /// Sum over spheres of diameters drawn evenly in their logarithm, with weights by diameter.
 template <class Weight>
-Sphere spheres(double least, double most, int count, double wavelength, std::complex<double> index, const Weight& weight) {
+Sphere spheres(double least, double most, int count, double wavelength, std::complex<double> index,
+               const Weight& weight) {
   Sphere sum{};
   for (int i = 0; i < count; ++i) {
     const double share = (i + uniform({.seed = 7, .pulse = static_cast<PulseIndex>(i)})) / count;
@@ -144,8 +148,10 @@ TEST_CASE("droplets of fog have the lidar ratio of fog, and absorb hardly, by Mi
     double wavelength;
     std::complex<double> index;  // Segelstein 1981
   };
-  const std::array<Water, 4> waters{
-      {{0.532e-6, {1.3337, 1.5e-9}}, {0.905e-6, {1.3235, 5.1e-7}}, {1.064e-6, {1.3205, 1.28e-6}}, {1.55e-6, {1.3109, 1.336e-4}}}};
+  const std::array<Water, 4> waters{{{0.532e-6, {1.3337, 1.5e-9}},
+                                     {0.905e-6, {1.3235, 5.1e-7}},
+                                     {1.064e-6, {1.3205, 1.28e-6}},
+                                     {1.55e-6, {1.3109, 1.336e-4}}}};
   for (const Water& water : waters) {
     CAPTURE(water.wavelength);
     const auto by_size = [](double d) {  // most droplets have radii about 5 um
@@ -172,7 +178,9 @@ TEST_CASE("rain is Marshall and Palmer's") {
 }
 
 TEST_CASE("rain has the lidar ratio of drops by Mie's series in the green, and at 1.55 um, where water absorbs") {
-  const auto marshall_palmer = [](double rate) { return [slope = rain(rate, 1e-6).slope](double d) { return std::exp(-slope * d); }; };
+  const auto marshall_palmer = [](double rate) {
+    return [slope = rain(rate, 1e-6).slope](double d) { return std::exp(-slope * d); };
+  };
   for (const double rate : {1.0, 10.0}) {
     CAPTURE(rate);
     const Sphere green = spheres(0.1e-3, 6e-3, 1000, 0.532e-6, {1.3337, 1.5e-9}, marshall_palmer(rate));
@@ -180,12 +188,14 @@ TEST_CASE("rain has the lidar ratio of drops by Mie's series in the green, and a
     CHECK(clear.extinction() / clear.backscatter() == relative(green.extinction / green.backscatter, 0.3));
     const Sphere infrared = spheres(0.1e-3, 6e-3, 1000, 1.55e-6, {1.3109, 1.336e-4}, marshall_palmer(rate));
     const Precipitation absorbing = rain(rate, 1.55e-6);
-    CHECK(absorbing.extinction() / absorbing.backscatter() == relative(infrared.extinction / infrared.backscatter, 0.3));
+    CHECK(absorbing.extinction() / absorbing.backscatter() ==
+          relative(infrared.extinction / infrared.backscatter, 0.3));
     CHECK(infrared.extinction / infrared.backscatter > 250);
   }
 }
 
-TEST_CASE("one drop scatters back as by Mie's series at 1.55 um, from drizzle to drops that only their front reflects") {
+TEST_CASE(
+    "one drop scatters back as by Mie's series at 1.55 um, from drizzle to drops that only their front reflects") {
   for (const double d : {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3}) {
     CAPTURE(d);
     const Sphere s = spheres(0.9 * d, 1.1 * d, 1000, 1.55e-6, {1.3109, 1.336e-4}, [](double) { return 1.0; });
@@ -201,11 +211,12 @@ TEST_CASE("snow is Sekhon and Srivastava's, of flakes with the area of their mas
   const Precipitation p = snow(2, 0.905e-6);
   const double flake = p.least / 0.1e-3;
   CHECK(flake == relative(3.97, 1e-3));
-  CHECK(p.density * flake == relative(2.5e3 * std::pow(2, -0.94) * 1e3, 1e-13));  // of melted diameters, 2500 R^-0.94 /(m^3 mm)
-  CHECK(p.slope * flake == relative(22.9 * std::pow(2, -0.45) * 1e2, 1e-13));     // 22.9 R^-0.45 /cm
-  const double melted = 2;                                                        // mm
-  const double mass = pi / 6 * std::pow(melted, 3);                               // mg
-  const double area = pi / 4 * std::pow(flake * melted, 2);                       // mm^2
+  CHECK(p.density * flake ==
+        relative(2.5e3 * std::pow(2, -0.94) * 1e3, 1e-13));  // of melted diameters, 2500 R^-0.94 /(m^3 mm)
+  CHECK(p.slope * flake == relative(22.9 * std::pow(2, -0.45) * 1e2, 1e-13));  // 22.9 R^-0.45 /cm
+  const double melted = 2;                                                     // mm
+  const double mass = pi / 6 * std::pow(melted, 3);                            // mg
+  const double area = pi / 4 * std::pow(flake * melted, 2);                    // mm^2
   CHECK(mass == relative(0.012 * std::pow(area, 1.5), 1e-12));
   CHECK(p.extinction() / p.backscatter() == relative(33, 1e-12));
 }
@@ -280,14 +291,18 @@ TEST_CASE("weather out of range is refused by the name of its setting") {
     CHECK(refused_field([&] { (void)smoke(5e3, bad); }) == "smoke (wavelength)");
     CHECK(refused_field([&] { (void)rain(5, bad); }) == "rain (wavelength)");
   }
-  for (const double bad : {0.99, 1000.1, -1.0, nan_value}) CHECK(refused_field([&] { (void)fog(bad, 1e-6); }) == "fog (visibility)");
-  for (const double bad : {999.0, 100001.0, nan_value}) CHECK(refused_field([&] { (void)haze(bad, 1e-6); }) == "haze (visibility)");
+  for (const double bad : {0.99, 1000.1, -1.0, nan_value})
+    CHECK(refused_field([&] { (void)fog(bad, 1e-6); }) == "fog (visibility)");
+  for (const double bad : {999.0, 100001.0, nan_value})
+    CHECK(refused_field([&] { (void)haze(bad, 1e-6); }) == "haze (visibility)");
   for (const double bad : {0.99, 100001.0, nan_value}) {
     CHECK(refused_field([&] { (void)dust(bad, 1e-6); }) == "dust (visibility)");
     CHECK(refused_field([&] { (void)smoke(bad, 1e-6); }) == "smoke (visibility)");
   }
-  for (const double bad : {0.0, 0.09, 300.1, nan_value}) CHECK(refused_field([&] { (void)rain(bad, 1e-6); }) == "rain (rate)");
-  for (const double bad : {0.0, 0.09, 10.1, nan_value}) CHECK(refused_field([&] { (void)snow(bad, 1e-6); }) == "snow (rate)");
+  for (const double bad : {0.0, 0.09, 300.1, nan_value})
+    CHECK(refused_field([&] { (void)rain(bad, 1e-6); }) == "rain (rate)");
+  for (const double bad : {0.0, 0.09, 10.1, nan_value})
+    CHECK(refused_field([&] { (void)snow(bad, 1e-6); }) == "snow (rate)");
   for (const double bad : {0.399e-6, 1.101e-6, 1.55e-6, nan_value})
     CHECK(refused_field([&] { (void)snow(1, bad); }) == "snow (wavelength)");
 }
@@ -300,10 +315,15 @@ TEST_CASE("precipitation that cannot be is refused by the name of its setting") 
     CHECK(refused({.least = bad}) == "Precipitation::least");
     CHECK(refused({.absorption = bad}) == "Precipitation::absorption");
   }
-  for (const double bad : {0.0, 0.9e-3, 1.1e9, -1.0, nan_value, infinity}) CHECK(refused({.slope = bad}) == "Precipitation::slope");
-  for (const double bad : {1e-4, 0.9e-4, nan_value, infinity}) CHECK(refused({.most = bad}) == "Precipitation::most (above least)");
-  for (const double bad : {0.99, -20.0, nan_value, infinity}) CHECK(refused({.lidar_ratio = bad}) == "Precipitation::lidar_ratio");
-  for (const double bad : {-0.01, 1.01, nan_value}) CHECK(refused({.reflectance = bad}) == "Precipitation::reflectance");
+  for (const double bad : {0.0, 0.9e-3, 1.1e9, -1.0, nan_value, infinity})
+    CHECK(refused({.slope = bad}) == "Precipitation::slope");
+  for (const double bad : {1e-4, 0.9e-4, nan_value, infinity})
+    CHECK(refused({.most = bad}) == "Precipitation::most (above least)");
+  for (const double bad : {0.99, -20.0, nan_value, infinity})
+    CHECK(refused({.lidar_ratio = bad}) == "Precipitation::lidar_ratio");
+  for (const double bad : {-0.01, 1.01, nan_value})
+    CHECK(refused({.reflectance = bad}) == "Precipitation::reflectance");
   CHECK(refused({.lidar_ratio = 1000, .reflectance = 0.025}) == "");
-  CHECK(refused({.lidar_ratio = 1000, .reflectance = 0.026}) == "Precipitation::reflectance");  // more than all that comes back
+  CHECK(refused({.lidar_ratio = 1000, .reflectance = 0.026}) ==
+        "Precipitation::reflectance");  // more than all that comes back
 }

@@ -51,8 +51,11 @@ TEST_CASE("variances of slopes are those of Cox & Munk, wave by wave") {
         CAPTURE(components);
         const double toward = 2.5;
         double along = 0, mixed = 0, across = 0;
-        for (const SineWave& wave :
-             waves_of({.wind_speed = speed, .toward = toward, .fetch = fetch, .components = components, .seed = components})) {
+        for (const SineWave& wave : waves_of({.wind_speed = speed,
+                                    .toward = toward,
+                                    .fetch = fetch,
+                                    .components = components,
+                                    .seed = components})) {
           const Vec2 slope = slope_of(wave, toward);
           along += 0.5 * slope.x * slope.x;
           mixed += 0.5 * slope.x * slope.y;
@@ -101,8 +104,9 @@ TEST_CASE("the significant wave height is that of the spectrum") {
       const WindSpectrum spectrum(speed, fetch);
       const double whole = significant_height(spectrum, spectrum.peak() / 50, 2 * pi / 3e-3);
       for (const std::size_t components : {32U, 96U})
-        CHECK(4 * std::sqrt(height_variance(waves_of({.wind_speed = speed, .fetch = fetch, .components = components}))) ==
-              relative(whole, 0.02));
+        CHECK(
+            4 * std::sqrt(height_variance(waves_of({.wind_speed = speed, .fetch = fetch, .components = components}))) ==
+            relative(whole, 0.02));
     }
   // in light winds slopes of all waves are less than those of the spectrum, and heights with them
   const double light = 4 * std::sqrt(height_variance(waves_of({.wind_speed = 2})));
@@ -113,7 +117,8 @@ TEST_CASE("the significant wave height is that of the spectrum") {
 TEST_CASE("a fully developed sea is as high, and peaks where, others have found") {
   for (const double speed : {5.0, 10.0, 20.0}) {
     const WindSpectrum spectrum(speed, std::numeric_limits<double>::infinity());
-    // 0.21 U^2/g of the wind at 19.5 m, 1.026 times that at 10 m: Pierson & Moskowitz 1964, as in Stewart 2008, section 16.4
+    // 0.21 U^2/g of the wind at 19.5 m, 1.026 times that at 10 m: Pierson & Moskowitz 1964, as in Stewart 2008,
+    // section 16.4
     const double height = 0.21 * std::pow(1.026 * speed, 2) / 9.81;
     CHECK(significant_height(spectrum, spectrum.peak() / 50, 2e3) == relative(height, 0.2));
     // waves at the peak run 1/0.84 times as fast as the wind at 10 m
@@ -147,7 +152,8 @@ TEST_CASE("the spectrum alone has nearly the slopes of Cox & Munk, as it was mad
 
 TEST_CASE("waves travel with the wind, and the longest most of all") {
   const double toward = 2;
-  for (const SineWave& wave : waves_of({.wind_speed = 8, .toward = toward, .components = 512})) CHECK(std::cos(wave.toward - toward) > 0);
+  for (const SineWave& wave : waves_of({.wind_speed = 8, .toward = toward, .components = 512}))
+    CHECK(std::cos(wave.toward - toward) > 0);
   for (const double turn : {-6.28, 6.28}) CHECK_NOTHROW(WaveField(waves_of({.toward = turn})));
   const WindSpectrum spectrum(8, 1e9);
   CHECK(spectrum.spread(spectrum.peak()) > 0.99);
@@ -172,8 +178,8 @@ TEST_CASE("waves are as long as asked for, and of the seed only") {
   const auto same = [](const std::vector<SineWave>& a, const std::vector<SineWave>& b) {
     bool equal = a.size() == b.size();
     for (std::size_t i = 0; equal && i < a.size(); ++i)
-      equal =
-          a[i].amplitude == b[i].amplitude && a[i].wavelength == b[i].wavelength && a[i].toward == b[i].toward && a[i].phase == b[i].phase;
+      equal = a[i].amplitude == b[i].amplitude && a[i].wavelength == b[i].wavelength && a[i].toward == b[i].toward &&
+              a[i].phase == b[i].phase;
     return equal;
   };
   CHECK(same(waves_of({.seed = 5}), waves_of({.seed = 5})));
@@ -203,9 +209,10 @@ TEST_CASE("the density of slopes is one in sum, has its variances, and is highes
 
 TEST_CASE("settings out of range are refused") {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<WindWaves> bad{{.wind_speed = -1},  {.wind_speed = 31},    {.wind_speed = nothing}, {.toward = 90},
-                                   {.toward = nothing}, {.fetch = 0},          {.fetch = nothing},      {.shortest = 1e-3},
-                                   {.shortest = 0.2},   {.shortest = nothing}, {.components = 15},      {.components = 513}};
+  const std::vector<WindWaves> bad{{.wind_speed = -1},    {.wind_speed = 31},  {.wind_speed = nothing},
+                                   {.toward = 90},        {.toward = nothing}, {.fetch = 0},
+                                   {.fetch = nothing},    {.shortest = 1e-3},  {.shortest = 0.2},
+                                   {.shortest = nothing}, {.components = 15},  {.components = 513}};
   for (std::size_t i = 0; i < bad.size(); ++i) {
     CAPTURE(i);
     CHECK_THROWS_AS(static_cast<void>(waves_of(bad[i])), SettingError);

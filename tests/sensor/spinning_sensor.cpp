@@ -16,7 +16,8 @@ namespace {
 using namespace literals;
 
 SpinningSensor two_lasers() {
-  return {.lasers = {{.elevation = 10_deg, .azimuth = 3_deg, .height = 0.01}, {.elevation = -5_deg, .height = -0.01, .delay = 20_us}},
+  return {.lasers = {{.elevation = 10_deg, .azimuth = 3_deg, .height = 0.01},
+                     {.elevation = -5_deg, .height = -0.01, .delay = 20_us}},
           .sequence_rate = 10_kHz,
           .turns_per_second = 10,
           .exit_radius = 0.02};

@@ -16,7 +16,8 @@ void count() {
 
 }  // namespace
 
-// never inlined, else g++ sees `free` meet the memory of `new`; weak, as sanitizers have their own, under which nothing is counted
+// never inlined, else g++ sees `free` meet the memory of `new`; weak, as sanitizers have their own, under which nothing
+// is counted
 [[gnu::noinline, gnu::weak]] void* operator new(std::size_t size) {
   count();
   if (void* const memory = std::malloc(size)) return memory;
@@ -31,4 +32,6 @@ void count() {
 [[gnu::noinline, gnu::weak]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 [[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}

@@ -7,10 +7,12 @@
 
 namespace pulsecast::support {
 
-/// Number of calls of operator new so far, which allocations.cpp replaces in all test programs; none is counted under a sanitizer.
+/// Number of calls of operator new so far, which allocations.cpp replaces in all test programs; none is counted under a
+/// sanitizer.
 extern std::atomic<std::size_t> allocations;
 
-/// Number of calls of operator new up to one that throws `std::bad_alloc`, counted down; 0: none does. Without effect under a sanitizer.
+/// Number of calls of operator new up to one that throws `std::bad_alloc`, counted down; 0: none does. Without effect
+/// under a sanitizer.
 extern std::atomic<std::size_t> allocations_left;
 
 }  // namespace pulsecast::support

@@ -16,8 +16,9 @@
 
 #include "support/laz_reader.hpp"
 
-/// Reads COPC files by the rules of https://copc.io, and checks what the rules demand and the library promises: plain and slow, written for
-/// the tests; shares nothing with the writer. Throws `std::runtime_error` at the first thing that is not as it should be.
+/// Reads COPC files by the rules of https://copc.io, and checks what the rules demand and the library promises: plain
+/// and slow, written for the tests; shares nothing with the writer. Throws `std::runtime_error` at the first thing that
+/// is not as it should be.
 namespace pulsecast::support {
 
 /// A node's name.
@@ -25,7 +26,9 @@ struct CopcName {
   std::int32_t level = 0, x = 0, y = 0, z = 0;
   friend auto operator<=>(const CopcName&, const CopcName&) = default;
   [[nodiscard]] CopcName above() const { return {level - 1, x / 2, y / 2, z / 2}; }
-  [[nodiscard]] bool is_below(const CopcName& other) const { return *this == other || (level > other.level && above().is_below(other)); }
+  [[nodiscard]] bool is_below(const CopcName& other) const {
+    return *this == other || (level > other.level && above().is_below(other));
+  }
 };
 
 /// A node: its point records, one behind another.
@@ -44,7 +47,9 @@ struct CopcFile {
   std::size_t record = 0;  ///< its size [byte]
   std::string las;         ///< the LAS file of the same points, in the order of the chunks
 
-  [[nodiscard]] std::size_t levels() const { return nodes.empty() ? 0 : static_cast<std::size_t>(nodes.rbegin()->first.level) + 1; }
+  [[nodiscard]] std::size_t levels() const {
+    return nodes.empty() ? 0 : static_cast<std::size_t>(nodes.rbegin()->first.level) + 1;
+  }
   [[nodiscard]] std::vector<std::string> records() const {
     std::vector<std::string> all;
     for (const auto& [name, node] : nodes)
@@ -147,7 +152,8 @@ class CopcReader {
   }
 
   void read_hierarchy() {
-    laz_expect(bytes_.substr(extended_ + 2, 5) == std::string("copc\0", 5) && whole(extended_ + 18, 2) == 1000, "hierarchy record");
+    laz_expect(bytes_.substr(extended_ + 2, 5) == std::string("copc\0", 5) && whole(extended_ + 18, 2) == 1000,
+               "hierarchy record");
     laz_expect(extended_ + 60 + whole(extended_ + 20, 8) == bytes_.size(), "the hierarchy ends where the file does");
     laz_expect(root_at_ == extended_ + 60, "the first page is the first");
     read_page(root_at_, root_size_, {});
@@ -183,17 +189,22 @@ class CopcReader {
         continue;
       }
       laz_expect(points >= 0 && (points > 0 || (offset == 0 && bytes == 0)), "entry");
-      laz_expect(file_.nodes.emplace(name, CopcReadNode{static_cast<std::size_t>(points), offset, {}, true}).second, "a node comes twice");
+      laz_expect(file_.nodes.emplace(name, CopcReadNode{static_cast<std::size_t>(points), offset, {}, true}).second,
+                 "a node comes twice");
       if (points == 0) continue;
       const auto chunk = chunks_.find(offset);
-      laz_expect(chunk != chunks_.end() && chunk->second == std::pair(std::uint64_t(points), std::uint64_t(bytes)), "chunk of a node");
+      laz_expect(chunk != chunks_.end() && chunk->second == std::pair(std::uint64_t(points), std::uint64_t(bytes)),
+                 "chunk of a node");
     }
   }
 
   /// Reads the points of a node, all of which are within its cube.
   void read_node(const CopcName& name, CopcReadNode& node) {
     if (node.points == 0) return;
-    const LazReadChunk chunk = read_laz_chunk(bytes_, node.offset, file_.record, format_ == 7 ? 6 : format_ == 8 ? 8 : 0);
+    const LazReadChunk chunk = read_laz_chunk(bytes_, node.offset, file_.record,
+                                              format_ == 7   ? 6
+                                              : format_ == 8 ? 8
+                                                             : 0);
     laz_expect(chunk.points == node.points && chunk.size == chunks_.at(node.offset).second, "size of a chunk");
     chunks_.erase(node.offset);
     node.records = chunk.records;
@@ -202,8 +213,9 @@ class CopcReader {
     const std::array<std::int32_t, 3> place{name.x, name.y, name.z};
     for (std::size_t i = 0; i < node.points; ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double c = static_cast<std::int32_t>(laz_whole(node.records, i * file_.record + 4 * axis, 4)) * real(131 + 8 * axis) +
-                         real(155 + 8 * axis);
+        const double c =
+            static_cast<std::int32_t>(laz_whole(node.records, i * file_.record + 4 * axis, 4)) * real(131 + 8 * axis) +
+            real(155 + 8 * axis);
         const double low = file_.centre[axis] - file_.half + place[axis] * side;
         laz_expect(c >= low && c < low + side, "a point outside its node");
       }
@@ -218,8 +230,9 @@ class CopcReader {
   CopcFile file_;
   std::size_t format_ = 0, begin_ = 0, extended_ = 0, points_ = 0;
   std::uint64_t root_at_ = 0, root_size_ = 0;
-  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> chunks_;  ///< points and size, by offset, of those not yet read
-  std::map<std::uint64_t, std::uint64_t> pages_;                             ///< sizes, by offset
+  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>>
+      chunks_;                                    ///< points and size, by offset, of those not yet read
+  std::map<std::uint64_t, std::uint64_t> pages_;  ///< sizes, by offset
   double first_ = std::numeric_limits<double>::infinity(), last_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -228,9 +241,9 @@ class CopcReader {
 /// Reads a COPC file: every page, every node and every point.
 [[nodiscard]] inline CopcFile read_copc(const std::string& bytes) { return detail::CopcReader(bytes).read(); }
 
-/// Checks that each node but a leaf has at most one point in each of its 128^3 cells, and that wherever a point lies, all of its cells down
-/// to those of its node have a point, of the cell's node or one above: levels are even samples. A leaf has at most `leaf_points`, unless
-/// its cells are a step or less.
+/// Checks that each node but a leaf has at most one point in each of its 128^3 cells, and that wherever a point lies,
+/// all of its cells down to those of its node have a point, of the cell's node or one above: levels are even samples. A
+/// leaf has at most `leaf_points`, unless its cells are a step or less.
 inline void check_even_samples(const CopcFile& file, std::size_t leaf_points) {
   using detail::laz_expect;
   const std::string& head = file.las;
@@ -239,8 +252,10 @@ inline void check_even_samples(const CopcFile& file, std::size_t leaf_points) {
   const auto cell_at = [&](const std::string& record, std::int32_t level) {
     Cell cell{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double c = static_cast<std::int32_t>(detail::laz_whole(record, 4 * axis, 4)) * real(131 + 8 * axis) + real(155 + 8 * axis);
-      cell[axis] = static_cast<std::int64_t>(std::floor((c - (file.centre[axis] - file.half)) / std::ldexp(file.spacing, -level)));
+      const double c = static_cast<std::int32_t>(detail::laz_whole(record, 4 * axis, 4)) * real(131 + 8 * axis) +
+                       real(155 + 8 * axis);
+      cell[axis] = static_cast<std::int64_t>(
+          std::floor((c - (file.centre[axis] - file.half)) / std::ldexp(file.spacing, -level)));
     }
     return cell;
   };
@@ -250,7 +265,8 @@ inline void check_even_samples(const CopcFile& file, std::size_t leaf_points) {
   };
   std::map<std::int32_t, std::set<Cell>> known;  // cells of a level with a point down to it
   each([&](const CopcName& name, const CopcReadNode&, const std::string& record) {
-    for (std::int32_t level = name.level; level < std::int32_t(file.levels()); ++level) known[level].insert(cell_at(record, level));
+    for (std::int32_t level = name.level; level < std::int32_t(file.levels()); ++level)
+      known[level].insert(cell_at(record, level));
   });
   std::map<CopcName, std::set<Cell>> own;
   each([&](const CopcName& name, const CopcReadNode&, const std::string& record) {
@@ -259,7 +275,8 @@ inline void check_even_samples(const CopcFile& file, std::size_t leaf_points) {
       laz_expect(known[level].contains(cell_at(record, level)), "a cell with points has none in its node or above");
   });
   for (const auto& [name, node] : file.nodes) {
-    const bool even = node.points == own[name].size(), in_one_place = std::ldexp(file.spacing, -name.level) < 1.5 * real(131);
+    const bool even = node.points == own[name].size(),
+               in_one_place = std::ldexp(file.spacing, -name.level) < 1.5 * real(131);
     laz_expect(even || node.is_leaf, "two points of a node in one cell");
     laz_expect(even || node.points <= leaf_points || in_one_place, "too many points in a leaf");
   }

@@ -11,8 +11,8 @@ namespace pulsecast::support {
 
 /// What a detector makes of reflections of a laser's pulse, without a gate.
 template <class D, class Workspace>
-[[nodiscard]] Detection detect(const D& detector, const Laser& laser, std::span<Reflection> reflections, Workspace& workspace,
-                               const RandomKey& key = {}) {
+[[nodiscard]] Detection detect(const D& detector, const Laser& laser, std::span<Reflection> reflections,
+                               Workspace& workspace, const RandomKey& key = {}) {
   const Emitter emitter{.laser = laser};
   return detector.detect(Heard{emitter, {}, reflections, key}, workspace);
 }
@@ -24,10 +24,11 @@ struct DistanceSteps {
   int count = 0;     ///< of the mean
 };
 
-/// Mean distance of a waveform from a pulse, both by their maxima, within a pulse length of the maximum. `waveform(t)`, `pulse(t)`: at a
-/// time [s]; the pulse has a maximum of 1 at 0.
+/// Mean distance of a waveform from a pulse, both by their maxima, within a pulse length of the maximum. `waveform(t)`,
+/// `pulse(t)`: at a time [s]; the pulse has a maximum of 1 at 0.
 template <class Waveform, class Pulse>
-[[nodiscard]] double mean_distance(const Waveform& waveform, const Pulse& pulse, double pulse_length, const DistanceSteps& steps) {
+[[nodiscard]] double mean_distance(const Waveform& waveform, const Pulse& pulse, double pulse_length,
+                                   const DistanceSteps& steps) {
   double top = 0, at = 0;
   for (double t = -steps.reach; t < steps.reach; t += steps.step)
     if (const double here = waveform(t); here > top) {

@@ -12,8 +12,8 @@
 /// Arithmetic of some 32 digits, for references where closed forms in double precision fail.
 namespace pulsecast::support {
 
-/// A number as the sum of two doubles, the second below half a unit in the last place of the first. Sums and products are right to 2^-100.
-/// Source: Dekker 1971; Knuth 1998, sec. 4.2.2.
+/// A number as the sum of two doubles, the second below half a unit in the last place of the first. Sums and products
+/// are right to 2^-100. Source: Dekker 1971; Knuth 1998, sec. 4.2.2.
 struct DoubleDouble {
   double high = 0, low = 0;
 
@@ -59,12 +59,20 @@ struct ExactVec3 {
   /// a - b without any rounding.
   ExactVec3(const Vec3& a, const Vec3& b) noexcept : x(a.x, -b.x), y(a.y, -b.y), z(a.z, -b.z) {}
 
-  explicit operator Vec3() const noexcept { return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}; }
-  friend ExactVec3 operator+(const ExactVec3& a, const ExactVec3& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend ExactVec3 operator-(const ExactVec3& a, const ExactVec3& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  explicit operator Vec3() const noexcept {
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+  }
+  friend ExactVec3 operator+(const ExactVec3& a, const ExactVec3& b) noexcept {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend ExactVec3 operator-(const ExactVec3& a, const ExactVec3& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
   friend ExactVec3 operator*(const ExactVec3& a, const DoubleDouble& s) noexcept { return {a.x * s, a.y * s, a.z * s}; }
 };
-[[nodiscard]] inline DoubleDouble dot(const ExactVec3& a, const ExactVec3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline DoubleDouble dot(const ExactVec3& a, const ExactVec3& b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 [[nodiscard]] inline ExactVec3 cross(const ExactVec3& a, const ExactVec3& b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -79,7 +87,8 @@ struct ExactCrossing {
 };
 
 /// The corners are taken for exact. Range is in lengths of the direction.
-[[nodiscard]] inline ExactCrossing exact_crossing(const Triangle& t, const ExactVec3& origin, const ExactVec3& direction) noexcept {
+[[nodiscard]] inline ExactCrossing exact_crossing(const Triangle& t, const ExactVec3& origin,
+                                                  const ExactVec3& direction) noexcept {
   const ExactVec3 corners[3] = {ExactVec3(t.a) - origin, ExactVec3(t.b) - origin, ExactVec3(t.c) - origin};
   const ExactVec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const DoubleDouble slope = dot(normal, direction);

@@ -33,7 +33,8 @@ class FbxLists {
   }
 
   void node(std::string& made) {
-    const std::size_t begin = made.size(), end = number(0), head = 25 + static_cast<unsigned char>(file_[at_ + 24]) + number(2);
+    const std::size_t begin = made.size(), end = number(0),
+                      head = 25 + static_cast<unsigned char>(file_[at_ + 24]) + number(2);
     made.append(file_, at_, head);
     at_ += head;
     const bool has_list = at_ < end;

@@ -19,6 +19,8 @@ template <class Action>
   return {"", "", "no error"};
 }
 
-[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace pulsecast::support

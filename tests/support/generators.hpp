@@ -51,7 +51,8 @@ class Generator {
     return normalize(Vec3{r * std::cos(turn), r * std::sin(turn), z});
   }
 
-  /// Every rotation as likely as every other. Source: four normal numbers, normalised, are uniform on the sphere (Muller 1959).
+  /// Every rotation as likely as every other. Source: four normal numbers, normalised, are uniform on the sphere
+  /// (Muller 1959).
   [[nodiscard]] Rotation rotation() noexcept {
     const double w = normal(), x = normal(), y = normal(), z = normal();
     return normalize(Rotation{w, x, y, z});
@@ -66,7 +67,8 @@ class Generator {
   /// Its centre is within reach, and each of its sides is log-uniform between two lengths.
   [[nodiscard]] Box box(double reach, double smallest, double largest) noexcept {
     const Vec3 centre = point(reach);
-    const double x = log_uniform(smallest, largest), y = log_uniform(smallest, largest), z = log_uniform(smallest, largest);
+    const double x = log_uniform(smallest, largest), y = log_uniform(smallest, largest),
+                 z = log_uniform(smallest, largest);
     const Vec3 half{x / 2, y / 2, z / 2};
     return {centre - half, centre + half};
   }

@@ -21,7 +21,8 @@ namespace pulsecast::support {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
     for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[word >> (18 - 6 * k) & 63] : '=';
   }
   return text;
@@ -33,12 +34,12 @@ class Gltf {
   using Corners = std::array<std::uint32_t, 3>;
 
   /// Part of the next mesh; `members` are its other ones, as of `,"material":0`.
-  void primitive(const std::vector<Place>& vertices, const std::vector<Corners>& triangles, const std::string& members = "",
-                 const std::vector<std::array<float, 2>>& texture = {}) {
+  void primitive(const std::vector<Place>& vertices, const std::vector<Corners>& triangles,
+                 const std::string& members = "", const std::vector<std::array<float, 2>>& texture = {}) {
     std::string attributes = "\"POSITION\":" + accessor(vertices, 5126, "VEC3", vertices.size());
     if (!texture.empty()) attributes += ",\"TEXCOORD_0\":" + accessor(texture, 5126, "VEC2", texture.size());
-    add(primitives_,
-        "{\"attributes\":{" + attributes + "},\"indices\":" + accessor(triangles, 5125, "SCALAR", 3 * triangles.size()) + members + "}");
+    add(primitives_, "{\"attributes\":{" + attributes +
+                         "},\"indices\":" + accessor(triangles, 5125, "SCALAR", 3 * triangles.size()) + members + "}");
   }
   /// Mesh of the parts so far. Returns its number.
   std::size_t mesh(const std::string& name) {
@@ -52,7 +53,9 @@ class Gltf {
   std::string roots = "0";  ///< numbers of the nodes of the scene
   std::string more{};       ///< other members of the file, as of `"images":[],`
 
-  [[nodiscard]] std::string text() const { return json(R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes_) + "\""); }
+  [[nodiscard]] std::string text() const {
+    return json(R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes_) + "\"");
+  }
   /// Text for a file with a buffer of its own, of the bytes `buffer()`.
   [[nodiscard]] std::string text(const std::string& uri) const { return json(",\"uri\":\"" + uri + "\""); }
   [[nodiscard]] const std::string& buffer() const noexcept { return bytes_; }
@@ -76,7 +79,8 @@ class Gltf {
   /// Adds a picture, or other bytes, to the buffer. Returns the number of its view.
   std::string view(const void* data, std::size_t size) {
     while (bytes_.size() % 4 != 0) bytes_ += '\0';
-    add(views_, "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) + ",\"byteLength\":" + std::to_string(size) + "}");
+    add(views_, "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) +
+                    ",\"byteLength\":" + std::to_string(size) + "}");
     bytes_.append(static_cast<const char*>(data), size);
     return std::to_string(view_count_++);
   }
@@ -87,15 +91,17 @@ class Gltf {
   template <class T>
   std::string accessor(const std::vector<T>& elements, int type, const std::string& shape, std::size_t count) {
     const std::string number = view(elements.data(), elements.size() * sizeof(T));
-    add(accessors_, "{\"bufferView\":" + number + ",\"componentType\":" + std::to_string(type) + ",\"type\":\"" + shape +
-                        "\",\"count\":" + std::to_string(count) + "}");
+    add(accessors_, "{\"bufferView\":" + number + ",\"componentType\":" + std::to_string(type) + ",\"type\":\"" +
+                        shape + "\",\"count\":" + std::to_string(count) + "}");
     return std::to_string(accessor_count_++);
   }
 
   [[nodiscard]] std::string json(const std::string& uri) const {
-    return "{\"asset\":{\"version\":\"2.0\"}," + more + "\"scene\":0,\"scenes\":[{\"nodes\":[" + roots + "]}],\"nodes\":[" + nodes_ +
-           "],\"meshes\":[" + meshes_ + "]," + (materials_.empty() ? "" : "\"materials\":[" + materials_ + "],") + "\"accessors\":[" +
-           accessors_ + "],\"bufferViews\":[" + views_ + "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes_.size()) + uri + "}]}";
+    return "{\"asset\":{\"version\":\"2.0\"}," + more + "\"scene\":0,\"scenes\":[{\"nodes\":[" + roots +
+           "]}],\"nodes\":[" + nodes_ + "],\"meshes\":[" + meshes_ + "]," +
+           (materials_.empty() ? "" : "\"materials\":[" + materials_ + "],") + "\"accessors\":[" + accessors_ +
+           "],\"bufferViews\":[" + views_ + "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes_.size()) + uri +
+           "}]}";
   }
 
   std::string primitives_, meshes_, nodes_, materials_, accessors_, views_, bytes_;

@@ -11,8 +11,8 @@
 
 namespace pulsecast::support {
 
-/// Makes LAS files byte by byte, of any version and point format, good ones and others. Written from the ASPRS LAS Specification 1.4 R15;
-/// shares nothing with the readers.
+/// Makes LAS files byte by byte, of any version and point format, good ones and others. Written from the ASPRS LAS
+/// Specification 1.4 R15; shares nothing with the readers.
 struct LasBuilder {
   struct Point {
     std::array<std::int32_t, 3> stored{};  ///< coordinates in steps
@@ -52,12 +52,14 @@ struct LasBuilder {
     }
     for (const Point& point : points) {
       std::string record(point_size(), '\x5A');  // what a reader does not ask for may be anything
-      for (std::size_t axis = 0; axis < 3; ++axis) put(record, 4 * axis, static_cast<std::uint32_t>(point.stored[axis]), 4);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        put(record, 4 * axis, static_cast<std::uint32_t>(point.stored[axis]), 4);
       put(record, 14, format < 6 ? 0x09 : 0x11, 1);
       put(record, 15, format < 6 ? (point.withheld ? 0x81 : 0x01) : (point.withheld ? 0x04 : 0x00), 1);
       if (format >= 6) put(record, 18, 0, 2);
       constexpr std::array<std::size_t, 11> colour_at{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
-      for (std::size_t k = 0; k < 3 && colour_at[format] != 0; ++k) put(record, colour_at[format] + 2 * k, point.colour[k], 2);
+      for (std::size_t k = 0; k < 3 && colour_at[format] != 0; ++k)
+        put(record, colour_at[format] + 2 * k, point.colour[k], 2);
       file += record;
     }
     return file;

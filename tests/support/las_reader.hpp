@@ -43,8 +43,8 @@ struct LasWaveDescriptor {
 struct LasPoint {
   std::array<std::int32_t, 3> stored{};  ///< coordinates in steps
   std::array<double, 3> place{};         ///< coordinates [m]
-  unsigned intensity = 0, return_number = 0, returns = 0, flags = 0, channel = 0, scan_direction = 0, edge = 0, classification = 0,
-           user_data = 0, source = 0;
+  unsigned intensity = 0, return_number = 0, returns = 0, flags = 0, channel = 0, scan_direction = 0, edge = 0,
+           classification = 0, user_data = 0, source = 0;
   double scan_angle_deg = 0, gps_time = 0;
   std::array<unsigned, 4> colour{};  ///< red, green, blue, near infrared; 0 where the format has none
   LasWavePacket wave;
@@ -88,7 +88,9 @@ class LasInput {
     return value;
   }
   [[nodiscard]] double real(std::size_t at) const { return std::bit_cast<double>(whole(at, 8)); }
-  [[nodiscard]] double short_real(std::size_t at) const { return double{std::bit_cast<float>(static_cast<std::uint32_t>(whole(at, 4)))}; }
+  [[nodiscard]] double short_real(std::size_t at) const {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(whole(at, 4)))};
+  }
   [[nodiscard]] std::string text(std::size_t at, std::size_t n) const {
     const std::string b = bytes(at, n);
     return b.substr(0, b.find('\0'));
@@ -130,7 +132,11 @@ class LasReader {
   [[nodiscard]] LasFile read() {
     read_header();
     record_ = in_.whole(105, 2);
-    standard_ = (old_ ? 28 : 30) + (file_.format == 7 ? 6U : file_.format == 8 ? 8U : 0U) + std::size_t{waves_ ? 29U : 0U};
+    standard_ = (old_ ? 28 : 30) +
+                (file_.format == 7   ? 6U
+                 : file_.format == 8 ? 8U
+                                     : 0U) +
+                std::size_t{waves_ ? 29U : 0U};
     expected_record_ = standard_;
     at_ = file_.minor == 0 ? 227 : 375;
     read_records();
@@ -148,7 +154,9 @@ class LasReader {
     file_.format = static_cast<unsigned>(in_.whole(104, 1));
     las_expect(in_.whole(24, 1) == 1 && (file_.minor == 0 || file_.minor == 4), "version");
     las_expect(in_.whole(94, 2) == (file_.minor == 0 ? 227 : 375), "header size");
-    las_expect(file_.format == 1 || (file_.minor == 4 && (file_.format == 4 || (file_.format >= 6 && file_.format <= 9))), "point format");
+    las_expect(
+        file_.format == 1 || (file_.minor == 4 && (file_.format == 4 || (file_.format >= 6 && file_.format <= 9))),
+        "point format");
     old_ = file_.format < 6;
     waves_ = file_.format == 4 || file_.format == 9;
     file_.global_encoding = static_cast<unsigned>(in_.whole(6, 2));
@@ -159,9 +167,11 @@ class LasReader {
     file_.software = in_.text(58, 32);
     file_.day = static_cast<unsigned>(in_.whole(90, 2));
     file_.year = static_cast<unsigned>(in_.whole(92, 2));
-    for (std::size_t at = 107; !old_ && at < 131; at += 4) las_expect(in_.whole(at, 4) == 0, "legacy numbers are not zero");
+    for (std::size_t at = 107; !old_ && at < 131; at += 4)
+      las_expect(in_.whole(at, 4) == 0, "legacy numbers are not zero");
     if (file_.minor == 4)
-      las_expect(in_.whole(227, 8) == 0 && in_.whole(235, 8) == 0 && in_.whole(243, 4) == 0, "waveforms inside, or extended records");
+      las_expect(in_.whole(227, 8) == 0 && in_.whole(235, 8) == 0 && in_.whole(243, 4) == 0,
+                 "waveforms inside, or extended records");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       file_.scale[axis] = in_.real(131 + 8 * axis);
       file_.offset[axis] = in_.real(155 + 8 * axis);
@@ -187,8 +197,9 @@ class LasReader {
         read_extra_fields(body, length);
       } else if (user == "LASF_Spec" && id >= 100 && id < 355) {
         las_expect(waves_ && length == 26 && in_.whole(body + 1, 1) == 0, "waveform descriptor");
-        file_.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in_.whole(body, 1)), in_.whole(body + 2, 4),
-                                     in_.whole(body + 6, 4), in_.real(body + 10), in_.real(body + 18)});
+        file_.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in_.whole(body, 1)),
+                                     in_.whole(body + 2, 4), in_.whole(body + 6, 4), in_.real(body + 10),
+                                     in_.real(body + 18)});
       } else {
         las_expect(false, "unknown record " + user);
       }
@@ -197,7 +208,8 @@ class LasReader {
   }
 
   void read_keys(std::size_t body, std::size_t length) {
-    las_expect(length % 8 == 0 && length >= 8 && in_.whole(body, 2) == 1 && in_.whole(body + 6, 2) == length / 8 - 1, "GeoTIFF keys");
+    las_expect(length % 8 == 0 && length >= 8 && in_.whole(body, 2) == 1 && in_.whole(body + 6, 2) == length / 8 - 1,
+               "GeoTIFF keys");
     for (std::size_t k = body + 8; k < body + length; k += 8) {
       las_expect(in_.whole(k + 2, 2) == 0 && in_.whole(k + 4, 2) == 1, "a GeoTIFF key that is not read here");
       las_expect(k == body + 8 || in_.whole(k, 2) > in_.whole(k - 8, 2), "GeoTIFF keys are not in order");
@@ -233,7 +245,8 @@ class LasReader {
                "the WKT bit belongs to formats 6 to 9, unless there are GeoTIFF keys");
     const std::uint64_t count = file_.minor == 0 ? in_.whole(107, 4) : in_.whole(247, 8);
     las_expect(!old_ || in_.whole(107, 4) == count, "legacy number of points");
-    las_expect(in_.size() >= at_ && (in_.size() - at_) % record_ == 0 && (in_.size() - at_) / record_ == count, "number of points");
+    las_expect(in_.size() >= at_ && (in_.size() - at_) % record_ == 0 && (in_.size() - at_) / record_ == count,
+               "number of points");
     file_.points.reserve(count);
   }
 
@@ -250,7 +263,8 @@ class LasReader {
     p.user_data = static_cast<unsigned>(in_.whole(at_ + 17, 1));
     read_fields(p);
     if (const std::size_t w = at_ + standard_ - 29; waves_) {
-      p.wave = {static_cast<unsigned>(in_.whole(w, 1)), in_.whole(w + 1, 8), in_.whole(w + 9, 4), in_.short_real(w + 13), {}};
+      p.wave = {
+          static_cast<unsigned>(in_.whole(w, 1)), in_.whole(w + 1, 8), in_.whole(w + 9, 4), in_.short_real(w + 13), {}};
       for (std::size_t axis = 0; axis < 3; ++axis) p.wave.direction[axis] = in_.short_real(w + 17 + 4 * axis);
     }
     las_expect(p.return_number >= 1 && p.return_number <= p.returns, "return number");
@@ -261,7 +275,8 @@ class LasReader {
 
   /// Fields behind the intensity, which depend on the format.
   void read_fields(LasPoint& p) const {
-    const auto numbers = static_cast<unsigned>(in_.whole(at_ + 14, 1)), byte_15 = static_cast<unsigned>(in_.whole(at_ + 15, 1));
+    const auto numbers = static_cast<unsigned>(in_.whole(at_ + 14, 1)),
+               byte_15 = static_cast<unsigned>(in_.whole(at_ + 15, 1));
     if (old_) {
       p.return_number = numbers % 8;
       p.returns = numbers / 8 % 8;
@@ -291,7 +306,8 @@ class LasReader {
   void check_counts() {
     for (std::size_t i = 0; i < (file_.minor == 0 ? 5 : 15); ++i) {
       file_.by_return[i] = file_.minor == 0 ? in_.whole(111 + 4 * i, 4) : in_.whole(255 + 8 * i, 8);
-      las_expect(!old_ || i >= 5 || in_.whole(111 + 4 * i, 4) == counted_[i], "legacy number of points of return " + std::to_string(i + 1));
+      las_expect(!old_ || i >= 5 || in_.whole(111 + 4 * i, 4) == counted_[i],
+                 "legacy number of points of return " + std::to_string(i + 1));
       las_expect(file_.by_return[i] == counted_[i], "number of points of return " + std::to_string(i + 1));
     }
   }
@@ -318,10 +334,10 @@ class LasReader {
 
 }  // namespace detail
 
-/// Reads a LAS file, version 1.4 with point format 1, 4 or 6 to 9 or version 1.0 with point format 1, and checks all that it says twice:
-/// sizes against the file's length, numbers and bounds in the header against the points, return numbers against their count. Throws
-/// `std::runtime_error` at the first thing that is not so. Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the
-/// writer.
+/// Reads a LAS file, version 1.4 with point format 1, 4 or 6 to 9 or version 1.0 with point format 1, and checks all
+/// that it says twice: sizes against the file's length, numbers and bounds in the header against the points, return
+/// numbers against their count. Throws `std::runtime_error` at the first thing that is not so. Written from the ASPRS
+/// LAS Specification 1.4 R15; shares nothing with the writer.
 [[nodiscard]] inline LasFile read_las(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   detail::las_expect(stream.good(), "cannot be opened");

@@ -29,8 +29,8 @@
 #include "support/detect.hpp"
 #include "support/generators.hpp"
 
-/// The laws of `concepts.hpp` that a compiler cannot check. Each function names the first law that it finds broken, and returns an empty
-/// string if all are kept: `CHECK(support::motion_laws(mirror, ticks) == "");`
+/// The laws of `concepts.hpp` that a compiler cannot check. Each function names the first law that it finds broken, and
+/// returns an empty string if all are kept: `CHECK(support::motion_laws(mirror, ticks) == "");`
 namespace pulsecast::support {
 
 namespace detail {
@@ -43,7 +43,9 @@ template <class... Parts>
   return text.str();
 }
 
-inline bool same(double a, double b) noexcept { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+inline bool same(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 inline bool same(const Vec3& a, const Vec3& b) noexcept { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 inline bool same(const Tick& a, const Tick& b) noexcept { return a.second == b.second && same(a.fraction, b.fraction); }
 
@@ -65,11 +67,13 @@ inline bool same(const Laser& a, const Laser& b) noexcept {
 }
 
 inline bool same(const Emitter& a, const Emitter& b) noexcept {
-  return same(a.laser, b.laser) && same(a.footprint_scale, b.footprint_scale) && a.receiver == b.receiver && a.channel == b.channel;
+  return same(a.laser, b.laser) && same(a.footprint_scale, b.footprint_scale) && a.receiver == b.receiver &&
+         a.channel == b.channel;
 }
 
 inline bool same(const std::vector<Emitter>& a, const std::vector<Emitter>& b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Emitter& x, const Emitter& y) { return same(x, y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Emitter& x, const Emitter& y) { return same(x, y); });
 }
 
 template <class Frame>
@@ -81,8 +85,8 @@ bool same(const std::optional<Pulse<Frame>>& a, const std::optional<Pulse<Frame>
 }
 
 inline bool same(const Echo& a, const Echo& b) noexcept {
-  return same(a.range, b.range) && same(a.amplitude, b.amplitude) && same(a.reflectance, b.reflectance) && same(a.width, b.width) &&
-         a.object == b.object && a.classification == b.classification && a.number == b.number;
+  return same(a.range, b.range) && same(a.amplitude, b.amplitude) && same(a.reflectance, b.reflectance) &&
+         same(a.width, b.width) && a.object == b.object && a.classification == b.classification && a.number == b.number;
 }
 
 template <class From, class To>
@@ -100,7 +104,8 @@ template <class Model, class Answer>
     if (!same(answer(model, k), forwards[k])) return sentence("number ", k, " differs when asked backwards");
   for (std::size_t k = 0; k < n; ++k) {
     const Value once = answer(model, k), twice = answer(model, k);
-    if (!same(once, forwards[k]) || !same(twice, forwards[k])) return sentence("number ", k, " differs when asked twice");
+    if (!same(once, forwards[k]) || !same(twice, forwards[k]))
+      return sentence("number ", k, " differs when asked twice");
   }
   const Model copy = model;  // NOLINT: the copy is what is asked
   for (std::size_t k = 0; k < n; ++k)
@@ -112,13 +117,15 @@ template <class Model, class Answer>
   for (std::size_t k = n; k-- > 0;) back[k] = answer(model, k);
   other.join();
   for (std::size_t k = 0; k < n; ++k)
-    if (!same(there[k], forwards[k]) || !same(back[k], forwards[k])) return sentence("number ", k, " differs when two threads ask");
+    if (!same(there[k], forwards[k]) || !same(back[k], forwards[k]))
+      return sentence("number ", k, " differs when two threads ask");
   return {};
 }
 
 }  // namespace detail
 
-/// A motion in lanes has in each lane the pose and the gate that it has at the lane's tick alone, whatever the other lanes are.
+/// A motion in lanes has in each lane the pose and the gate that it has at the lane's tick alone, whatever the other
+/// lanes are.
 template <class M>
 [[nodiscard]] std::string lane_laws(const M& motion, std::span<const Tick> ticks) {
   if constexpr (MovesInLanes<M>)
@@ -131,7 +138,8 @@ template <class M>
       for (std::size_t lane = 0; lane < simd::lane_count; ++lane) {
         bool is_open = true;
         if constexpr (Gated<M>) is_open = motion.open(tick_of(lane));
-        if (is_open != (open[lane] != 0)) return detail::sentence("the gate in lane ", lane, " differs at ", tick_of(lane).seconds(), " s");
+        if (is_open != (open[lane] != 0))
+          return detail::sentence("the gate in lane ", lane, " differs at ", tick_of(lane).seconds(), " s");
         if (is_open && !detail::same(poses[lane], motion.at(tick_of(lane))))
           return detail::sentence("the pose in lane ", lane, " differs at ", tick_of(lane).seconds(), " s");
       }
@@ -139,11 +147,13 @@ template <class M>
   return {};
 }
 
-/// Same tick, same pose and same gate, bit for bit: forwards, backwards, twice, from a copy, from two threads, in lanes; the rotation is
-/// unit.
+/// Same tick, same pose and same gate, bit for bit: forwards, backwards, twice, from a copy, from two threads, in
+/// lanes; the rotation is unit.
 template <class M>
 [[nodiscard]] std::string motion_laws(const M& motion, std::span<const Tick> ticks) {
-  if (auto broken = detail::purity_laws(motion, ticks.size(), [&](const M& m, std::size_t k) { return m.at(ticks[k]); }); !broken.empty())
+  if (auto broken =
+          detail::purity_laws(motion, ticks.size(), [&](const M& m, std::size_t k) { return m.at(ticks[k]); });
+      !broken.empty())
     return broken;
   if constexpr (Gated<M>) {
     const auto open = [&](const M& m, std::size_t k) { return m.open(ticks[k]) ? 1.0 : 0.0; };
@@ -157,7 +167,8 @@ template <class M>
       const double wait = static_cast<double>(opens.second - t.second) + (opens.fraction - t.fraction);
       for (const double share : {0.0, 0.1, 0.5, 0.9, 0.999999}) {
         const Tick within = t + Tick::of_seconds(share * wait);
-        if (within < opens && motion.open(within)) return detail::sentence("the gate is open before its opening after ", t.seconds(), " s");
+        if (within < opens && motion.open(within))
+          return detail::sentence("the gate is open before its opening after ", t.seconds(), " s");
       }
     }
   for (const Tick& t : ticks)
@@ -165,8 +176,8 @@ template <class M>
   return {};
 }
 
-/// Pure in i, in order of time, rigid, of an emitter in the table. Asks `samples` slots evenly spread over the source and those next to
-/// them.
+/// Pure in i, in order of time, rigid, of an emitter in the table. Asks `samples` slots evenly spread over the source
+/// and those next to them.
 template <class S>
 [[nodiscard]] std::string source_laws(const S& source, std::size_t samples = 200) {
   const PulseIndex size = source.size();
@@ -180,10 +191,12 @@ template <class S>
   std::sort(slots.begin(), slots.end());
   slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
 
-  if (auto broken = detail::purity_laws(source, slots.size(), [&](const S& s, std::size_t k) { return s.pulse(slots[k]); });
+  if (auto broken =
+          detail::purity_laws(source, slots.size(), [&](const S& s, std::size_t k) { return s.pulse(slots[k]); });
       !broken.empty())
     return broken;
-  if (auto broken = detail::purity_laws(source, 1, [](const S& s, std::size_t) { return s.emitters(); }); !broken.empty())
+  if (auto broken = detail::purity_laws(source, 1, [](const S& s, std::size_t) { return s.emitters(); });
+      !broken.empty())
     return "emitters: " + broken;
   const std::vector<Emitter> emitters = source.emitters();
   if (emitters.size() > max_emitters) return detail::sentence("there are ", emitters.size(), " emitters");
@@ -191,9 +204,11 @@ template <class S>
   for (const PulseIndex i : slots) {
     const auto pulse = source.pulse(i);
     if (!pulse) continue;
-    if (pulse->emitter >= emitters.size()) return detail::sentence("pulse ", i, " is of emitter ", pulse->emitter, ", which is not listed");
+    if (pulse->emitter >= emitters.size())
+      return detail::sentence("pulse ", i, " is of emitter ", pulse->emitter, ", which is not listed");
     if (!detail::rigid(pulse->pose)) return detail::sentence("the pose of pulse ", i, " is not rigid");
-    if (!(pulse->tick.fraction >= 0 && pulse->tick.fraction < 1)) return detail::sentence("the tick of pulse ", i, " is not normal");
+    if (!(pulse->tick.fraction >= 0 && pulse->tick.fraction < 1))
+      return detail::sentence("the tick of pulse ", i, " is not normal");
     if (last && pulse->tick < *last) return detail::sentence("time decreases at pulse ", i);
     if (!first) first = pulse->tick;
     last = pulse->tick;
@@ -213,13 +228,16 @@ template <class S>
       const PulseIndex next = source.next_pulse(i);
       if (next < i || next > size) return detail::sentence("the next pulse after ", i, " is ", next);
       for (PulseIndex k = 0; k < 32 && i + k < next; ++k)  // the first, and the last
-        if (source.pulse(i + k) || source.pulse(next - 1 - k)) return detail::sentence("a pulse between ", i, " and ", next, " is skipped");
+        if (source.pulse(i + k) || source.pulse(next - 1 - k))
+          return detail::sentence("a pulse between ", i, " and ", next, " is skipped");
     }
-  if (last && source.duration().seconds() < last->seconds() - first->seconds()) return "pulses leave after the source's duration";
+  if (last && source.duration().seconds() < last->seconds() - first->seconds())
+    return "pulses leave after the source's duration";
   return {};
 }
 
-/// What wraps a source keeps its size, its duration, its ticks and its emitters, and opens no slot that is blocked inside.
+/// What wraps a source keeps its size, its duration, its ticks and its emitters, and opens no slot that is blocked
+/// inside.
 template <class Outer, class Inner>
 [[nodiscard]] std::string wrapped_source_laws(const Outer& outer, const Inner& inner, std::size_t samples = 1000) {
   if (outer.size() != inner.size()) return "the size differs from that of what is inside";
@@ -230,8 +248,10 @@ template <class Outer, class Inner>
     const auto out = outer.pulse(i);
     const auto in = inner.pulse(i);
     if (out && !in) return detail::sentence("slot ", i, " is blocked inside but not outside");
-    if (out && !detail::same(out->tick, in->tick)) return detail::sentence("the tick of pulse ", i, " differs from that inside");
-    if (out && out->emitter != in->emitter) return detail::sentence("the emitter of pulse ", i, " differs from that inside");
+    if (out && !detail::same(out->tick, in->tick))
+      return detail::sentence("the tick of pulse ", i, " differs from that inside");
+    if (out && out->emitter != in->emitter)
+      return detail::sentence("the emitter of pulse ", i, " differs from that inside");
   }
   return {};
 }
@@ -245,8 +265,10 @@ template <class F>
     const double share = footprint.share(j);
     const Vec2 offset = footprint.offset(j);
     if (!(share >= 0)) return detail::sentence("the share of subray ", j, " is ", share);
-    if (!std::isfinite(offset.x) || !std::isfinite(offset.y)) return detail::sentence("the offset of subray ", j, " is not finite");
-    if (!detail::same(copy.share(j), share) || copy.offset(j) != offset) return detail::sentence("a copy differs at subray ", j);
+    if (!std::isfinite(offset.x) || !std::isfinite(offset.y))
+      return detail::sentence("the offset of subray ", j, " is not finite");
+    if (!detail::same(copy.share(j), share) || copy.offset(j) != offset)
+      return detail::sentence("a copy differs at subray ", j);
     sum += share;
   }
   if (!(std::fabs(sum - 1) <= 1e-12L)) return detail::sentence("the shares sum to ", sum);
@@ -259,8 +281,10 @@ inline std::string continuous_laws(std::span<const ContinuousReturn> returns, co
   double before = 0;
   for (const ContinuousReturn& c : returns) {
     if (!(c.begin >= before)) return "continuous returns are not in order";
-    if (!(c.begin < c.end && c.at_begin >= 0 && c.at_end >= 0 && c.power() > 0)) return "a continuous return without light";
-    if (!(c.begin >= gate.near * (1 - 1e-12) && c.end <= gate.far * (1 + 1e-12))) return "a continuous return outside the gate";
+    if (!(c.begin < c.end && c.at_begin >= 0 && c.at_end >= 0 && c.power() > 0))
+      return "a continuous return without light";
+    if (!(c.begin >= gate.near * (1 - 1e-12) && c.end <= gate.far * (1 + 1e-12)))
+      return "a continuous return outside the gate";
     before = c.begin;
     received += c.power();
   }
@@ -268,11 +292,13 @@ inline std::string continuous_laws(std::span<const ContinuousReturn> returns, co
 }
 }  // namespace detail
 
-/// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and continuous returns, which
-/// are inside the gate and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends
-/// neither on the record nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
+/// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and
+/// continuous returns, which are inside the gate and of positive power, no more than there is room for; every subray is
+/// recorded if asked for; the answer depends neither on the record nor on what the workspace was used for before.
+/// Pulses of a wide beam leave with each of the poses.
 template <class T, class Map>
-[[nodiscard]] std::string transport_laws(const T& transport, const Map& map, std::span<const Pose<frame::Beam, frame::World>> poses,
+[[nodiscard]] std::string transport_laws(const T& transport, const Map& map,
+                                         std::span<const Pose<frame::Beam, frame::World>> poses,
                                          const Receiver& receiver = {}) {
   const RingFootprint footprint(3);
   const Emitter emitter{.laser = {.divergence = 0.02}};
@@ -297,18 +323,21 @@ template <class T, class Map>
     const TransportResult r = trace(fresh, reflections, record);
     const EnergyLedger& e = r.energy;
     const double sent = emitter.laser.energy();
-    if (!(std::fabs(e.sent - sent) <= 1e-9 * sent)) return detail::sentence("pulse ", k, ": ", e.sent, " J are sent, not ", sent);
+    if (!(std::fabs(e.sent - sent) <= 1e-9 * sent))
+      return detail::sentence("pulse ", k, ": ", e.sent, " J are sent, not ", sent);
     for (const double term : {e.missed, e.out_of_range, e.absorbed, e.scattered, e.cut, e.received})
       if (!(term >= 0)) return detail::sentence("pulse ", k, ": a term of ", term, " J");
     const double sum = e.missed + e.out_of_range + e.absorbed + e.scattered + e.cut;
-    if (!(std::fabs(sum - sent) <= 1e-6 * sent)) return detail::sentence("pulse ", k, ": the terms sum to ", sum, " J of ", sent);
+    if (!(std::fabs(sum - sent) <= 1e-6 * sent))
+      return detail::sentence("pulse ", k, ": the terms sum to ", sum, " J of ", sent);
     if (!(e.received <= e.scattered)) return detail::sentence("pulse ", k, ": more is received than was scattered");
     if (r.reflections > most || reflections[most].power != -1)
       return detail::sentence("pulse ", k, ": there is no room for its reflections");
     double received = 0;
     for (const Reflection& reflection : std::span(reflections).first(r.reflections)) {
       if (!(reflection.power > 0)) return detail::sentence("pulse ", k, ": a reflection of ", reflection.power, " W");
-      if (!receiver.gate().contains(reflection.range)) return detail::sentence("pulse ", k, ": a reflection outside the gate");
+      if (!receiver.gate().contains(reflection.range))
+        return detail::sentence("pulse ", k, ": a reflection outside the gate");
       received += reflection.power;
     }
     const std::string of_continuous = detail::continuous_laws(r.continuous, receiver.gate(), received);
@@ -325,14 +354,15 @@ template <class T, class Map>
       return detail::same(a.range, b.range) && detail::same(a.power, b.power);
     };
     if (!(again.energy == e) || again.reflections != r.reflections ||
-        !std::equal(reflections.begin(), reflections.begin() + static_cast<std::ptrdiff_t>(r.reflections), others.begin(), equal))
+        !std::equal(reflections.begin(), reflections.begin() + static_cast<std::ptrdiff_t>(r.reflections),
+                    others.begin(), equal))
       return detail::sentence("pulse ", k, ": a used workspace, or no record, gives another answer");
   }
   return {};
 }
 
-/// Laws of a target that `MissesCones`: of a cone that is said to meet nothing, no ray meets anything, whatever its ends. Counts the cones
-/// of which that is said.
+/// Laws of a target that `MissesCones`: of a cone that is said to meet nothing, no ray meets anything, whatever its
+/// ends. Counts the cones of which that is said.
 template <class T>
 requires(Target<T>&& MissesCones<T>) [[nodiscard]] std::string
     cone_laws(const T& target, std::span<const RayCone> cones, std::size_t& missed) {
@@ -342,13 +372,15 @@ requires(Target<T>&& MissesCones<T>) [[nodiscard]] std::string
     if (!target.misses_cone(cone)) continue;
     ++missed;
     for (const double share : {1.0, 0.5}) {
-      RayBundle rays = any.cone(cone.origin, cone.direction, 2 * std::asin(std::min(1.0, share * cone.spread / 2)), RayBundle::capacity);
+      RayBundle rays = any.cone(cone.origin, cone.direction, 2 * std::asin(std::min(1.0, share * cone.spread / 2)),
+                                RayBundle::capacity);
       rays.tick = cone.tick;
       std::array<Hit, RayBundle::capacity> hits;
       find_hits(target, rays, hits);
       for (std::size_t j = 0; j < rays.size; ++j)
         if (hits[j].met())
-          return detail::sentence("cone ", k, ": said to meet nothing, but ray ", j, " meets something at ", hits[j].range);
+          return detail::sentence("cone ", k, ": said to meet nothing, but ray ", j, " meets something at ",
+                                  hits[j].range);
     }
   }
   return {};
@@ -363,11 +395,12 @@ requires(Target<T>&& MissesCones<T>) [[nodiscard]] std::string
   return cones;
 }
 
-/// Echoes ascend in range and are numbered from 1; none is stronger than all that came back together; the answer does not depend on what
-/// the workspace was used for before; who brought nothing back gets nothing, unless the detector listens always. `cases` are what the
-/// subrays of several pulses brought back.
+/// Echoes ascend in range and are numbered from 1; none is stronger than all that came back together; the answer does
+/// not depend on what the workspace was used for before; who brought nothing back gets nothing, unless the detector
+/// listens always. `cases` are what the subrays of several pulses brought back.
 template <class D>
-[[nodiscard]] std::string detector_laws(const D& detector, const Laser& laser, std::span<const std::vector<Reflection>> cases) {
+[[nodiscard]] std::string detector_laws(const D& detector, const Laser& laser,
+                                        std::span<const std::vector<Reflection>> cases) {
   std::size_t subrays = 1;
   for (const auto& c : cases) subrays = std::max(subrays, c.size());
   struct Answer {
@@ -387,17 +420,20 @@ template <class D>
     for (const Reflection& r : cases[k]) power += r.power;
     for (std::size_t e = 0; e < answer.echoes.size(); ++e) {
       const Echo& echo = answer.echoes[e];
-      if (e > 0 && !(answer.echoes[e - 1].range < echo.range)) return detail::sentence("case ", k, ": echoes are not sorted by range");
+      if (e > 0 && !(answer.echoes[e - 1].range < echo.range))
+        return detail::sentence("case ", k, ": echoes are not sorted by range");
       if (echo.number != e + 1) return detail::sentence("case ", k, ": echo ", e, " has number ", int{echo.number});
       if (!ListensAlways<D> && !(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
         return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W came out of ", power, " W");
       if (!(echo.amplitude >= 0)) return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W");
     }
-    if (!ListensAlways<D> && cases[k].empty() && !answer.echoes.empty()) return detail::sentence("case ", k, ": an echo of nothing");
+    if (!ListensAlways<D> && cases[k].empty() && !answer.echoes.empty())
+      return detail::sentence("case ", k, ": an echo of nothing");
     for (int time = 0; time < 2; ++time) {
       const Answer again = detect(cases[k], used);
-      const bool equal = std::equal(answer.echoes.begin(), answer.echoes.end(), again.echoes.begin(), again.echoes.end(),
-                                    [](const Echo& a, const Echo& b) { return detail::same(a, b); });
+      const bool equal =
+          std::equal(answer.echoes.begin(), answer.echoes.end(), again.echoes.begin(), again.echoes.end(),
+                     [](const Echo& a, const Echo& b) { return detail::same(a, b); });
       if (!equal || answer.waveform != again.waveform || !detail::same(answer.start, again.start))
         return detail::sentence("case ", k, ": a used workspace gives another answer");
     }
@@ -405,8 +441,8 @@ template <class D>
   return {};
 }
 
-/// A sink that holds its caller to the law: ascending pulse order, one call at a time, batches that are whole in themselves.
-/// It also sums up all that it was given.
+/// A sink that holds its caller to the law: ascending pulse order, one call at a time, batches that are whole in
+/// themselves. It also sums up all that it was given.
 class LawfulSink {
  public:
   void operator()(const EchoBatch& batch) {
@@ -438,9 +474,12 @@ class LawfulSink {
       if (!first_) first_ = s.index;
       last_ = s.index;
       if (!(std::fabs(length(s.direction) - 1) <= 1e-12)) break_law("a direction is not unit");
-      if ((s.fate == Fate::returned) != (s.echoes > 0)) break_law(detail::sentence("the fate of pulse ", s.index, " belies its echoes"));
-      if (s.echoes > 0 && s.first_echo != next_echo) break_law(detail::sentence("echoes before those of pulse ", s.index, " are nobody's"));
-      if (s.samples > 0 && s.first_sample != next_sample) break_law(detail::sentence("samples before pulse ", s.index, " are nobody's"));
+      if ((s.fate == Fate::returned) != (s.echoes > 0))
+        break_law(detail::sentence("the fate of pulse ", s.index, " belies its echoes"));
+      if (s.echoes > 0 && s.first_echo != next_echo)
+        break_law(detail::sentence("echoes before those of pulse ", s.index, " are nobody's"));
+      if (s.samples > 0 && s.first_sample != next_sample)
+        break_law(detail::sentence("samples before pulse ", s.index, " are nobody's"));
       next_echo += s.echoes;
       next_sample += s.samples;
       if (next_echo > batch.echoes.size() || next_sample > batch.samples.size()) {
@@ -449,13 +488,16 @@ class LawfulSink {
       }
       const auto echoes = batch.echoes_of(s);
       for (std::size_t e = 0; e < echoes.size(); ++e) {
-        if (echoes[e].number != e + 1) break_law(detail::sentence("the echoes of pulse ", s.index, " are not numbered from 1"));
-        if (e > 0 && echoes[e].range < echoes[e - 1].range) break_law(detail::sentence("the echoes of pulse ", s.index, " are not sorted"));
+        if (echoes[e].number != e + 1)
+          break_law(detail::sentence("the echoes of pulse ", s.index, " are not numbered from 1"));
+        if (e > 0 && echoes[e].range < echoes[e - 1].range)
+          break_law(detail::sentence("the echoes of pulse ", s.index, " are not sorted"));
       }
       ++shots_;
       echoes_ += s.echoes;
     }
-    if (next_echo != batch.echoes.size() || next_sample != batch.samples.size()) break_law("echoes or samples are left over");
+    if (next_echo != batch.echoes.size() || next_sample != batch.samples.size())
+      break_law("echoes or samples are left over");
   }
 
   void break_law(std::string what) {
@@ -500,10 +542,11 @@ template <class Survey, class WorkspaceOf>
 
 }  // namespace detail
 
-/// Results are those of trajectory, map and clock as they are, whatever they were in the calls before: each of these may change between
-/// runs. Memory that is kept, by an executor or in a workspace, gives the bytes that fresh memory gives, for steps of 1, 3 and 1,667 slots:
-/// in order, the same ones twice, backwards, with gaps, and every third one. `change(k)` makes all that the survey refers to other than
-/// with any other k. The survey has at least 5,001 slots, and echoes from all of them.
+/// Results are those of trajectory, map and clock as they are, whatever they were in the calls before: each of these
+/// may change between runs. Memory that is kept, by an executor or in a workspace, gives the bytes that fresh memory
+/// gives, for steps of 1, 3 and 1,667 slots: in order, the same ones twice, backwards, with gaps, and every third one.
+/// `change(k)` makes all that the survey refers to other than with any other k. The survey has at least 5,001 slots,
+/// and echoes from all of them.
 template <PulseSurvey Survey, class Change>
 [[nodiscard]] std::string change_laws(const Survey& survey, const Change& change) {
   ThreadPool pool(2);
@@ -514,7 +557,8 @@ template <PulseSurvey Survey, class Change>
   struct Place {
     PulseIndex place, stride;
   };
-  constexpr std::array places = std::to_array<Place>({{0, 1}, {2, 1}, {2, 1}, {1, 1}, {0, 3}, {1, 1}, {0, 1}, {4, 1}, {7, 1}});
+  constexpr std::array places =
+      std::to_array<Place>({{0, 1}, {2, 1}, {2, 1}, {1, 1}, {0, 3}, {1, 1}, {0, 1}, {4, 1}, {7, 1}});
   for (const PulseIndex step : {1U, 3U, 1667U})
     for (const Place at : std::span(places).first(step == 1667 ? 5 : places.size())) {
       change(++k);
@@ -530,7 +574,8 @@ template <PulseSurvey Survey, class Change>
           });
       const auto differs = [&](const char* what, const std::string& sum) {
         return sum == expected ? std::string{}
-                               : detail::sentence(step, " slots from ", first, " on, change ", k, ": ", what, " gives what was before");
+                               : detail::sentence(step, " slots from ", first, " on, change ", k, ": ", what,
+                                                  " gives what was before");
       };
       const auto run_with = [&](ExecutorRef executor, unsigned threads) {
         RunOptions options = part;
@@ -540,10 +585,11 @@ template <PulseSurvey Survey, class Change>
         run(survey, options, sink);
         return sink.broken() + sink.checksum();
       };
-      for (const std::string& broken : {differs("a run on one thread", run_with({}, 1)), differs("a run on a pool", run_with(pool, 0)),
-                                        differs("a run on an executor of one's own", run_with(own, 0)),
-                                        differs("a kept workspace", detail::checksum_of_calls(
-                                                                        survey, slots, [&]() -> auto& { return kept; }))})
+      for (const std::string& broken :
+           {differs("a run on one thread", run_with({}, 1)), differs("a run on a pool", run_with(pool, 0)),
+            differs("a run on an executor of one's own", run_with(own, 0)),
+            differs("a kept workspace", detail::checksum_of_calls(
+                                            survey, slots, [&]() -> auto& { return kept; }))})
         if (!broken.empty()) return broken;
       if constexpr (SimulatesInOrder<Survey>) {
         Checksum sum;

@@ -14,8 +14,9 @@
 #include <utility>
 #include <vector>
 
-/// Reads what is compressed as LASzip does it. Plain and slow, written for the tests and checked by files that foreign decoders read alike;
-/// shares nothing with the writer. Throws `std::runtime_error` at the first thing that is not as it should be.
+/// Reads what is compressed as LASzip does it. Plain and slow, written for the tests and checked by files that foreign
+/// decoders read alike; shares nothing with the writer. Throws `std::runtime_error` at the first thing that is not as
+/// it should be.
 namespace pulsecast::support {
 
 namespace detail {
@@ -206,7 +207,8 @@ class LazClock {
   [[nodiscard]] std::uint64_t decode(LazDecoder& decoder) {
     Series& s = series_[now_];
     const auto go_on = [&](std::int64_t expected, unsigned context) {
-      const auto step = static_cast<std::int32_t>(static_cast<std::uint32_t>(numbers_.decode(decoder, expected, context)));
+      const auto step =
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(numbers_.decode(decoder, expected, context)));
       s.last += static_cast<std::uint64_t>(std::int64_t{step});
       return step;
     };
@@ -276,22 +278,23 @@ struct LazReadChunk {
 namespace detail {
 
 /// What a number of returns and a return number share with others, by both.
-inline constexpr std::array<std::array<int, 16>, 16> laz_return_kinds{{{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
-                                                                       {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
-                                                                       {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
-                                                                       {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {4, 3, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {5, 3, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {3, 3, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {4, 3, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {4, 3, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4},
-                                                                       {5, 3, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4},
-                                                                       {5, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4},
-                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 4, 4, 4},
-                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4, 4},
-                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4},
-                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5},
-                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5}}};
+inline constexpr std::array<std::array<int, 16>, 16> laz_return_kinds{
+    {{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
+     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
+     {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
+     {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+     {4, 3, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+     {5, 3, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+     {3, 3, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+     {4, 3, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4},
+     {4, 3, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4},
+     {5, 3, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4},
+     {5, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4},
+     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 4, 4, 4},
+     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4, 4},
+     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4},
+     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5},
+     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5}}};
 
 /// Reader of one chunk: all that is learnt is kept by channel and by what it depends on.
 class LazChunkReader {
@@ -357,12 +360,14 @@ class LazChunkReader {
             .new_time = false};
   }
 
-  std::int64_t symbol(std::size_t layer, std::size_t symbols, const std::string& what, std::int64_t channel, std::int64_t context) {
-    return static_cast<std::int64_t>(decoders_[layer].decode(shares_.try_emplace({what, channel, context}, symbols).first->second));
+  std::int64_t symbol(std::size_t layer, std::size_t symbols, const std::string& what, std::int64_t channel,
+                      std::int64_t context) {
+    return static_cast<std::int64_t>(
+        decoders_[layer].decode(shares_.try_emplace({what, channel, context}, symbols).first->second));
   }
 
-  std::int64_t number(std::size_t layer, unsigned bits, const std::string& what, std::int64_t expected, std::int64_t context,
-                      unsigned* length = nullptr) {
+  std::int64_t number(std::size_t layer, unsigned bits, const std::string& what, std::int64_t expected,
+                      std::int64_t context, unsigned* length = nullptr) {
     LazNumbers& n = numbers_.try_emplace({what, p_.channel}, bits).first->second;
     const std::int64_t value = n.decode(decoders_[layer], expected, static_cast<unsigned>(context));
     if (length != nullptr) *length = n.length;
@@ -396,7 +401,8 @@ class LazChunkReader {
     } else if (how == 2) {
       p_.r = (before.r + 15) % 16;
     } else if (how == 3) {
-      p_.r = p_.new_time ? symbol(0, 16, "r", p_.channel, before.r) : (before.r + 2 + symbol(0, 13, "r, same time", p_.channel, 0)) % 16;
+      p_.r = p_.new_time ? symbol(0, 16, "r", p_.channel, before.r)
+                         : (before.r + 2 + symbol(0, 13, "r, same time", p_.channel, 0)) % 16;
     }
   }
 
@@ -448,7 +454,8 @@ class LazChunkReader {
     const std::size_t begin = 9 + layers_of_colour();
     for (std::size_t k = 0; k + colour_ < extras.size(); ++k)
       if (chunk_.layers[begin + k] > 0)
-        extras[colour_ + k] = static_cast<char>(extras[colour_ + k] + symbol(begin + k, 256, "extra " + std::to_string(k), told, 0));
+        extras[colour_ + k] =
+            static_cast<char>(extras[colour_ + k] + symbol(begin + k, 256, "extra " + std::to_string(k), told, 0));
     const auto put = [&](std::uint64_t value, int n) {
       for (; n > 0; --n, value >>= 8) chunk_.records.push_back(static_cast<char>(value));
     };
@@ -511,9 +518,10 @@ class LazChunkReader {
 
 }  // namespace detail
 
-/// Reads the chunk that begins at some byte, with records of so many bytes, `colour` of them for a colour: 0, 6 and 8 with the point
-/// formats 6, 7 and 8.
-[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record, std::size_t colour = 0) {
+/// Reads the chunk that begins at some byte, with records of so many bytes, `colour` of them for a colour: 0, 6 and 8
+/// with the point formats 6, 7 and 8.
+[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record,
+                                                 std::size_t colour = 0) {
   return detail::LazChunkReader(bytes, at, record, colour).read();
 }
 
@@ -534,17 +542,22 @@ inline void check_laz_record(const std::string& bytes, std::size_t at, std::uint
   laz_expect(laz_whole(bytes, d + 8, 4) == 0 && laz_whole(bytes, d + 12, 4) == chunk, "options and points of a chunk");
   laz_expect(laz_whole(bytes, d + 32, 2) == items, "number of items");
   laz_expect(laz_whole(bytes, d + 34, 6) == 10 + (30ULL << 16) + (3ULL << 32), "POINT14, version 3");
-  if (colour > 0) laz_expect(laz_whole(bytes, d + 40, 6) == 4 + format + (colour << 16) + (3ULL << 32), "RGB14 or RGBNIR14, version 3");
-  laz_expect(laz_whole(bytes, d + 28 + 6 * items, 6) == 14 + ((record - 30 - colour) << 16) + (3ULL << 32), "BYTE14, version 3");
+  if (colour > 0)
+    laz_expect(laz_whole(bytes, d + 40, 6) == 4 + format + (colour << 16) + (3ULL << 32),
+               "RGB14 or RGBNIR14, version 3");
+  laz_expect(laz_whole(bytes, d + 28 + 6 * items, 6) == 14 + ((record - 30 - colour) << 16) + (3ULL << 32),
+             "BYTE14, version 3");
 }
 
-/// Reads a LAZ file of point formats 6 to 8, and checks what it says of its compression: record, chunk table, places and sizes.
+/// Reads a LAZ file of point formats 6 to 8, and checks what it says of its compression: record, chunk table, places
+/// and sizes.
 [[nodiscard]] inline LazFile read_laz(const std::string& bytes) {
   using detail::laz_expect;
   using detail::laz_whole;
   const std::size_t format = laz_whole(bytes, 104, 1) - 128, colour = format == 7 ? 6 : format == 8 ? 8 : 0;
   laz_expect(bytes.substr(0, 4) == "LASF" && format >= 6 && format <= 8, "signature and point format");
-  const std::size_t record = laz_whole(bytes, 105, 2), begin = laz_whole(bytes, 96, 4), descriptors = laz_whole(bytes, 100, 4);
+  const std::size_t record = laz_whole(bytes, 105, 2), begin = laz_whole(bytes, 96, 4),
+                    descriptors = laz_whole(bytes, 100, 4);
   LazFile file;
   file.las = bytes.substr(0, 375);
   std::size_t at = 375, described = 0;

@@ -45,7 +45,9 @@ struct Traced {
     for (const ContinuousReturn& r : continuous) {
       const double begin = std::max(from, r.begin), end = std::min(to, r.end);
       if (r.kind != kind || !(begin < end)) continue;
-      const auto density = [&](double range) { return r.at_begin + (range - r.begin) / (r.end - r.begin) * (r.at_end - r.at_begin); };
+      const auto density = [&](double range) {
+        return r.at_begin + (range - r.begin) / (r.end - r.begin) * (r.at_end - r.at_begin);
+      };
       const double a = density(begin), b = density(end), power = 0.5 * (a + b) * (end - begin);
       sum.power += power;
       sum.mean += power * (begin + (end - begin) * (a + 2 * b) / (3 * (a + b)));
@@ -89,8 +91,8 @@ struct Lamp {
 
 /// One pulse through a transport, with a workspace of it.
 template <bool with_velocity = false, class Light, class Map, class Pattern>
-[[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose, const Pattern& footprint,
-                            const Lamp& lamp, typename Light::Workspace& w) {
+[[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose,
+                            const Pattern& footprint, const Lamp& lamp, typename Light::Workspace& w) {
   const Emitter emitter{.laser = lamp.laser};
   const SubrayDirections beam(footprint, emitter);
   const LinkBudget budget(lamp.receiver, lamp.laser);
@@ -100,7 +102,8 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   WhiteTarget white;
   Traced all;
   all.reflections.resize(transport.reflections(footprint.size()));
-  const Illumination light{pulse, lamp.index, lamp.seed, emitter, beam, footprint.size(), budget, white, lamp.receiver.gate()};
+  const Illumination light{pulse,  lamp.index, lamp.seed,           emitter, beam, footprint.size(),
+                           budget, white,      lamp.receiver.gate()};
   if constexpr (with_velocity)
     all.result = transport.template trace<true>(map, light, w, all.reflections);
   else
@@ -112,8 +115,8 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
 }
 /// As above, with a workspace of its own.
 template <bool with_velocity = false, class Light, class Map, class Pattern>
-[[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose, const Pattern& footprint,
-                            const Lamp& lamp = {}) {
+[[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose,
+                            const Pattern& footprint, const Lamp& lamp = {}) {
   auto w = transport.workspace(footprint.size());
   return traced<with_velocity>(transport, map, pose, footprint, lamp, w);
 }
@@ -121,11 +124,13 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
 using LightScene = Scene<TriangleMesh<>>;
 
 /// A plane rectangle about a point, between two half sides [m].
-[[nodiscard]] inline LightScene::Part rectangle(const Vec3& centre, const Vec3& right, const Vec3& up, Material material,
-                                                ObjectId object = 0) {
+[[nodiscard]] inline LightScene::Part rectangle(const Vec3& centre, const Vec3& right, const Vec3& up,
+                                                Material material, ObjectId object = 0) {
   const MeshData mesh{.vertices = {centre - right - up, centre + right - up, centre + right + up, centre - right + up},
                       .triangles = {{0, 1, 2}, {0, 2, 3}}};
-  return {.geometry = std::make_shared<const TriangleMesh<>>(mesh), .materials = material_table({std::move(material)}), .object = object};
+  return {.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+          .materials = material_table({std::move(material)}),
+          .object = object};
 }
 
 /// A material that scatters nothing and passes light on.

@@ -16,7 +16,8 @@
 
 namespace pulsecast::support {
 
-/// A connection to a port of 127.0.0.1, for those who test what servers make of bytes. No call of it waits longer than 20 s.
+/// A connection to a port of 127.0.0.1, for those who test what servers make of bytes. No call of it waits longer than
+/// 20 s.
 class Client {
  public:
   explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {

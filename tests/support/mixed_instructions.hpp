@@ -33,13 +33,14 @@ namespace {
 /// Answer of the file that includes this one. The namespace has no name, so that each file has a function of its own.
 [[nodiscard, maybe_unused]] AnswerOfFile answer_of_this_file() {
   using Mesh = TriangleMesh<>;
-  using Intersect =
-      void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&, const SolidEverywhere&) noexcept;
+  using Intersect = void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&,
+                         const SolidEverywhere&) noexcept;
   MeshData ridge;
   for (std::uint32_t i = 0; i < 60; ++i) {
     const double x = 2.0 * i - 60, height = 3 * (i % 7) + 0.25 * (i % 3);
     ridge.vertices.insert(ridge.vertices.end(), {{x, -80, height}, {x, 80, 0.5 * height}});
-    if (i > 0) ridge.triangles.insert(ridge.triangles.end(), {{2 * i - 2, 2 * i, 2 * i - 1}, {2 * i - 1, 2 * i, 2 * i + 1}});
+    if (i > 0)
+      ridge.triangles.insert(ridge.triangles.end(), {{2 * i - 2, 2 * i, 2 * i - 1}, {2 * i - 1, 2 * i, 2 * i + 1}});
   }
   const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 12.5};
   const Scene<Mesh> scene({{.geometry = std::make_shared<const Mesh>(ridge), .materials = material_table({glossy})}});
@@ -49,17 +50,20 @@ namespace {
                           Deflector{OscillatingMirror{.cycles_per_second = 20, .half_angle = 0.3},
                                     Scanner{.pulse_rate = 1000, .pulses = 2000, .laser = laser}}};
   std::vector<double> numbers;
-  const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{WaveformSettings{}, GaussianFit{}}};
+  const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{},
+                      FullWaveform{WaveformSettings{}, GaussianFit{}}};
   run(survey, {.threads = 1}, [&](const EchoBatch& batch) {
     for (const Echo& echo : batch.echoes)
       numbers.insert(numbers.end(), {echo.range, echo.amplitude, echo.width, echo.reflectance, echo.cos_incidence});
   });
   const Pose<frame::Instrument, frame::World> pose{extrinsic({{axis::up, 0.3}, {axis::right, -1.1}}), {1, 2, 3}};
-  for (const Rotation& r : {pose.rotation, no_rotation, aimed_at(0.4, 0.2).rotation, rotation_of(matrix_of(pose.rotation))})
+  for (const Rotation& r :
+       {pose.rotation, no_rotation, aimed_at(0.4, 0.2).rotation, rotation_of(matrix_of(pose.rotation))})
     numbers.insert(numbers.end(), {r.w, r.x, r.y, r.z, (r * axis::forward).x, (r * axis::forward).z});
-  AnswerOfFile answer{std::make_unique<double[]>(numbers.size()), numbers.size(),
-                      reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>)),
-                      typeid(pose).name()};
+  AnswerOfFile answer{
+      std::make_unique<double[]>(numbers.size()), numbers.size(),
+      reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>)),
+      typeid(pose).name()};
   std::copy(numbers.begin(), numbers.end(), answer.numbers.get());
   return answer;
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Compiled with settings of GLM and of the standard library that no other file has: containers of another size, and such as change
-// nothing here. Quaternions in another order do not link: package/settings.
+// Compiled with settings of GLM and of the standard library that no other file has: containers of another size, and
+// such as change nothing here. Quaternions in another order do not link: package/settings.
 #define GLM_FORCE_DEFAULT_ALIGNED_GENTYPES
 #define GLM_FORCE_EXPLICIT_CTOR
 #define GLM_FORCE_LEFT_HANDED

@@ -29,7 +29,9 @@ class SharedFolder {
   }
   ~SharedFolder() { (void)mpi_group().channel().gather(0); }
 
-  [[nodiscard]] friend std::filesystem::path operator/(const SharedFolder& folder, std::string_view name) { return folder.path_ / name; }
+  [[nodiscard]] friend std::filesystem::path operator/(const SharedFolder& folder, std::string_view name) {
+    return folder.path_ / name;
+  }
 
  private:
   std::optional<TemporaryFolder> own_;

@@ -18,12 +18,14 @@
 #include "support/mpi_group.hpp"
 #include "support/temporary_folder.hpp"
 
-// Tests that run as they are, in one process, and under mpirun in several, all of which do all of them and must find the same.
+// Tests that run as they are, in one process, and under mpirun in several, all of which do all of them and must find
+// the same.
 namespace pulsecast::support {
 
 using mpi::MpiOutput;
 
-/// Pulses that bring back something by their number alone: nothing for a long time, then up to three echoes, with waveforms.
+/// Pulses that bring back something by their number alone: nothing for a long time, then up to three echoes, with
+/// waveforms.
 struct Showers {
   struct Workspace {
     std::vector<Echo> echoes;
@@ -53,7 +55,8 @@ struct Showers {
                           .classification = static_cast<std::uint16_t>(bits(50, 9)),
                           .number = static_cast<std::uint8_t>(k + 1)});
     if (echoes > 0)
-      for (std::size_t s = 0; s < samples; ++s) w.waveform.push_back(1e-9F * static_cast<float>((s * 7 + bits(33, 100)) % 50));
+      for (std::size_t s = 0; s < samples; ++s)
+        w.waveform.push_back(1e-9F * static_cast<float>((s * 7 + bits(33, 100)) % 50));
     Outcome outcome{};
     outcome.shot = {.index = i,
                     .tick = Tick::of(i, 1e5),
@@ -75,7 +78,8 @@ struct Showers {
 
 /// A file as one process writes it, and as all do.
 template <class Survey>
-void require_same_bytes(const Survey& survey, const std::string& name, const std::function<void(const std::filesystem::path&)>& alone,
+void require_same_bytes(const Survey& survey, const std::string& name,
+                        const std::function<void(const std::filesystem::path&)>& alone,
                         const std::function<std::unique_ptr<MpiOutput>(const std::filesystem::path&)>& shared,
                         const std::vector<std::string>& endings) {
   for (const unsigned threads : {1U, 2U}) {
@@ -94,7 +98,9 @@ void require_same_bytes(const Survey& survey, const std::string& name, const std
     if (!mpi_group().first()) continue;
     INFO(name, ", ", mpi_group().size(), " processes, ", threads, " threads");
     for (const std::string& ending : endings) {
-      const auto with = [&](std::filesystem::path path) { return ending.empty() ? path : path.replace_extension(ending); };
+      const auto with = [&](std::filesystem::path path) {
+        return ending.empty() ? path : path.replace_extension(ending);
+      };
       const std::string expected = content(with(one));
       CHECK(expected.size() > 1000);
       CHECK((content(with(all)) == expected));

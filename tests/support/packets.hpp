@@ -43,7 +43,8 @@ struct PacketKeeper {
 
   void operator()(const io::SensorPacket& packet) {
     packets.push_back({packet.time, packet.port, {packet.payload.begin(), packet.payload.end()}});
-    if (std::find(places.begin(), places.end(), packet.payload.data()) == places.end()) places.push_back(packet.payload.data());
+    if (std::find(places.begin(), places.end(), packet.payload.data()) == places.end())
+      places.push_back(packet.payload.data());
   }
 };
 
@@ -52,7 +53,9 @@ struct SensorEchoes {
   std::vector<Shot> shots{};
   std::vector<Echo> echoes{};
 
-  [[nodiscard]] std::span<const Echo> of(const Shot& shot) const { return {echoes.data() + shot.first_echo, shot.echoes}; }
+  [[nodiscard]] std::span<const Echo> of(const Shot& shot) const {
+    return {echoes.data() + shot.first_echo, shot.echoes};
+  }
 
   /// Appends the shot of a slot, whose echoes have these ranges, each weaker than the one before.
   void add(const SpinningSource& source, PulseIndex slot, const std::vector<double>& ranges) {
@@ -64,11 +67,13 @@ struct SensorEchoes {
                      .first_echo = static_cast<std::uint32_t>(echoes.size()),
                      .echoes = static_cast<std::uint32_t>(ranges.size())});
     double amplitude = 1e-6;
-    for (const double range : ranges) echoes.push_back({.range = range, .amplitude = amplitude *= 0.5, .reflectance = 0.5});
+    for (const double range : ranges)
+      echoes.push_back({.range = range, .amplitude = amplitude *= 0.5, .reflectance = 0.5});
   }
 
   /// Slots of a source with up to so many echoes each. Some slots are empty, and some are left out, also many in a row.
-  [[nodiscard]] static SensorEchoes any(const SpinningSource& source, PulseIndex first, PulseIndex end, std::size_t most, Generator& any) {
+  [[nodiscard]] static SensorEchoes any(const SpinningSource& source, PulseIndex first, PulseIndex end,
+                                        std::size_t most, Generator& any) {
     SensorEchoes all;
     for (PulseIndex slot = first; slot < end; ++slot) {
       if (any.whole(2000) == 0) slot += any.whole(2000);

@@ -41,7 +41,8 @@ namespace pulsecast::support {
     data.remove_prefix(block.size());
     const auto size = static_cast<std::uint32_t>(block.size());
     stream += static_cast<char>(data.empty() ? 1 : 0);
-    for (const std::uint32_t number : {size, ~size}) stream += {static_cast<char>(number & 255U), static_cast<char>(number >> 8 & 255U)};
+    for (const std::uint32_t number : {size, ~size})
+      stream += {static_cast<char>(number & 255U), static_cast<char>(number >> 8 & 255U)};
     stream += block;
   } while (!data.empty());
   return stream + big_endian(b << 16 | a);

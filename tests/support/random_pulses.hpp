@@ -30,14 +30,15 @@ struct RandomPulses {
                        .first_echo = static_cast<std::uint32_t>(echoes.size()),
                        .echoes = returned});
       for (std::uint32_t e = 0; e < returned; ++e)
-        echoes.push_back({.range = random.log_uniform(1e-3, 1e6),
-                          .amplitude = random.log_uniform(1e-12, 1),
-                          .reflectance = random.log_uniform(1e-6, 1e3),
-                          .width = random.coin() ? random.log_uniform(1e-12, 1e-6) : std::numeric_limits<double>::quiet_NaN(),
-                          .object = static_cast<ObjectId>(random.whole(std::uint64_t{1} << 32)),
-                          .classification = static_cast<std::uint16_t>(random.whole(1 << 16)),
-                          .number = static_cast<std::uint8_t>(e + 1),
-                          .velocity = random.coin() ? random.normal() : std::numeric_limits<double>::quiet_NaN()});
+        echoes.push_back(
+            {.range = random.log_uniform(1e-3, 1e6),
+             .amplitude = random.log_uniform(1e-12, 1),
+             .reflectance = random.log_uniform(1e-6, 1e3),
+             .width = random.coin() ? random.log_uniform(1e-12, 1e-6) : std::numeric_limits<double>::quiet_NaN(),
+             .object = static_cast<ObjectId>(random.whole(std::uint64_t{1} << 32)),
+             .classification = static_cast<std::uint16_t>(random.whole(1 << 16)),
+             .number = static_cast<std::uint8_t>(e + 1),
+             .velocity = random.coin() ? random.normal() : std::numeric_limits<double>::quiet_NaN()});
     }
   }
 

@@ -6,7 +6,10 @@
 
 namespace pulsecast::support {
 
-/// Equal to within a share of its size. (doctest's own Approx adds 1 to the size: it takes all numbers far below 1 for equal.)
-[[nodiscard]] inline doctest::Approx relative(double value, double share) { return doctest::Approx(value).epsilon(share).scale(0); }
+/// Equal to within a share of its size. (doctest's own Approx adds 1 to the size: it takes all numbers far below 1 for
+/// equal.)
+[[nodiscard]] inline doctest::Approx relative(double value, double share) {
+  return doctest::Approx(value).epsilon(share).scale(0);
+}
 
 }  // namespace pulsecast::support

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// Defines PULSECAST_TEST_SANITIZED under the address and thread sanitizers, which need address space of their own, and no threads in a
-/// child.
+/// Defines PULSECAST_TEST_SANITIZED under the address and thread sanitizers, which need address space of their own, and
+/// no threads in a child.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PULSECAST_TEST_SANITIZED
 #elif defined(__has_feature)

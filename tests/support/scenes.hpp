@@ -156,26 +156,30 @@ template <class Height>
                        {-t, 0, -1},
                        {-t, 0, 1}})
     mesh.vertices.push_back(normalize(v));
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                    {3, 9, 4},  {3, 4, 2}, {3, 2, 6}, {3, 6, 8},  {3, 8, 9},   {4, 9, 5}, {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> halves;
     const auto half = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [found, made] = halves.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
+      const auto [found, made] =
+          halves.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
       if (made) mesh.vertices.push_back(normalize(mesh.vertices[a] + mesh.vertices[b]));
       return found->second;
     };
     std::vector<Corners> finer;
     for (const auto& [a, b, c] : mesh.triangles) {
       const std::uint32_t ab = half(a, b), bc = half(b, c), ca = half(c, a);
-      for (const Corners& quarter : {Corners{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) finer.push_back(quarter);
+      for (const Corners& quarter : {Corners{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}})
+        finer.push_back(quarter);
     }
     mesh.triangles = std::move(finer);
   }
   return mesh;
 }
 
-/// A closed block of ground: bumpy above, flat below, of cells x cells squares of side 1 and of heights in [1, 2] over its floor at z = -5.
+/// A closed block of ground: bumpy above, flat below, of cells x cells squares of side 1 and of heights in [1, 2] over
+/// its floor at z = -5.
 [[nodiscard]] inline MeshData block(Generator& random, std::uint32_t cells) {
   MeshData mesh = net(cells, [&](std::uint32_t, std::uint32_t) { return random.uniform(1, 2); });
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -221,8 +225,8 @@ template <class Height>
   return t.a + (t.b - t.a) * u + (t.c - t.a) * v;
 }
 
-/// A bundle of every kind that there is: narrow and wide, near and far, along an axis, aimed at corners and edges, cut off before and
-/// behind, with directions of any length, and now and then with a ray that is not a number.
+/// A bundle of every kind that there is: narrow and wide, near and far, along an axis, aimed at corners and edges, cut
+/// off before and behind, with directions of any length, and now and then with a ray that is not a number.
 [[nodiscard]] inline RayBundle bundle(Generator& random, const MeshData& mesh, const Box& bounds, std::size_t size) {
   const Vec3 half = bounds.size() * 0.5;
   const double reach = max_norm(half);
@@ -267,21 +271,23 @@ struct Comparison {
 
 /// Asks two geometries for the same bundle, and counts the rays whose answers differ in any bit.
 template <Geometry Believed, Geometry Other>
-void compare(const Believed& believed, const Other& other, const char* name, const RayBundle& rays, Comparison& result) {
+void compare(const Believed& believed, const Other& other, const char* name, const RayBundle& rays,
+             Comparison& result) {
   ClosestHits expected(rays), found(rays);
   believed.closest(rays, expected);
   other.closest(rays, found);
   for (std::size_t j = 0; j < rays.size; ++j) {
     ++result.rays;
     result.met += expected.met(j) ? 1 : 0;
-    if (std::bit_cast<std::uint64_t>(expected.range[j]) == std::bit_cast<std::uint64_t>(found.range[j]) && expected.id[j] == found.id[j])
+    if (std::bit_cast<std::uint64_t>(expected.range[j]) == std::bit_cast<std::uint64_t>(found.range[j]) &&
+        expected.id[j] == found.id[j])
       continue;
     if (++result.different > 1) continue;
     std::ostringstream text;
     text.precision(17);
-    text << name << ": ray " << j << " of " << rays.size << " from " << rays.origin.x << ' ' << rays.origin.y << ' ' << rays.origin.z
-         << " along " << rays.x[j] << ' ' << rays.y[j] << ' ' << rays.z[j] << " met " << found.id[j] << " at " << found.range[j]
-         << " instead of " << expected.id[j] << " at " << expected.range[j];
+    text << name << ": ray " << j << " of " << rays.size << " from " << rays.origin.x << ' ' << rays.origin.y << ' '
+         << rays.origin.z << " along " << rays.x[j] << ' ' << rays.y[j] << ' ' << rays.z[j] << " met " << found.id[j]
+         << " at " << found.range[j] << " instead of " << expected.id[j] << " at " << expected.range[j];
     result.first = text.str();
   }
 }
@@ -301,12 +307,14 @@ template <Geometry G>
   RayBundle rays;
   rays.origin = origin;
   rays.size = 8;
-  for (std::size_t j = 0; j < 8; ++j) rays.set_direction(j, normalize(Vec3{j & 1 ? 1.0 : -1.0, j & 2 ? 1.0 : -1.0, j & 4 ? 1.0 : -1.0}));
+  for (std::size_t j = 0; j < 8; ++j)
+    rays.set_direction(j, normalize(Vec3{j & 1 ? 1.0 : -1.0, j & 2 ? 1.0 : -1.0, j & 4 ? 1.0 : -1.0}));
   rays.pad();
   return rays;
 }
 
-/// How often a tree offers each of n primitives to rays that reach everything; `largest` is set to the most offered at once.
+/// How often a tree offers each of n primitives to rays that reach everything; `largest` is set to the most offered at
+/// once.
 template <Accelerator A>
 [[nodiscard]] std::vector<std::size_t> offers(const A& tree, std::size_t n, std::size_t& largest) {
   std::vector<std::size_t> count(n);
@@ -337,8 +345,8 @@ template <Accelerator A, class Change>
   return tree;
 }
 
-/// Small boxes that crowd at the origin, each a fraction of the size and distance of the one before, on both sides: a build that cuts
-/// space evenly peels them off one by one.
+/// Small boxes that crowd at the origin, each a fraction of the size and distance of the one before, on both sides: a
+/// build that cuts space evenly peels them off one by one.
 [[nodiscard]] inline std::vector<Box> crowd(std::size_t n, double fraction) {
   std::vector<Box> boxes;
   double x = 1;

@@ -10,8 +10,10 @@
 
 namespace pulsecast::support {
 
-/// A text that was spoilt so many times: bytes are changed, lost, doubled or cut off, and words come in that may mean something there.
-[[nodiscard]] inline std::string spoilt(std::string text, std::size_t times, std::span<const char* const> words, Generator& random) {
+/// A text that was spoilt so many times: bytes are changed, lost, doubled or cut off, and words come in that may mean
+/// something there.
+[[nodiscard]] inline std::string spoilt(std::string text, std::size_t times, std::span<const char* const> words,
+                                        Generator& random) {
   const auto draw = [&random](std::size_t below) { return static_cast<std::size_t>(random.whole(below)); };
   for (; times > 0 && !text.empty(); --times) {
     const std::size_t at = draw(text.size());

@@ -29,12 +29,15 @@ class TemporaryFolder {
   }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  [[nodiscard]] friend std::filesystem::path operator/(const TemporaryFolder& folder, std::string_view name) { return folder.path_ / name; }
+  [[nodiscard]] friend std::filesystem::path operator/(const TemporaryFolder& folder, std::string_view name) {
+    return folder.path_ / name;
+  }
   [[nodiscard]] bool empty() const { return std::filesystem::is_empty(path_); }
 
   /// Writes a file in place of another of its name, and returns its path.
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::remove(path_ / name);  // to write anew is quick; to cut off what stands there may wait for the disk
+    std::filesystem::remove(path_ /
+                            name);  // to write anew is quick; to cut off what stands there may wait for the disk
     std::ofstream(path_ / name, std::ios::binary) << text;
     return path_ / name;
   }

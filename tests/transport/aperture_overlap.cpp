@@ -17,13 +17,14 @@ using namespace pulsecast;
 
 namespace {
 
-/// Share of an even beam of radius `beam` in a ring about a point at a distance, by rings about the beam's centre: the arc of each ring
-/// that is in a disc follows from the law of cosines.
+/// Share of an even beam of radius `beam` in a ring about a point at a distance, by rings about the beam's centre: the
+/// arc of each ring that is in a disc follows from the law of cosines.
 double by_rings(double beam, double inner, double outer, double distance) {
   const auto arc = [&](double radius, double disc) {  // share of a ring's circle in a disc
     if (radius + distance <= disc) return 1.0;
     if (std::fabs(radius - distance) >= disc) return 0.0;
-    return std::acos((radius * radius + distance * distance - disc * disc) / (2 * radius * distance)) / std::numbers::pi;
+    return std::acos((radius * radius + distance * distance - disc * disc) / (2 * radius * distance)) /
+           std::numbers::pi;
   };
   constexpr int rings = 20'000;
   double sum = 0;
@@ -85,7 +86,9 @@ TEST_CASE("a survey of one ray and one of many receive what the receiver sees") 
     std::optional<Hit> closest_hit(const Ray& ray) const noexcept { return Hit{.range = 60 / ray.direction.y}; }
   };
   Receiver receiver{.diameter = 0.05, .visibility = std::numeric_limits<double>::infinity()};
-  const auto received = [&](const auto& footprint) { return validation::one_pulse(Wall{}, footprint, {}, receiver).energy.received; };
+  const auto received = [&](const auto& footprint) {
+    return validation::one_pulse(Wall{}, footprint, {}, receiver).energy.received;
+  };
   const double one = received(SingleRay{}), many = received(RingFootprint(3));
   receiver.overlap = SharedArray<OverlapAtRange>({{50, 0.0}, {70, 0.5}});
   CHECK(received(SingleRay{}) == doctest::Approx(0.25 * one).epsilon(1e-9));

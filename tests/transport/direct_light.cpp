@@ -55,7 +55,8 @@ struct Shells {
   }
 };
 
-/// A foil about the pulse that scatters a third of the light, lets a half of it pass both ways, and absorbs the rest; then what is behind.
+/// A foil about the pulse that scatters a third of the light, lets a half of it pass both ways, and absorbs the rest;
+/// then what is behind.
 struct Foil {
   double radius = 5, scattered = 1.0 / 3, passed = 0.5;
   DirectLight behind{};
@@ -63,7 +64,8 @@ struct Foil {
   std::size_t reflections(std::size_t subrays) const noexcept { return 2 * subrays; }
   Workspace workspace(std::size_t subrays) const { return behind.workspace(subrays); }
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {
+  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+                        std::span<Reflection> reflections) const noexcept {
     TransportResult r = behind.trace(map, light, w, reflections);
     r.energy = r.energy.times(passed);
     r.energy.sent = light.energy();
@@ -100,33 +102,41 @@ struct Unasked : Doppler {
 
 using Mesh = TriangleMesh<>;
 std::shared_ptr<const Mesh> plate(double y) {
-  return std::make_shared<const Mesh>(
-      MeshData{.vertices = {{-50, y, -50}, {50, y, -50}, {50, y, 50}, {-50, y, 50}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
+  return std::make_shared<const Mesh>(MeshData{.vertices = {{-50, y, -50}, {50, y, -50}, {50, y, 50}, {-50, y, 50}},
+                                               .triangles = {{0, 1, 2}, {0, 2, 3}}});
 }
 
 }  // namespace
 
 TEST_CASE("direct light keeps the laws of transports, in and out of the gate") {
   const Receiver gated{.range_min = 2, .range_max = 100};
-  for (const Receiver& receiver : {Receiver{}, gated, Receiver{.range_min = 15}, Receiver{.visibility = 1, .range_min = 2}}) {
+  for (const Receiver& receiver :
+       {Receiver{}, gated, Receiver{.range_min = 15}, Receiver{.visibility = 1, .range_min = 2}}) {
     CHECK(support::transport_laws(DirectLight{}, Shells{}, poses_from({}, 1, 200), receiver) == "");
-    CHECK(support::transport_laws(DirectLight{}, support::LeastRayTarget{}, poses_from({0, 0, 30}, 2, 200), receiver) == "");
-    CHECK(support::transport_laws(DirectLight{}, support::LeastBundleTarget{}, poses_from({0, 0, 1}, 3, 200), receiver) == "");
+    CHECK(support::transport_laws(DirectLight{}, support::LeastRayTarget{}, poses_from({0, 0, 30}, 2, 200), receiver) ==
+          "");
+    CHECK(support::transport_laws(DirectLight{}, support::LeastBundleTarget{}, poses_from({0, 0, 1}, 3, 200),
+                                  receiver) == "");
   }
 }
 
 TEST_CASE("each term of the ledger is that of its own subrays") {
   const Shells map;
   const Receiver receiver{.range_max = 100};
-  const Survey survey{towards(rotation_about(axis::up, 0.3)), WithSubrayRecord{SunflowerFootprint{500}}, map, receiver, FirstHit{}};
-  const Survey wide{Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = {.divergence = 0.3}}}},
-                    WithSubrayRecord{SunflowerFootprint{500}}, map, receiver, FirstHit{}};
+  const Survey survey{towards(rotation_about(axis::up, 0.3)), WithSubrayRecord{SunflowerFootprint{500}}, map, receiver,
+                      FirstHit{}};
+  const Survey wide{
+      Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = {.divergence = 0.3}}}},
+      WithSubrayRecord{SunflowerFootprint{500}}, map, receiver, FirstHit{}};
   const auto check = [&](const auto& s) {
     auto w = s.workspace();
     const Outcome o = s(0, w);
     double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     for (const SubrayHit& subray : o.subrays) {
-      double& term = !subray.met() ? missed : subray.range > 100 ? out_of_range : subray.backscatter == 0 ? absorbed : scattered;
+      double& term = !subray.met()             ? missed
+                     : subray.range > 100      ? out_of_range
+                     : subray.backscatter == 0 ? absorbed
+                                               : scattered;
       term += o.energy.sent / 500;
       received += subray.power * Laser{}.pulse_length;
     }
@@ -146,8 +156,9 @@ TEST_CASE("each term of the ledger is that of its own subrays") {
 TEST_CASE("a transport of one's own may give two reflections a subray") {
   CHECK(support::transport_laws(Foil{}, Shells{}, poses_from({}, 4, 100), {.range_max = 100}) == "");
   const support::LeastRayTarget wall;  // 20 m below
-  const Platform source{Tripod{.position = {0, 0, 20}}, Mount{},
-                        Deflector{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulses = 1, .laser = {.divergence = 1e-6}}}};
+  const Platform source{
+      Tripod{.position = {0, 0, 20}}, Mount{},
+      Deflector{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulses = 1, .laser = {.divergence = 1e-6}}}};
   const Receiver clear{.visibility = std::numeric_limits<double>::infinity()};
   const Survey survey{source, RingFootprint{3}, wall, Foil{}, clear, FullWaveform{{.timing = EchoTiming::true_range}}};
   auto w = survey.workspace();
@@ -187,7 +198,8 @@ TEST_CASE("a velocity is that of the surface along the ray, positive away, in th
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const Rotation turn = rotation_about(axis::up, any.uniform(-0.6, 0.6)) * rotation_about(axis::right, any.uniform(-0.6, 0.6));
+    const Rotation turn =
+        rotation_about(axis::up, any.uniform(-0.6, 0.6)) * rotation_about(axis::right, any.uniform(-0.6, 0.6));
     const Survey survey{towards(turn, 3), SingleRay{}, traffic, Receiver{}, Doppler{}};
     auto w = survey.workspace();
     for (PulseIndex i = 0; i < 3; ++i) {
@@ -208,7 +220,8 @@ TEST_CASE("a velocity is that of the surface along the ray, positive away, in th
 
 TEST_CASE("each subray of a spinning plate has the velocity of its place") {
   const double rate = 0.01;
-  const auto spin = std::make_shared<const PartMotion>(SteadyMotion{.axis = axis::up, .rate = rate, .centre = Vec3{0, 30, 0}});
+  const auto spin =
+      std::make_shared<const PartMotion>(SteadyMotion{.axis = axis::up, .rate = rate, .centre = Vec3{0, 30, 0}});
   const MovingScene<Mesh> scene({{.geometry = plate(30), .motion = spin}}, {.to = 1});
   struct AllVelocities : Doppler {
     std::vector<Reflection>* seen = nullptr;
@@ -229,7 +242,8 @@ TEST_CASE("each subray of a spinning plate has the velocity of its place") {
     REQUIRE(seen.size() == RingFootprint{4}.size());
     for (std::size_t j = 0; j < seen.size(); ++j) {
       const SubrayHit& subray = o.subrays[j];
-      const Vec3 exit = subray_exit(RingFootprint{4}.offset(j), laser), direction = (subray.point - exit) / subray.range;
+      const Vec3 exit = subray_exit(RingFootprint{4}.offset(j), laser),
+                 direction = (subray.point - exit) / subray.range;
       const double expected = dot(cross(rate * axis::up, subray.point - Vec3{0, 30, 0}), direction);
       CHECK(std::fabs(seen[j].velocity - expected) < 1e-12);
       CHECK(seen[j].kind == ReflectionKind::surface);
@@ -256,20 +270,21 @@ static_assert(!MissesCones<Asked> && MissesCones<AskedFirst>);
 
 /// A mirror that sweeps around, past a plate that fills a tenth of the turn.
 auto sweep(PulseIndex pulses, const Laser& laser) {
-  return Platform{
-      Tripod{}, Mount{},
-      Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 180_deg}, Scanner{.pulse_rate = 2000, .pulses = pulses, .laser = laser}}};
+  return Platform{Tripod{}, Mount{},
+                  Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 180_deg},
+                            Scanner{.pulse_rate = 2000, .pulses = pulses, .laser = laser}}};
 }
 
 const Scene<Mesh>& a_plate() {
   static const Scene<Mesh> scene(
-      {{.geometry = std::make_shared<const Mesh>(
-            MeshData{.vertices = {{-3, 8, -2}, {3, 8, -2}, {3, 8, 2}, {-3, 8, 2}}, .triangles = {{0, 1, 2}, {0, 2, 3}}})}});
+      {{.geometry = std::make_shared<const Mesh>(MeshData{.vertices = {{-3, 8, -2}, {3, 8, -2}, {3, 8, 2}, {-3, 8, 2}},
+                                                          .triangles = {{0, 1, 2}, {0, 2, 3}}})}});
   return scene;
 }
 
 bool same(const Outcome& a, const Outcome& b) {
-  if (a.shot.fate != b.shot.fate || !(a.energy == b.energy) || a.error != b.error || a.echoes.size() != b.echoes.size()) return false;
+  if (a.shot.fate != b.shot.fate || !(a.energy == b.energy) || a.error != b.error || a.echoes.size() != b.echoes.size())
+    return false;
   for (std::size_t k = 0; k < a.echoes.size(); ++k)
     if (!support::detail::same(a.echoes[k], b.echoes[k])) return false;
   return true;

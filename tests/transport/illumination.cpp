@@ -35,7 +35,8 @@ struct Spy : support::LeastTransport {
   Note* note;
   explicit Spy(Note& to) : note(&to) {}
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {
+  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+                        std::span<Reflection> reflections) const noexcept {
     *note = {light.index,
              light.seed,
              light.emitter,
@@ -55,7 +56,8 @@ struct Spy : support::LeastTransport {
 /// Two emitters by turns; the second one's pose is reported wrong.
 struct ByTurns : support::LeastSource<frame::World> {
   std::vector<Emitter> emitters() const {
-    return {{.laser = {.peak_power = 3, .pulse_length = 5e-9}}, {.laser = {.divergence = 0.01}, .receiver = 1, .channel = 7}};
+    return {{.laser = {.peak_power = 3, .pulse_length = 5e-9}},
+            {.laser = {.divergence = 0.01}, .receiver = 1, .channel = 7}};
   }
   std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     auto p = support::LeastSource<frame::World>::pulse(i);
@@ -68,8 +70,9 @@ struct ByTurns : support::LeastSource<frame::World> {
 }  // namespace
 
 TEST_CASE("a transport is told the pulse, its emitter, the beam and the receiver that hears it") {
-  const std::vector<ReceiverUnit<RingFootprint, FirstHit>> units{{RingFootprint{2}, Receiver{.range_min = 2, .range_max = 50}, FirstHit{}},
-                                                                 {RingFootprint{4}, Receiver{.diameter = 0.3}, FirstHit{}}};
+  const std::vector<ReceiverUnit<RingFootprint, FirstHit>> units{
+      {RingFootprint{2}, Receiver{.range_min = 2, .range_max = 50}, FirstHit{}},
+      {RingFootprint{4}, Receiver{.diameter = 0.3}, FirstHit{}}};
   const support::LeastRayTarget map;
   Note note;
   const Survey survey{ByTurns{}, units, map, Spy{note}, 77};
@@ -98,7 +101,8 @@ TEST_CASE("a transport is told the pulse, its emitter, the beam and the receiver
 TEST_CASE("a transport is given room for a record only if subrays are recorded") {
   const support::LeastRayTarget map;
   Note note;
-  const Survey survey{support::LeastSource<frame::World>{}, WithSubrayRecord{RingFootprint{2}}, map, Spy{note}, Receiver{}, FirstHit{}};
+  const Survey survey{
+      support::LeastSource<frame::World>{}, WithSubrayRecord{RingFootprint{2}}, map, Spy{note}, Receiver{}, FirstHit{}};
   auto w = survey.workspace();
   CHECK(survey(1, w).subrays.size() == RingFootprint{2}.size());
   CHECK(note.record == RingFootprint{2}.size());

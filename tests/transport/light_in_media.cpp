@@ -34,7 +34,8 @@ double integral(const support::Lamp& lamp, const Medium& m, double near, double 
   const int steps = 200000;
   for (int k = 0; k < steps; ++k) {
     const double s = near + (k + 0.5) / steps * (far - near);
-    sum += budget.power(1, pi * m.backscatter * std::exp(-2 * m.extinction() * (s - fog_begin)), s) * (far - near) / steps;
+    sum +=
+        budget.power(1, pi * m.backscatter * std::exp(-2 * m.extinction() * (s - fog_begin)), s) * (far - near) / steps;
   }
   return sum;
 }
@@ -45,28 +46,35 @@ TEST_CASE("fog dims what is behind it, and sends light back from all along the w
   const World scene({rectangle({0, 60, 0}, 50.0 * axis::right, 50.0 * axis::up, Material{.reflectance = 0.5}, 4)});
   const support::Lamp lamp{.laser = {.divergence = 1e-3}};
   for (const double begin : {0.0, 20.0}) {
-    const LightPaths light{.spread_planes = false, .air = Media({{.medium = mist, .bounds = {{-9, begin, -9}, {9, 60.5, 9}}}})};
+    const LightPaths light{.spread_planes = false,
+                           .air = Media({{.medium = mist, .bounds = {{-9, begin, -9}, {9, 60.5, 9}}}})};
     const auto seen = traced(light, scene, from_to({0, 0, 0}, axis::forward), LatticeFootprint(19), lamp);
-    const auto open = traced(LightPaths{.spread_planes = false}, scene, from_to({0, 0, 0}, axis::forward), LatticeFootprint(19), lamp);
+    const auto open = traced(LightPaths{.spread_planes = false}, scene, from_to({0, 0, 0}, axis::forward),
+                             LatticeFootprint(19), lamp);
     CHECK(std::fabs(seen.imbalance()) < 1e-9);
     const double left = std::exp(-0.05 * (60 - begin));
-    CHECK(power_of(seen.of(ReflectionKind::surface)) == doctest::Approx(left * left * power_of(open.reflections)).epsilon(1e-5));
+    CHECK(power_of(seen.of(ReflectionKind::surface)) ==
+          doctest::Approx(left * left * power_of(open.reflections)).epsilon(1e-5));
     CHECK(seen.of(ReflectionKind::air).empty());
-    CHECK(seen.between(0, 99, ReflectionKind::air).power == doctest::Approx(integral(lamp, mist, begin, 60, begin)).epsilon(1e-3));
+    CHECK(seen.between(0, 99, ReflectionKind::air).power ==
+          doctest::Approx(integral(lamp, mist, begin, 60, begin)).epsilon(1e-3));
     CHECK(seen.continuous.front().begin == doctest::Approx(begin).epsilon(1e-6));
     CHECK(seen.continuous.back().end == doctest::Approx(60).epsilon(1e-6));
     for (double from = begin + 0.01; from < 58; from *= 1.3) {
       CAPTURE(from);
-      const double to = std::min(60.0, from + 0.3 + 0.1 * from), part = seen.between(from, to, ReflectionKind::air).power;
+      const double to = std::min(60.0, from + 0.3 + 0.1 * from),
+                   part = seen.between(from, to, ReflectionKind::air).power;
       CHECK(part == doctest::Approx(integral(lamp, mist, from, to, begin)).epsilon(from > 0.3 ? 5e-3 : 5e-2));
     }
-    CHECK(seen.result.energy.absorbed / seen.result.energy.sent == doctest::Approx(0.2 * (1 - left) + 0.5 * left).epsilon(1e-6));
+    CHECK(seen.result.energy.absorbed / seen.result.energy.sent ==
+          doctest::Approx(0.2 * (1 - left) + 0.5 * left).epsilon(1e-6));
   }
 }
 
 TEST_CASE("fog without an end takes all of the light") {
   const LightPaths light{.air = Media({{.medium = mist}})};
-  const auto seen = traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
+  const auto seen =
+      traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
   CHECK(std::fabs(seen.imbalance()) < 1e-9);
   CHECK(seen.result.energy.missed < 1e-12 * seen.result.energy.sent);
   CHECK(seen.result.energy.scattered / seen.result.energy.sent == doctest::Approx(0.8));
@@ -77,7 +85,8 @@ TEST_CASE("fog without an end takes all of the light") {
 TEST_CASE("what fog sends back is left out from where the least share of it is left, as that of walls there") {
   for (const double least : {1e-1, 1e-2, 1e-3, 1e-4}) {
     const LightPaths light{.least_share = least, .air = Media({{.medium = mist}})};
-    const auto seen = traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
+    const auto seen =
+        traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
     CHECK(seen.continuous.back().end == doctest::Approx(-std::log(least) / mist.extinction()).epsilon(1e-9));
     CHECK(std::fabs(seen.imbalance()) < 1e-9);
   }
@@ -93,8 +102,8 @@ TEST_CASE("fog is passed on every stretch of a path, once") {
   for (const auto& [glass, way] : {std::pair{false, 50.0}, std::pair{true, 50.0}}) {
     std::vector<World::Part> parts(scene.parts().begin(), scene.parts().end());
     if (glass)
-      parts.push_back(
-          rectangle({0, 10, 0}, 1.0 * axis::right, 1.0 * axis::up, clean({.kind = InterfaceKind::dielectric, .inside = {.index = 1}})));
+      parts.push_back(rectangle({0, 10, 0}, 1.0 * axis::right, 1.0 * axis::up,
+                                clean({.kind = InterfaceKind::dielectric, .inside = {.index = 1}})));
     if (glass) {
       parts.push_back(rectangle({0, 11, 0}, 1.0 * axis::right, 1.0 * axis::up, Material{}));
       parts.back().materials = parts[2].materials;
@@ -104,7 +113,8 @@ TEST_CASE("fog is passed on every stretch of a path, once") {
     const auto ghost = seen.of(ReflectionKind::mirror), clear = open.of(ReflectionKind::mirror);
     REQUIRE(ghost.size() == 1);
     REQUIRE(clear.size() == 1);
-    CHECK(ghost[0].power / clear[0].power == doctest::Approx(std::exp(-2 * 0.05 * (way - (glass ? 1 : 0)))).epsilon(1e-9));
+    CHECK(ghost[0].power / clear[0].power ==
+          doctest::Approx(std::exp(-2 * 0.05 * (way - (glass ? 1 : 0)))).epsilon(1e-9));
     CHECK(std::fabs(seen.imbalance()) < 1e-9);
   }
 }
@@ -112,10 +122,12 @@ TEST_CASE("fog is passed on every stretch of a path, once") {
 TEST_CASE("the water's column sends light back by its coefficients, between the surface and the bottom") {
   const Medium water{.index = 1.33, .group_index = 1.36, .absorption = 0.08, .scattering = 0.07, .backscatter = 0.003};
   const World scene(
-      {rectangle({0, 0, 0}, 500.0 * axis::right, 500.0 * axis::forward, clean({.kind = InterfaceKind::water, .inside = water}), 9),
+      {rectangle({0, 0, 0}, 500.0 * axis::right, 500.0 * axis::forward,
+                 clean({.kind = InterfaceKind::water, .inside = water}), 9),
        rectangle({0, 0, -8}, 500.0 * axis::right, 500.0 * axis::forward, Material{.reflectance = 0.2}, 2)});
   for (const double degrees : {0.0, 20.0, 40.0}) {
-    const double a = degrees * 1_deg, b = std::asin(std::sin(a) / 1.33), above = 200 / std::cos(a), below = 8 / std::cos(b);
+    const double a = degrees * 1_deg, b = std::asin(std::sin(a) / 1.33), above = 200 / std::cos(a),
+                 below = 8 / std::cos(b);
     const support::Lamp lamp;
     const auto seen = traced(LightPaths{}, scene, from_to({0, 0, 200}, {200 * std::tan(a), 0, 0}), SingleRay{}, lamp);
     CHECK(std::fabs(seen.imbalance()) < 1e-9);
@@ -129,7 +141,8 @@ TEST_CASE("the water's column sends light back by its coefficients, between the 
       const double s = (k + 0.5) / steps * below;
       const double across = 1.33 * above + s, along = 1.33 * above + s * std::pow(std::cos(a) / std::cos(b), 2);
       const double spread = std::sqrt(across * along) * std::cos(b) / std::cos(a);
-      const double power = budget.power_through(pass, pi * 0.003 * std::exp(-2 * 0.15 * s), spread, above) * below / steps;
+      const double power =
+          budget.power_through(pass, pi * 0.003 * std::exp(-2 * 0.15 * s), spread, above) * below / steps;
       sum += power;
       moment += power * (above + 1.36 * s);
     }
@@ -175,9 +188,11 @@ TEST_CASE("a kept workspace returns what a fresh one does, of air and of water")
   for (int k = 0; k < 100; ++k) {
     CAPTURE(k);
     // to the board, into the water, to the board, and anywhere
-    const Vec3 from = k % 4 == 1 ? Vec3{0, 0, 20} : Vec3{k % 4 == 3 ? any.uniform(0, 60) : 40.0, 0, any.uniform(55, 100)};
+    const Vec3 from =
+        k % 4 == 1 ? Vec3{0, 0, 20} : Vec3{k % 4 == 3 ? any.uniform(0, 60) : 40.0, 0, any.uniform(55, 100)};
     const auto pose = from_to(from, {from.x + any.uniform(-3, 3), 0, 0});
-    const auto seen = traced(light, lake, pose, pattern, lamp, kept), expected = traced(light, lake, pose, pattern, lamp);
+    const auto seen = traced(light, lake, pose, pattern, lamp, kept),
+               expected = traced(light, lake, pose, pattern, lamp);
     only_water += !seen.continuous.empty() && seen.continuous[0].kind == ReflectionKind::water ? 1 : 0;
     REQUIRE(seen.continuous.size() == expected.continuous.size());
     for (std::size_t i = 0; i < seen.continuous.size(); ++i) {
@@ -260,7 +275,8 @@ TEST_CASE("where drops are too many to be met one by one, their mean takes over 
       one.index = k;
       const auto seen = traced(LightPaths{.air = Media({of})}, World({}), from_to({}, axis::forward), SingleRay{}, one);
       for (const Reflection& r : seen.reflections)
-        bins[std::min<std::size_t>(11, static_cast<std::size_t>(r.range / 10))] += r.power / static_cast<double>(pulses);
+        bins[std::min<std::size_t>(11, static_cast<std::size_t>(r.range / 10))] +=
+            r.power / static_cast<double>(pulses);
       for (std::size_t b = 0; b < bins.size(); ++b) {
         const double from = 10 * static_cast<double>(b);
         const double part = seen.between(from, from + 10, ReflectionKind::air).power;
@@ -279,16 +295,19 @@ TEST_CASE("where drops are too many to be met one by one, their mean takes over 
 TEST_CASE("light paths through media keep the laws of transports") {
   support::Generator any(3);
   const Media air(
-      {{.medium = mist}, {.medium = {.absorption = 1, .scattering = 2, .backscatter = 0.1}, .bounds = {{-5, -5, -5}, {5, 5, 5}}}});
+      {{.medium = mist},
+       {.medium = {.absorption = 1, .scattering = 2, .backscatter = 0.1}, .bounds = {{-5, -5, -5}, {5, 5, 5}}}});
   const SmoothInterface water{.kind = InterfaceKind::water,
                               .inside = {.index = 1.33, .absorption = 0.1, .scattering = 0.1, .backscatter = 0.01}};
   std::vector<World::Part> parts;
   for (int k = 0; k < 12; ++k)
-    parts.push_back(rectangle(any.point(20), any.uniform(2, 12) * any.unit(), 8.0 * any.unit(),
-                              Material{.reflectance = any.uniform(0, 0.5), .smooth = k % 2 == 0 ? water : SmoothInterface::pane()}));
+    parts.push_back(rectangle(
+        any.point(20), any.uniform(2, 12) * any.unit(), 8.0 * any.unit(),
+        Material{.reflectance = any.uniform(0, 0.5), .smooth = k % 2 == 0 ? water : SmoothInterface::pane()}));
   std::vector<Pose<frame::Beam, frame::World>> poses;
   for (int k = 0; k < 60; ++k) poses.push_back({any.rotation(), any.point(20)});
   const World scene(std::move(parts));
   CHECK(support::transport_laws(LightPaths{.air = air}, scene, poses) == "");
-  CHECK(support::transport_laws(LightPaths{.air = air, .volume_cells = 50}, scene, poses, {.range_min = 5, .range_max = 40}) == "");
+  CHECK(support::transport_laws(LightPaths{.air = air, .volume_cells = 50}, scene, poses,
+                                {.range_min = 5, .range_max = 40}) == "");
 }

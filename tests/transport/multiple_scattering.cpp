@@ -34,7 +34,9 @@ LightPaths to_and_fro(std::size_t orders, std::size_t paths) {
 
 }  // namespace
 
-TEST_CASE("in a sphere a flat aperture in the middle gets a quarter of each order, which is the wall's reflectance of the one before") {
+TEST_CASE(
+    "in a sphere a flat aperture in the middle gets a quarter of each order, which is the wall's reflectance of the "
+    "one before") {
   const double albedo = 0.8;
   const Scene<support::UnitBall> sphere({{.geometry = std::make_shared<const support::UnitBall>(),
                                           .materials = material_table({{.reflectance = albedo}}),
@@ -47,7 +49,8 @@ TEST_CASE("in a sphere a flat aperture in the middle gets a quarter of each orde
     CHECK(r.range >= 7 - 1e-9);
     CHECK(r.cos_incidence == doctest::Approx(1));
   }
-  // Each order lights the wall evenly. Of all directions, the mean of the cosine is 1/4 where it is positive, its variance 1/6 - 1/16.
+  // Each order lights the wall evenly. Of all directions, the mean of the cosine is 1/4 where it is positive, its
+  // variance 1/6 - 1/16.
   double expected = 0, variance = 0;
   for (int k = 1; k < 6; ++k) {
     expected += 0.25 * std::pow(albedo, k);
@@ -58,14 +61,16 @@ TEST_CASE("in a sphere a flat aperture in the middle gets a quarter of each orde
 }
 
 TEST_CASE("a receiver sees by default 2 mrad, or what its beam lights") {
-  const Scene<support::UnitBall> sphere(
-      {{.geometry = std::make_shared<const support::UnitBall>(), .materials = material_table({Material{}}), .placement = {.scale = 7}}});
+  const Scene<support::UnitBall> sphere({{.geometry = std::make_shared<const support::UnitBall>(),
+                                          .materials = material_table({Material{}}),
+                                          .placement = {.scale = 7}}});
   const LightPaths light{.spread_planes = false, .scattering = {.orders = 2, .paths = 20'000}};
   const auto pose = from_to({0, 0, 0}, {1, 2, 3});
   CHECK(traced(light, sphere, pose, SingleRay{}).of(ReflectionKind::multiple).size() < 3);  // 2.5e-7 of the sphere
   const double half = 0.2, share = 0.5 * (1 - std::cos(half));                              // of the sphere
   const auto wide = traced(light, sphere, pose, SingleRay{}, support::Lamp{.laser = {.divergence = 2 * half}});
-  CHECK(std::fabs(static_cast<double>(wide.of(ReflectionKind::multiple).size()) - 20'000 * share) < 4 * std::sqrt(20'000 * share));
+  CHECK(std::fabs(static_cast<double>(wide.of(ReflectionKind::multiple).size()) - 20'000 * share) <
+        4 * std::sqrt(20'000 * share));
 }
 
 TEST_CASE("the first order is that of direct light, bit for bit") {
@@ -111,7 +116,8 @@ TEST_CASE("light that is scattered to and fro keeps the laws of transports") {
   support::Generator any(9);
   std::vector<World::Part> parts;
   for (int k = 0; k < 20; ++k)
-    parts.push_back(rectangle(any.point(15), 6.0 * any.unit(), 6.0 * any.unit(), Material{.reflectance = any.uniform()}));
+    parts.push_back(
+        rectangle(any.point(15), 6.0 * any.unit(), 6.0 * any.unit(), Material{.reflectance = any.uniform()}));
   std::vector<Pose<frame::Beam, frame::World>> poses;
   for (int k = 0; k < 60; ++k) poses.push_back({any.rotation(), any.point(10)});
   const World scene(std::move(parts));

@@ -39,7 +39,9 @@ struct Slope {
   double range, tilt, about = 0, deeper = 0;
   Paint paint = [](double, double) { return Coat{}; };
 
-  [[nodiscard]] Vec3 normal() const { return {std::sin(tilt) * std::cos(about), std::cos(tilt), std::sin(tilt) * std::sin(about)}; }
+  [[nodiscard]] Vec3 normal() const {
+    return {std::sin(tilt) * std::cos(about), std::cos(tilt), std::sin(tilt) * std::sin(about)};
+  }
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
     const double along = dot(normal(), ray.direction);
     if (!(along > 0)) return {};
@@ -58,7 +60,9 @@ struct Slope {
 /// Paint on either side of a straight edge, at so many deviations of the beam from the axis.
 Paint edge(const Laser& laser, double angle, double at, Coat inside, Coat outside) {
   const double deviation = laser.divergence.across / 4;
-  return [=](double across, double up) { return (across * std::cos(angle) + up * std::sin(angle)) / deviation < at ? inside : outside; };
+  return [=](double across, double up) {
+    return (across * std::cos(angle) + up * std::sin(angle)) / deviation < at ? inside : outside;
+  };
 }
 
 const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
@@ -71,7 +75,8 @@ struct Seen {
 };
 
 template <Footprint Pattern, class Map, Detector Instrument, class Light = DirectLight>
-Seen pulse_on(const Map& map, const Laser& laser, const Pattern& footprint, const Instrument& detector, Light light = {}) {
+Seen pulse_on(const Map& map, const Laser& laser, const Pattern& footprint, const Instrument& detector,
+              Light light = {}) {
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
   const Survey survey{source, footprint, map, light, vacuum, detector};
   auto w = survey.workspace();
@@ -85,7 +90,8 @@ Seen pulse_on(const Map& map, const Laser& laser, const Pattern& footprint, cons
 /// Detector that finds every maximum.
 template <EchoWidth Width = NoWidth>
 FullWaveform<Width> waveform(EchoTiming timing = EchoTiming::true_range, double interval = 0.25e-9) {
-  return FullWaveform<Width>{{.sample_interval = interval, .threshold = 1e-30, .window = 0, .returns_max = 255, .timing = timing}};
+  return FullWaveform<Width>{
+      {.sample_interval = interval, .threshold = 1e-30, .window = 0, .returns_max = 255, .timing = timing}};
 }
 
 /// Echo of a plane by 100,000 rays: places relative to the plane's range on the axis [m], of the pulse's maximum.
@@ -111,7 +117,8 @@ double centre(const std::vector<double>& y, std::size_t top) {
 
 Truth truth_of(const Slope& slope, const Laser& laser) {
   // full width at half maximum of u^2 e^-u: 3.39468 (numerically)
-  const double tau = 0.5 * speed_of_light * laser.pulse_length / 3.394680670846503, deviation = laser.divergence.across / 4;
+  const double tau = 0.5 * speed_of_light * laser.pulse_length / 3.394680670846503,
+               deviation = laser.divergence.across / 4;
   constexpr int along = 1000, across = 100;
   struct Ray {
     double place, power;
@@ -160,15 +167,16 @@ Truth truth_of(const Slope& slope, const Laser& laser) {
   std::vector<double> fine(2500);
   for (std::size_t k = 0; k < fine.size(); ++k) fine[k] = shape(0.01 * static_cast<double>(k));
   truth.centroid = from + centre(y, top) * step - 0.01 * tau * centre(fine, 200);
-  for (std::size_t k = 1; k + 1 < y.size(); ++k) truth.maxima += y[k] > y[k - 1] && y[k] >= y[k + 1] && y[k] > 0.01 * y[top] ? 1 : 0;
+  for (std::size_t k = 1; k + 1 < y.size(); ++k)
+    truth.maxima += y[k] > y[k - 1] && y[k] >= y[k + 1] && y[k] > 0.01 * y[top] ? 1 : 0;
   double by_label[2] = {};
   for (const Ray& ray : rays) by_label[ray.bright ? 1 : 0] += ray.power * shape((from + at * step - ray.place) / tau);
   truth.bright = by_label[1] > by_label[0];
   return truth;
 }
 
-/// Errors of the strongest echo against the truth, by the larger of 5 mm and a hundredth of the echo's spread: the greatest of the ranges
-/// by `true_range`, by the centroid, and by the peak.
+/// Errors of the strongest echo against the truth, by the larger of 5 mm and a hundredth of the echo's spread: the
+/// greatest of the ranges by `true_range`, by the centroid, and by the peak.
 struct Errors {
   double mean = 0, centroid = 0, peak = 0;
   Seen seen{};
@@ -176,8 +184,12 @@ struct Errors {
 template <Footprint Pattern>
 Errors errors_on(const Slope& slope, const Laser& laser, const Pattern& footprint, const Truth& truth) {
   const double allowed = std::max(0.005, 0.01 * truth.spread);
-  const auto seen = [&](EchoTiming timing) { return pulse_on(slope, laser, footprint, waveform(timing, laser.pulse_length / 32)); };
-  const auto error = [&](const Seen& s, double place) { return std::fabs(s.strongest.range - slope.range - place) / allowed; };
+  const auto seen = [&](EchoTiming timing) {
+    return pulse_on(slope, laser, footprint, waveform(timing, laser.pulse_length / 32));
+  };
+  const auto error = [&](const Seen& s, double place) {
+    return std::fabs(s.strongest.range - slope.range - place) / allowed;
+  };
   Errors e{.seen = seen(EchoTiming::peak)};
   e.peak = error(e.seen, truth.peak);
   e.mean = error(seen(EchoTiming::true_range), truth.mean);
@@ -204,7 +216,9 @@ const std::vector<Case> cases{{400e3, 25.0 / 400e3, 15.6e-9, 20_deg},
                               {3000, 0.5e-3, 0.5e-9, 85_deg},
                               {100, 20e-3, 4e-9, 85_deg}};
 
-Laser laser_of(const Case& c) { return {.pulse_length = c.pulse, .divergence = c.divergence, .waist_diameter = c.waist}; }
+Laser laser_of(const Case& c) {
+  return {.pulse_length = c.pulse, .divergence = c.divergence, .waist_diameter = c.waist};
+}
 
 }  // namespace
 
@@ -225,7 +239,8 @@ TEST_CASE("a smooth plane gives one echo, of the place and width that a Gaussian
         CHECK(seen.echoes == 1);
         CHECK(!seen.outcome.unresolved);
         CHECK(seen.outcome.energy.received == doctest::Approx(raw.outcome.energy.received).epsilon(0.02));
-        CHECK(pulse_on(slope, laser, footprint, AnalyticWaveform<>{{.threshold = 1e-30, .returns_max = 255}}).echoes == 1);
+        CHECK(pulse_on(slope, laser, footprint, AnalyticWaveform<>{{.threshold = 1e-30, .returns_max = 255}}).echoes ==
+              1);
       };
       check(LatticeFootprint(19));
       check(LatticeFootprint(3));
@@ -235,9 +250,12 @@ TEST_CASE("a smooth plane gives one echo, of the place and width that a Gaussian
       check(SunflowerFootprint(19));
       if (c.tilt > 80_deg) continue;  // perspective
       const Seen seen = pulse_on(slope, laser, LatticeFootprint(19), waveform<MomentWidth>());
-      // Source: variance of the echo, that of the pulse, 3 tau^2, and that of a Gaussian beam over a plane, (w/2 tan(tilt) 2/c)^2
-      const double tau = c.pulse / 3.394680670846503, across = 0.25 * c.divergence * c.range * std::tan(c.tilt) * 2 / speed_of_light;
-      if (seen.outcome.spread) CHECK(seen.strongest.width == doctest::Approx(std::sqrt(3 * tau * tau + across * across)).epsilon(0.02));
+      // Source: variance of the echo, that of the pulse, 3 tau^2, and that of a Gaussian beam over a plane, (w/2
+      // tan(tilt) 2/c)^2
+      const double tau = c.pulse / 3.394680670846503,
+                   across = 0.25 * c.divergence * c.range * std::tan(c.tilt) * 2 / speed_of_light;
+      if (seen.outcome.spread)
+        CHECK(seen.strongest.width == doctest::Approx(std::sqrt(3 * tau * tau + across * across)).epsilon(0.02));
       CHECK(std::fabs(seen.strongest.range - c.range) < 0.02 * across * speed_of_light / 2 + 1e-6 * c.range);
     }
   CHECK(false_echoes > 50);
@@ -292,8 +310,8 @@ TEST_CASE("whatever the paint on a slope, its echo is where a hundred thousand r
     const double offset = any.uniform(-1, 1);
     slope.paint = edge(laser, any.uniform(0, 2 * pi), offset, bright, dark);
     const Truth truth = truth_of(slope, laser);
-    const Errors e =
-        k % 2 == 0 ? errors_on(slope, laser, LatticeFootprint(19), truth) : errors_on(slope, laser, SunflowerFootprint(37), truth);
+    const Errors e = k % 2 == 0 ? errors_on(slope, laser, LatticeFootprint(19), truth)
+                                : errors_on(slope, laser, SunflowerFootprint(37), truth);
     CAPTURE(k);  // of seed 11
     CHECK((e.seen.echoes <= truth.maxima || e.seen.outcome.unresolved));
     if (truth.maxima != 1 || e.seen.outcome.unresolved) continue;
@@ -311,8 +329,12 @@ TEST_CASE("whatever the paint on a slope, its echo is where a hundred thousand r
 TEST_CASE("road marks, reflectance maps and retroreflectors on a slope are seen") {
   const Laser laser{.pulse_length = 4e-9, .divergence = 0.5e-3};
   const double deviation = laser.divergence.across / 4;
-  const Paint mark = [=](double across, double) { return std::fabs(across / deviation - 0.7) < 0.2 ? Coat{0.9, 2} : Coat{0.1, 11}; };
-  const Paint map = [=](double across, double up) { return Coat{0.3 + 0.25 * std::sin(3 * across / deviation + 2 * up / deviation), 2}; };
+  const Paint mark = [=](double across, double) {
+    return std::fabs(across / deviation - 0.7) < 0.2 ? Coat{0.9, 2} : Coat{0.1, 11};
+  };
+  const Paint map = [=](double across, double up) {
+    return Coat{0.3 + 0.25 * std::sin(3 * across / deviation + 2 * up / deviation), 2};
+  };
   const Paint reflector = [=](double across, double up) {
     return std::hypot(across / deviation + 0.4, up / deviation - 0.5) < 0.6 ? Coat{300, 2} : Coat{0.2, 11};
   };
@@ -352,14 +374,16 @@ TEST_CASE("any smooth plane gives one echo, or the pulse is unresolved") {
 
 namespace {
 
-/// Two planes that meet at an edge in the beam, or one that ends there, before the sky or a plane across the beam 30 m behind.
+/// Two planes that meet at an edge in the beam, or one that ends there, before the sky or a plane across the beam 30 m
+/// behind.
 struct Edge {
   enum class Behind { plane, sky, wall } behind;
   Slope slope;
   double angle, at, deviation;  // of the edge in the beam
   double other = 0;             // slope of the other plane across the edge, less that of the first
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
-    const double beyond = ray.direction.x * std::cos(angle) + ray.direction.z * std::sin(angle) - at * deviation * ray.direction.y;
+    const double beyond =
+        ray.direction.x * std::cos(angle) + ray.direction.z * std::sin(angle) - at * deviation * ray.direction.y;
     if (beyond <= 0) return slope.closest_hit(ray);
     if (behind == Behind::sky) return {};
     if (behind == Behind::wall) return Slope{slope.range + 30, 0}.closest_hit(ray);
@@ -368,7 +392,10 @@ struct Edge {
     const Vec3 normal = first + other * across;
     const double along = dot(normal, ray.direction) / length(normal);
     if (!(along > 0)) return {};
-    return Hit{.range = slope.range / dot(normal, ray.direction), .cos_incidence = along, .backscatter = 0.5 * along, .object = 1};
+    return Hit{.range = slope.range / dot(normal, ray.direction),
+               .cos_incidence = along,
+               .backscatter = 0.5 * along,
+               .object = 1};
   }
 };
 
@@ -382,14 +409,16 @@ TEST_CASE("an edge of a roof in the beam gives the echoes that twenty thousand r
       for (const double angle : {0.7, 1.7})
         for (const double at : {-0.5, 0.1, 1.0}) {
           const Edge roof{behind, {3000, tilt, 0.7}, angle, at, laser.divergence.across / 4, -1.6 * std::tan(tilt)};
-          const std::size_t truth = pulse_on(roof, laser, LatticeFootprint(20'011), waveform(), DirectLight{.spread_planes = false}).echoes;
+          const std::size_t truth =
+              pulse_on(roof, laser, LatticeFootprint(20'011), waveform(), DirectLight{.spread_planes = false}).echoes;
           CAPTURE(static_cast<int>(behind));
           CAPTURE(tilt);
           CAPTURE(angle);
           CAPTURE(at);
           for (const std::size_t subrays : {std::size_t{19}, std::size_t{37}}) {
             false_echoes +=
-                pulse_on(roof, laser, LatticeFootprint(subrays), waveform(), DirectLight{.spread_planes = false}).echoes > truth;
+                pulse_on(roof, laser, LatticeFootprint(subrays), waveform(), DirectLight{.spread_planes = false})
+                    .echoes > truth;
             CHECK(pulse_on(roof, laser, LatticeFootprint(subrays), waveform()).echoes <= truth);
           }
         }
@@ -419,7 +448,8 @@ TEST_CASE("light on a slope has the objects of its parts and keeps its ledger, t
   const Vec3 half = 2.5 * Vec3{0, std::tan(70_deg), 1}, middle{0, 1000, 0};
   const support::LightScene scene(
       {support::rectangle(middle + 1.02 * half, 5.0 * axis::right, half, {.reflectance = 0.8, .classification = 2}, 2),
-       support::rectangle(middle - 0.98 * half, 5.0 * axis::right, half, {.reflectance = 0.1, .classification = 11}, 11)});
+       support::rectangle(middle - 0.98 * half, 5.0 * axis::right, half, {.reflectance = 0.1, .classification = 11},
+                          11)});
   const support::Lamp lamp{.laser = {.pulse_length = 4e-9, .divergence = 1e-3}};
   const auto place = [&](const auto& light, double& bright) {
     const auto seen = support::traced(light, scene, support::from_to({}, axis::forward), LatticeFootprint(19), lamp);
@@ -441,7 +471,8 @@ TEST_CASE("light on a slope has the objects of its parts and keeps its ledger, t
   const double direct = place(DirectLight{}, share), paths = place(LightPaths{}, share_of_paths);
   const Medium fog{.scattering = 1e-3, .backscatter = 1e-5};
   const double in_fog = place(LightPaths{.air = Media({{.medium = fog}})}, share_in_fog);
-  // Source: mean of |u| / 2 over a normal distribution of deviation 0.25 m tan(70 deg), 1 / sqrt(2 pi), weighted by the reflectances
+  // Source: mean of |u| / 2 over a normal distribution of deviation 0.25 m tan(70 deg), 1 / sqrt(2 pi), weighted by the
+  // reflectances
   CHECK(direct == doctest::Approx(0.7 / 0.9 * 2 * 0.25 * std::tan(70_deg) / std::sqrt(2 * pi)).epsilon(0.1));
   CHECK(share == doctest::Approx(0.8 / 0.9).epsilon(0.02));
   CHECK(paths == direct);
@@ -453,8 +484,9 @@ TEST_CASE("light on a slope has the objects of its parts and keeps its ledger, t
 TEST_CASE("runs count the pulses that were spread, and those that are unresolved") {
   const auto summary = [&](double tilt, double pulse, DirectLight light) {
     const Slope slope{3000, tilt};
-    const Platform source{Tripod{}, Mount{},
-                          Deflector{FixedBeam{}, Scanner{.pulses = 100, .laser = {.pulse_length = pulse, .divergence = 0.5e-3}}}};
+    const Platform source{
+        Tripod{}, Mount{},
+        Deflector{FixedBeam{}, Scanner{.pulses = 100, .laser = {.pulse_length = pulse, .divergence = 0.5e-3}}}};
     return run(Survey{source, LatticeFootprint(19), slope, light, vacuum, FullWaveform{}}, {});
   };
   CHECK(summary(70_deg, 4e-9, {}).spread == 100);
@@ -472,7 +504,8 @@ TEST_CASE("a plane is found from the inverse ranges of its subrays, wherever it 
     const Slope slope{any.log_uniform(1, 1e5), any.uniform(0, 1.4), any.uniform(0, 6)};
     std::vector<Reflection> met;
     for (std::size_t j = 0; j < footprint.size(); ++j) {
-      const Ray ray{.origin = beam.from_a_point() ? Vec3{} : beam.exits[j], .direction = {beam.x[j], beam.y[j], beam.z[j]}};
+      const Ray ray{.origin = beam.from_a_point() ? Vec3{} : beam.exits[j],
+                    .direction = {beam.x[j], beam.y[j], beam.z[j]}};
       met.push_back({.range = slope.closest_hit(ray)->range, .power = 1});
     }
     const MetPlane plane(beam, met);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What the air takes, measured: a wall seen through air and through none. The figures are by hand from 3.91 / V (lambda / 0.55 um)^-q.
+// What the air takes, measured: a wall seen through air and through none. The figures are by hand from 3.91 / V (lambda
+// / 0.55 um)^-q.
 
 #include <cmath>
 #include <optional>

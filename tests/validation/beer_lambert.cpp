@@ -25,8 +25,8 @@ using namespace pulsecast::validation;
 
 namespace {
 
-/// The mean projection of unit leaf area, by its definition: the mean of the cosine between leaf normal and direction over all azimuths and
-/// the distribution of inclinations. Source: Ross 1981; de Wit 1965 for the distributions.
+/// The mean projection of unit leaf area, by its definition: the mean of the cosine between leaf normal and direction
+/// over all azimuths and the distribution of inclinations. Source: Ross 1981; de Wit 1965 for the distributions.
 template <class Density>
 double projection(const Density& density, double zenith) {
   const int n = 2000;
@@ -51,8 +51,10 @@ double passed(const LeafAngles& leaves, double zenith, std::uint64_t seed) {
         slab.cells.push_back({x, y, z});
         slab.densities.push_back(0.6F);
       }
-  const Scene<Grid> scene({{std::make_shared<const Grid>(slab, TransmissiveVoxels{.leaf_angles = leaves}), material_table(), {}, 1}});
-  const Platform source{Tripod{.position = {0, 0, 10}}, Mount{.boresight = rotation_about(axis::right, zenith - pi / 2)},
+  const Scene<Grid> scene(
+      {{std::make_shared<const Grid>(slab, TransmissiveVoxels{.leaf_angles = leaves}), material_table(), {}, 1}});
+  const Platform source{Tripod{.position = {0, 0, 10}},
+                        Mount{.boresight = rotation_about(axis::right, zenith - pi / 2)},
                         Deflector{FixedBeam{}, Scanner{.pulses = 2000, .laser = {.divergence = 1e-6}}}};
   const Survey survey{source, SunflowerFootprint{500}, scene, vacuum, FirstHit{}, seed};
   return run(survey, {}).energy.share(&EnergyLedger::missed);

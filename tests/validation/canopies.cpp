@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Voxels of leaves beside leaves that are triangles, each placed and turned at random, and beside closed forms of a turbid medium.
+// Voxels of leaves beside leaves that are triangles, each placed and turned at random, and beside closed forms of a
+// turbid medium.
 
 #include <algorithm>
 #include <array>
@@ -149,8 +150,10 @@ Scene<Voxels> slab_of_voxels(const Foliage& foliage) {
         slab.cells.push_back({x, y, z});
         slab.densities.push_back(static_cast<float>(leaf_area_index));
       }
-  return Scene<Voxels>(
-      {{std::make_shared<const Voxels>(slab, TransmissiveVoxels{.leaf_angles = foliage.angles}), material_table({leaf_material}), {}, 1}});
+  return Scene<Voxels>({{std::make_shared<const Voxels>(slab, TransmissiveVoxels{.leaf_angles = foliage.angles}),
+                         material_table({leaf_material}),
+                         {},
+                         1}});
 }
 
 /// What a flight over the middle square sees that looks down and ahead, with footprints of 2 m.
@@ -158,7 +161,8 @@ template <class Map>
 Seen flight(const Map& map, double zenith) {
   const double back = height * std::tan(zenith);
   const StraightLine line{.from = {tile / 2, -back, height}, .to = {tile / 2, tile - back, height}, .speed = tile};
-  // a waist has every subray traced by itself: the cone of a bundle would hold thousands of leaves, which takes far longer
+  // a waist has every subray traced by itself: the cone of a bundle would hold thousands of leaves, which takes far
+  // longer
   const Laser laser{.divergence = 2 / (height / std::cos(zenith)), .waist_diameter = 1e-3};
   const Platform source{line, Mount{.boresight = rotation_about(axis::right, zenith - half_circle / 2)},
                         Deflector{FixedBeam{}, Scanner{.pulse_rate = 400, .pulses = 400, .laser = laser}}};
@@ -170,8 +174,9 @@ Seen flight(const Map& map, double zenith) {
 
 // Spheres of RAMI-IV: a radius of 0.5 m, leaves of 5 m^2 per m^2 of a sphere's cross section, in all directions.
 constexpr double radius = 0.5;
-constexpr double cross_section = half_circle * radius * radius;                          ///< [m^2]
-constexpr double sphere_density = 5 * cross_section / (cross_section * radius * 4 / 3);  ///< leaf area density [m^2/m^3]
+constexpr double cross_section = half_circle * radius * radius;  ///< [m^2]
+constexpr double sphere_density =
+    5 * cross_section / (cross_section * radius * 4 / 3);  ///< leaf area density [m^2/m^3]
 
 /// A sphere of 50,000 leaves about the origin.
 Scene<Leaves> sphere_of_leaves(const Foliage& foliage) {
@@ -201,8 +206,10 @@ Scene<Voxels> sphere_of_voxels(const Foliage& foliage) {
     data.cells.push_back(cell);
     data.densities.push_back(static_cast<float>(sphere_density * inside / (parts * parts * parts)));
   }
-  return Scene<Voxels>(
-      {{std::make_shared<const Voxels>(data, TransmissiveVoxels{.leaf_angles = foliage.angles}), material_table({leaf_material}), {}, 1}});
+  return Scene<Voxels>({{std::make_shared<const Voxels>(data, TransmissiveVoxels{.leaf_angles = foliage.angles}),
+                         material_table({leaf_material}),
+                         {},
+                         1}});
 }
 
 /// Even light over the square about a beam, whose half side is the 1/e^2 radius.
@@ -222,7 +229,8 @@ static_assert(Footprint<SquareFootprint>);
 template <class Map>
 Seen unit_cell(const Map& map, double cover) {
   const Laser laser{.divergence = std::sqrt(cross_section / cover) / height};
-  const Platform source{Tripod{.position = {0, 0, height}}, Mount{.boresight = rotation_about(axis::right, -half_circle / 2)},
+  const Platform source{Tripod{.position = {0, 0, height}},
+                        Mount{.boresight = rotation_about(axis::right, -half_circle / 2)},
                         Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
   const Survey survey{source, WithSubrayRecord{SquareFootprint{}}, map, vacuum, FirstHit{}, 3};
   return seen(survey, radius, 2 * radius);
@@ -238,8 +246,10 @@ TEST_CASE("a slab of voxels and one of leaves") {
     for (const int angle : {0, 45}) {
       const double zenith = angle * half_circle / 180;
       const Seen by_leaves = flight(leaves, zenith), by_voxels = flight(voxels, zenith);
-      const std::string head = std::string(foliage.name) + " leaves as triangles, " + std::to_string(angle) + " degrees: ";
-      row(Kind::second_implementation, head + "light sent back, of that of voxels", 1, by_leaves.back / by_voxels.back, 0.02);
+      const std::string head =
+          std::string(foliage.name) + " leaves as triangles, " + std::to_string(angle) + " degrees: ";
+      row(Kind::second_implementation, head + "light sent back, of that of voxels", 1, by_leaves.back / by_voxels.back,
+          0.02);
       row(Kind::second_implementation, head + "light sent back by light met, of that of voxels", 1,
           by_leaves.back / by_leaves.met / (by_voxels.back / by_voxels.met), 0.02);
       // light that is met, by the law of Beer and Lambert, times reflectance and the mean cosine over what is met
@@ -253,10 +263,12 @@ TEST_CASE("a slab of voxels and one of leaves") {
 TEST_CASE("depths that a slab sends light back from") {
   const Foliage spherical = foliages()[0];
   const Seen by_leaves = flight(slab_of_leaves(spherical, 1), 0), by_voxels = flight(slab_of_voxels(spherical), 0);
-  // Source: Ross 1981: k exp(-k z) of leaves of an extinction k. Leaves shade once, as light returns by the way it came: not exp(-2 k z)
+  // Source: Ross 1981: k exp(-k z) of leaves of an extinction k. Leaves shade once, as light returns by the way it
+  // came: not exp(-2 k z)
   const double k = cosines(spherical, 0).mean * leaf_area_index;
   for (std::size_t q = 0; q < 4; ++q) {
-    const double from = 0.25 * static_cast<double>(q), expected = (std::exp(-k * from) - std::exp(-k * (from + 0.25))) / (1 - std::exp(-k));
+    const double from = 0.25 * static_cast<double>(q),
+                 expected = (std::exp(-k * from) - std::exp(-k * (from + 0.25))) / (1 - std::exp(-k));
     const std::string depth = ", 0 degrees: share sent back from quarter " + std::to_string(q + 1) + " of the slab";
     row("spherical leaves as voxels" + depth, expected, by_voxels.by_depth[q], 0.005);
     row("spherical leaves as triangles" + depth, expected, by_leaves.by_depth[q], 0.005);
@@ -272,8 +284,10 @@ TEST_CASE("floating spheres of RAMI-IV") {
   for (const double cover : {0.2, 0.4}) {
     const Seen by_leaves = unit_cell(leaves, cover), by_voxels = unit_cell(voxels, cover);
     const std::string tail = cover == 0.2 ? ", cover 0.2: " : ", cover 0.4: ";
-    row("RAMI-IV spheres of voxels" + tail + "gap fraction from above", 1 - cover * (1 - passed), 1 - by_voxels.met, 0.002);
-    row("RAMI-IV spheres of triangles" + tail + "gap fraction from above", 1 - cover * (1 - passed), 1 - by_leaves.met, 0.002);
+    row("RAMI-IV spheres of voxels" + tail + "gap fraction from above", 1 - cover * (1 - passed), 1 - by_voxels.met,
+        0.002);
+    row("RAMI-IV spheres of triangles" + tail + "gap fraction from above", 1 - cover * (1 - passed), 1 - by_leaves.met,
+        0.002);
     const double back = reflectance * 2 / 3 * cover * (1 - passed);
     row("RAMI-IV spheres of voxels" + tail + "light sent back", back, by_voxels.back, 0.001);
     row("RAMI-IV spheres of triangles" + tail + "light sent back", back, by_leaves.back, 0.001);

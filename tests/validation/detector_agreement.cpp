@@ -68,8 +68,9 @@ Difference on_planes(EchoTiming timing) {
 
 Scene<TriangleMesh<>> tree() {
   const MeshData mesh = wood::broadleaf({}, wood::Dice(1, 1));
-  return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
-                                 .materials = material_table(std::vector<Material>(wood::shingle + 1, {.reflectance = 0.5}))}});
+  return Scene<TriangleMesh<>>(
+      {{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+        .materials = material_table(std::vector<Material>(wood::shingle + 1, {.reflectance = 0.5}))}});
 }
 
 }  // namespace

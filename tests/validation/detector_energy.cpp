@@ -47,14 +47,16 @@ struct RandomFootprint {
 template <class Pattern>
 void amplitude(const char* name, const Pattern& footprint) {
   // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the axis
-  const double closed =
-      laser.peak_power * vacuum.diameter * vacuum.diameter / (4 * 100 * 100 + vacuum.diameter * vacuum.diameter) * 0.5 * vacuum.efficiency;
+  const double closed = laser.peak_power * vacuum.diameter * vacuum.diameter /
+                        (4 * 100 * 100 + vacuum.diameter * vacuum.diameter) * 0.5 * vacuum.efficiency;
   const auto exact = one_pulse(Nadir{}, footprint, laser, vacuum, AnalyticWaveform{}).echoes;
   const auto sampled = one_pulse(Nadir{}, footprint, laser, vacuum, FullWaveform{}).echoes;
   REQUIRE(exact.size() == 1);
   REQUIRE(sampled.size() == 1);
-  row(std::string("AnalyticWaveform, nadir plane, ") + name + ": amplitude by the radar equation", 1, exact[0].amplitude / closed, 1e-6);
-  row(std::string("FullWaveform, nadir plane, ") + name + ": amplitude by the radar equation", 1, sampled[0].amplitude / closed, 1e-4);
+  row(std::string("AnalyticWaveform, nadir plane, ") + name + ": amplitude by the radar equation", 1,
+      exact[0].amplitude / closed, 1e-6);
+  row(std::string("FullWaveform, nadir plane, ") + name + ": amplitude by the radar equation", 1,
+      sampled[0].amplitude / closed, 1e-4);
 }
 
 /// The integral of a record by all the power that came in [s].
@@ -70,7 +72,8 @@ double recorded() {
   }
   auto workspace = detector.workspace(100);
   double sum = 0;
-  for (const float sample : support::detect(detector, laser, reflections, workspace).waveform) sum += static_cast<double>(sample);
+  for (const float sample : support::detect(detector, laser, reflections, workspace).waveform)
+    sum += static_cast<double>(sample);
   return sum * detector.sample_interval() / power;
 }
 
@@ -85,10 +88,11 @@ TEST_CASE("ties do not lose energy") {
 }
 
 TEST_CASE("a waveform holds all the energy that came in") {
-  // Source: the integral of (t/tau)^2 exp(-t/tau) is 2 tau; its peak is 4/e^2; tau is the pulse's length by 3.3947, Carlsson et al. 2001
+  // Source: the integral of (t/tau)^2 exp(-t/tau) is 2 tau; its peak is 4/e^2; tau is the pulse's length by 3.3947,
+  // Carlsson et al. 2001
   const double closed = 4e-9 / 3.3946806708 * std::numbers::e * std::numbers::e / 2;
   row("AnalyticWaveform, 100 reflections: integral of the waveform by the received power [ns]", closed * 1e9,
       recorded<AnalyticWaveform>() * 1e9, 1e-3);
-  row("FullWaveform, 100 reflections: integral of the waveform by the received power [ns]", closed * 1e9, recorded<FullWaveform>() * 1e9,
-      1e-3);
+  row("FullWaveform, 100 reflections: integral of the waveform by the received power [ns]", closed * 1e9,
+      recorded<FullWaveform>() * 1e9, 1e-3);
 }

@@ -24,7 +24,8 @@ using namespace pulsecast::validation;
 
 TEST_CASE("rate of false echoes") {
   for (const int threshold : {2, 3, 4}) {
-    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000e-9};
+    const WaveformSettings settings{
+        .threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000e-9};
     const FullWaveform detector(settings, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
     auto workspace = detector.workspace(1);
     double found = 0, samples = 0;
@@ -34,11 +35,11 @@ TEST_CASE("rate of false echoes") {
       found += static_cast<double>(d.echoes.size());
       samples += static_cast<double>(d.waveform.size() - 4);  // the ends have no peaks
     }
-    // A false echo is a sample above the threshold T whose neighbours are below it: the integral of f F^2 from T on, with f the density
-    // and F the distribution of the normal distribution
+    // A false echo is a sample above the threshold T whose neighbours are below it: the integral of f F^2 from T on,
+    // with f the density and F the distribution of the normal distribution
     const double below = 0.5 * std::erfc(-threshold / std::sqrt(2.0)), closed = (1 - below * below * below) / 3;
-    row("noise, threshold of " + std::to_string(threshold) + " deviations: false echoes per million samples", closed * 1e6,
-        found / samples * 1e6, 4 * std::sqrt(closed / samples) * 1e6);
+    row("noise, threshold of " + std::to_string(threshold) + " deviations: false echoes per million samples",
+        closed * 1e6, found / samples * 1e6, 4 * std::sqrt(closed / samples) * 1e6);
   }
 }
 
@@ -59,9 +60,11 @@ TEST_CASE("Gaussians in noise") {
     position += std::pow((r.gaussian.position - top) / deviation, 2) / cases;
     width += std::pow(r.gaussian.width / deviation - 1, 2) / cases;
   }
-  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the amplitude [%]", 0, 100 * std::sqrt(amplitude), 1);
-  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the position [% of the width]", 0, 100 * std::sqrt(position),
-      1);
-  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the width [%]", 0, 100 * std::sqrt(width), 1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the amplitude [%]", 0,
+      100 * std::sqrt(amplitude), 1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the position [% of the width]", 0,
+      100 * std::sqrt(position), 1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the width [%]", 0,
+      100 * std::sqrt(width), 1);
   row(Kind::bound, "GaussianFit, signal to noise 50: most iterations", 0, iterations, 50);
 }

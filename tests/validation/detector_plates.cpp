@@ -24,13 +24,14 @@ namespace {
 
 constexpr Laser laser{.pulse_length = 4e-9, .divergence = 0.3e-3};
 constexpr double tau =
-    4e-9 / 3.3946806708;  ///< of a pulse of 4 ns, P(t) = (t/tau)^2 exp(-t/tau). Source: Carlsson et al. 2001, eq. 4.5 [s]
+    4e-9 /
+    3.3946806708;  ///< of a pulse of 4 ns, P(t) = (t/tau)^2 exp(-t/tau). Source: Carlsson et al. 2001, eq. 4.5 [s]
 
 struct Plates {
   double apart;
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
-    return Hit{(ray.direction.x < 0 ? 100 : 100 + apart) / ray.direction.y, 1, ray.direction.x < 0 ? 1.0 : std::pow(1 + apart / 100, 2), 0,
-               0};
+    return Hit{(ray.direction.x < 0 ? 100 : 100 + apart) / ray.direction.y, 1,
+               ray.direction.x < 0 ? 1.0 : std::pow(1 + apart / 100, 2), 0, 0};
   }
 };
 
@@ -60,12 +61,14 @@ double resolved(const D& detector) {
 }  // namespace
 
 TEST_CASE("plates are two echoes from a distance on") {
-  // Of two equal pulses, the first has its peak two tau after its leading edge. If the second one's edge comes in before, the sum goes
-  // on rising and turns once; if it comes in later, the sum falls and rises again. So two echoes are at least 2 tau apart in time.
+  // Of two equal pulses, the first has its peak two tau after its leading edge. If the second one's edge comes in
+  // before, the sum goes on rising and turns once; if it comes in later, the sum falls and rises again. So two echoes
+  // are at least 2 tau apart in time.
   const WaveformSettings settings{.window = 0};
-  row("AnalyticWaveform, two equal plates: least distance with two echoes [m]", speed_of_light * tau, resolved(AnalyticWaveform(settings)),
-      1e-5);
-  row("FullWaveform, two equal plates: least distance with two echoes [m]", speed_of_light * tau, resolved(FullWaveform(settings)), 0.1);
+  row("AnalyticWaveform, two equal plates: least distance with two echoes [m]", speed_of_light * tau,
+      resolved(AnalyticWaveform(settings)), 1e-5);
+  row("FullWaveform, two equal plates: least distance with two echoes [m]", speed_of_light * tau,
+      resolved(FullWaveform(settings)), 0.1);
 }
 
 TEST_CASE("peaks of two plates") {
@@ -76,8 +79,9 @@ TEST_CASE("peaks of two plates") {
     const auto exact = echoes(apart, AnalyticWaveform(settings)), sampled = echoes(apart, FullWaveform(settings));
     REQUIRE(exact.size() == 2);
     REQUIRE(sampled.size() == 2);
-    // The second pulse begins d tau after the first, whose peak is at 2 tau, and stands on its tail: x tau after its own leading edge the
-    // sum is e^-x ((x + d)^2 q + x^2) with q = e^-d, and its slope is zero where (1 + q) x^2 - 2 (1 + q - d q) x - (2 - d) d q = 0.
+    // The second pulse begins d tau after the first, whose peak is at 2 tau, and stands on its tail: x tau after its
+    // own leading edge the sum is e^-x ((x + d)^2 q + x^2) with q = e^-d, and its slope is zero where (1 + q) x^2 - 2
+    // (1 + q - d q) x - (2 - d) d q = 0.
     const double d = 2 * apart / speed_of_light / tau, q = std::exp(-d), half = 1 + q - d * q;
     const double x = (half + std::sqrt(half * half + (1 + q) * (2 - d) * d * q)) / (1 + q);
     const double closed = (d + x - 2) * tau * 1e9, to_ns = 2e9 / speed_of_light;

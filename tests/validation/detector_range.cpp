@@ -41,7 +41,8 @@ Scene<TriangleMesh<>> wall(double distance) {
   const std::uint32_t cells = 20;
   for (std::uint32_t j = 0; j <= cells; ++j)
     for (std::uint32_t i = 0; i <= cells; ++i)
-      mesh.vertices.push_back(station + distance * Vec3{0.1 * i - 1 + 0.013 * std::sin(7 * i), 1, 0.1 * j - 1 + 0.017 * std::sin(5 * j)});
+      mesh.vertices.push_back(
+          station + distance * Vec3{0.1 * i - 1 + 0.013 * std::sin(7 * i), 1, 0.1 * j - 1 + 0.017 * std::sin(5 * j)});
   for (std::uint32_t j = 0; j < cells; ++j)
     for (std::uint32_t i = 0; i < cells; ++i) {
       const std::uint32_t a = j * (cells + 1) + i, c = a + cells + 1;
@@ -77,9 +78,12 @@ double worst(double distance, const Pattern& footprint, const D& detector) {
 TEST_CASE("range of a wall at UTM coordinates") {
   const WaveformSettings settings{.threshold = 0, .timing = EchoTiming::true_range};
   for (const double distance : {1.0, 100.0, 10000.0}) {
-    const std::string text = "wall at " + std::to_string(static_cast<int>(distance)) + " m: largest error of 2000 ranges [mm]";
+    const std::string text =
+        "wall at " + std::to_string(static_cast<int>(distance)) + " m: largest error of 2000 ranges [mm]";
     row("FirstHit, " + text, 0, worst(distance, SingleRay{}, FirstHit{}), 0.1);
-    row(Kind::consistency, "AnalyticWaveform, 19 subrays, " + text, 0, worst(distance, RingFootprint(3), AnalyticWaveform(settings)), 0.1);
-    row(Kind::consistency, "FullWaveform, 19 subrays, " + text, 0, worst(distance, RingFootprint(3), FullWaveform(settings)), 0.1);
+    row(Kind::consistency, "AnalyticWaveform, 19 subrays, " + text, 0,
+        worst(distance, RingFootprint(3), AnalyticWaveform(settings)), 0.1);
+    row(Kind::consistency, "FullWaveform, 19 subrays, " + text, 0,
+        worst(distance, RingFootprint(3), FullWaveform(settings)), 0.1);
   }
 }

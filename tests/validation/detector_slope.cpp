@@ -36,15 +36,17 @@ struct Slope {
 
 template <class D>
 void widths(const char* name, const D& detector) {
-  // Source: tau is the pulse's length by 3.3947, Carlsson et al. 2001; t^2 exp(-t/tau) is a gamma distribution of order 3
+  // Source: tau is the pulse's length by 3.3947, Carlsson et al. 2001; t^2 exp(-t/tau) is a gamma distribution of order
+  // 3
   const double pulse = std::sqrt(3.0) * 4e-9 / 3.3946806708;
   for (const int angle : {0, 20, 40, 60, 70, 80}) {
     const auto echoes = one_pulse(Slope{radians(angle)}, SunflowerFootprint(2001), laser, vacuum, detector).echoes;
     REQUIRE(echoes.size() == 1);
-    // Source: variances of a convolution add up; the irradiance of a Gaussian beam has a standard deviation of w / 2 along the slope
+    // Source: variances of a convolution add up; the irradiance of a Gaussian beam has a standard deviation of w / 2
+    // along the slope
     const double closed = std::sqrt(pulse * pulse + std::pow(2 * w * std::tan(radians(angle)) / speed_of_light, 2) / 4);
-    row(std::string(name) + ", plane tilted by " + std::to_string(angle) + " degrees: echo width [ns]", closed * 1e9, echoes[0].width * 1e9,
-        angle == 80 ? 0.02 : 0.01);
+    row(std::string(name) + ", plane tilted by " + std::to_string(angle) + " degrees: echo width [ns]", closed * 1e9,
+        echoes[0].width * 1e9, angle == 80 ? 0.02 : 0.01);
   }
 }
 
@@ -70,8 +72,12 @@ TEST_CASE("echo width of a tilted plane") {
 TEST_CASE("range of a tilted plane is that of the pulse's energy") {
   const char* text = "plane tilted by 0 to 80 degrees: largest error of the range [footprints]";
   const WaveformSettings settings{.timing = EchoTiming::true_range};
-  row(Kind::consistency, std::string("AnalyticWaveform, 62 subrays, ") + text, 0, worst_range(5, AnalyticWaveform{settings}), 0.05);
-  row(Kind::consistency, std::string("FullWaveform, 62 subrays, ") + text, 0, worst_range(5, FullWaveform{settings}), 0.05);
-  row(Kind::consistency, std::string("AnalyticWaveform, 279 subrays, ") + text, 0, worst_range(10, AnalyticWaveform{settings}), 0.05);
-  row(Kind::consistency, std::string("FullWaveform, 279 subrays, ") + text, 0, worst_range(10, FullWaveform{settings}), 0.05);
+  row(Kind::consistency, std::string("AnalyticWaveform, 62 subrays, ") + text, 0,
+      worst_range(5, AnalyticWaveform{settings}), 0.05);
+  row(Kind::consistency, std::string("FullWaveform, 62 subrays, ") + text, 0, worst_range(5, FullWaveform{settings}),
+      0.05);
+  row(Kind::consistency, std::string("AnalyticWaveform, 279 subrays, ") + text, 0,
+      worst_range(10, AnalyticWaveform{settings}), 0.05);
+  row(Kind::consistency, std::string("FullWaveform, 279 subrays, ") + text, 0, worst_range(10, FullWaveform{settings}),
+      0.05);
 }

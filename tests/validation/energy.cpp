@@ -31,7 +31,8 @@ struct Chequers {
     if (!(range > ray.near && range <= ray.far)) return std::nullopt;
     const Vec3 p = ray.origin + range * ray.direction;
     if (std::hypot(p.x, p.y) > 60) return std::nullopt;
-    const bool white = (static_cast<std::int64_t>(std::floor(p.x)) + static_cast<std::int64_t>(std::floor(p.y))) % 2 == 0;
+    const bool white =
+        (static_cast<std::int64_t>(std::floor(p.x)) + static_cast<std::int64_t>(std::floor(p.y))) % 2 == 0;
     const double cosine = std::fabs(ray.direction.z);
     return Hit{range, cosine, white ? cosine : 0, 0, 0};
   }
@@ -60,9 +61,10 @@ TEST_CASE("energy by its fate, over a survey in which pulses have all of them") 
   const Chequers map;
   const Platform source{
       Tripod{.position = {0, 0, 2}}, Mount{},
-      Deflector{RotatingHead{.rate = 36_deg},
-                Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 100_deg, .angle_min = -60_deg, .angle_max = 40_deg},
-                          Scanner{.pulse_rate = 5_kHz, .pulses = 50'000, .laser = {.divergence = 5_mrad}}}}};
+      Deflector{
+          RotatingHead{.rate = 36_deg},
+          Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 100_deg, .angle_min = -60_deg, .angle_max = 40_deg},
+                    Scanner{.pulse_rate = 5_kHz, .pulses = 50'000, .laser = {.divergence = 5_mrad}}}}};
   const Survey survey{source, RingFootprint{5}, map, Receiver{.range_min = 3, .range_max = 50},
                       FullWaveform{WaveformSettings{.sample_interval = 1_ns, .threshold = 2e-6}}};
   const RunSummary summary = run(survey, {.threads = 2});
@@ -74,17 +76,19 @@ TEST_CASE("energy by its fate, over a survey in which pulses have all of them") 
     CHECK(summary.fates[f] > 0);
     slots += summary.fates[f];
   }
-  row(Kind::consistency, "50 000 pulses of all fates: sum of the energies of all fates, of what was sent", 1, spent / energy.sent, 1e-6);
+  row(Kind::consistency, "50 000 pulses of all fates: sum of the energies of all fates, of what was sent", 1,
+      spent / energy.sent, 1e-6);
   const double each = Laser{}.peak_power * Laser{}.pulse_length * static_cast<double>(summary.pulses());
-  row(Kind::consistency, "50 000 pulses of all fates: what was sent, of peak power by pulse length by their number", 1, energy.sent / each,
-      1e-6);
+  row(Kind::consistency, "50 000 pulses of all fates: what was sent, of peak power by pulse length by their number", 1,
+      energy.sent / each, 1e-6);
   row(Kind::consistency, "50 000 slots: sum over all fates", 50'000, static_cast<double>(slots), 0.1);
 }
 
 TEST_CASE("energy by its fate, over a beam in quarters") {
   const Result result = one_pulse(Quarters{}, SunflowerFootprint{2001}, Laser{}, Receiver{.range_min = 2});
   row("beam in quarters: share that missed", 0.25, result.energy.share(&EnergyLedger::missed), 0.01);
-  row("beam in quarters: share that met something before the range gate", 0.25, result.energy.share(&EnergyLedger::out_of_range), 0.01);
+  row("beam in quarters: share that met something before the range gate", 0.25,
+      result.energy.share(&EnergyLedger::out_of_range), 0.01);
   row("beam in quarters: share that was absorbed", 0.25, result.energy.share(&EnergyLedger::absorbed), 0.01);
   row("beam in quarters: share that returned", 0.25, result.energy.share(&EnergyLedger::scattered), 0.01);
 }
@@ -93,7 +97,8 @@ TEST_CASE("what is detected is never more than what was sent, and near by all bu
   const Receiver large{.diameter = 0.2, .efficiency = 1, .visibility = vacuum.visibility};
   double most = 0;
   for (double range = 1e-3; range < 1e4; range *= 1.3)
-    most = std::fmax(most, one_pulse(Wall{range}, RingFootprint{4}, Laser{.divergence = 1e-6}, large).power / Laser{}.peak_power);
+    most = std::fmax(
+        most, one_pulse(Wall{range}, RingFootprint{4}, Laser{.divergence = 1e-6}, large).power / Laser{}.peak_power);
   // Source: sin^2 of half the angle that the aperture subtends where the wall is nearest, at 1 mm
   row("white wall from 1 mm to 10 km before an aperture of 0.2 m: most that is received, of what was sent",
       std::pow(std::sin(std::atan(0.1 / 1e-3)), 2), most, 1e-6);

@@ -66,13 +66,15 @@ TEST_CASE("footprint over a hole") {
 
 TEST_CASE("footprint over an edge") {
   for (const double at : {-1.0, -0.5, 0.0, 0.5, 1.0})
-    row("edge " + std::to_string(at).substr(0, at < 0 ? 4 : 3) + " of the beam's radius from its axis: share of energy that meets the wall",
+    row("edge " + std::to_string(at).substr(0, at < 0 ? 4 : 3) +
+            " of the beam's radius from its axis: share of energy that meets the wall",
         before_edge(at, 1), one_pulse(Edge{at * w}, sunflower, laser).energy.share(&EnergyLedger::scattered), 0.01);
   double worst = 0;
   for (int k = -200; k <= 200; ++k) {
     const double at = k * 0.01;
     worst =
-        std::fmax(worst, std::fabs(one_pulse(Edge{at * w}, sunflower, laser).energy.share(&EnergyLedger::scattered) - before_edge(at, 1)));
+        std::fmax(worst, std::fabs(one_pulse(Edge{at * w}, sunflower, laser).energy.share(&EnergyLedger::scattered) -
+                                   before_edge(at, 1)));
   }
   row("edge at 401 places from 0 to 100 %: largest error of the share", 0, worst, 0.01);
 }
@@ -87,14 +89,15 @@ TEST_CASE("elliptical footprint over an edge") {
 
 TEST_CASE("radius of a focused beam") {
   const double w0 = 5e-3, focus = 50, quality = 3, wavelength = 1.55e-6;
-  const Laser focused = gaussian_beam({.diameter = 2 * w0, .focus = focus, .quality = quality}, Laser{.wavelength = wavelength});
+  const Laser focused =
+      gaussian_beam({.diameter = 2 * w0, .focus = focus, .quality = quality}, Laser{.wavelength = wavelength});
   for (const double at : {2.0, 10.0, 40.0, 100.0, 1000.0}) {
     double sum = 0;
     for (const SubrayHit& hit : one_pulse(Wall{at}, sunflower, focused).subrays)
       sum += (hit.point.x * hit.point.x + hit.point.z * hit.point.z) / 2001;
     // the mean square of the radius is w^2 / 2. Source: Carlsson et al. 2001 for w
     const double closed = w0 * std::hypot(1 - at / focus, quality * wavelength * at / (pi * w0 * w0));
-    row("beam of 10 mm, M^2 = 3, focus at 50 m: radius at " + std::to_string(static_cast<int>(at)) + " m [mm]", closed * 1e3,
-        std::sqrt(2 * sum) * 1e3, closed > 0.1 ? 1 : 0.01);
+    row("beam of 10 mm, M^2 = 3, focus at 50 m: radius at " + std::to_string(static_cast<int>(at)) + " m [mm]",
+        closed * 1e3, std::sqrt(2 * sum) * 1e3, closed > 0.1 ? 1 : 0.01);
   }
 }

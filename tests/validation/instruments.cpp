@@ -36,7 +36,8 @@ double parted(double apart) {
   int parted = 0;
   for (int i = 0; i < 1000; ++i) {
     const double near = 30 + 0.0013 * i;
-    parted += echoes({{.range = near, .power = 1e-6}, {.range = near + apart * unit, .power = 1e-6}}).size() == 2 ? 1 : 0;
+    parted +=
+        echoes({{.range = near, .power = 1e-6}, {.range = near + apart * unit, .power = 1e-6}}).size() == 2 ? 1 : 0;
   }
   return parted / 1000.0;
 }
@@ -65,7 +66,8 @@ TEST_CASE("apertures side by side") {
   const ApertureGeometry g{.separation = 0.08, .field_of_view = 1.5e-3};
   double worst = 0;
   for (double range = 20; range < 200; range *= 1.05) {
-    // Source: overlap function of geometrical optics, by rings of the beam; the arc of a ring in the view by the law of cosines
+    // Source: overlap function of geometrical optics, by rings of the beam; the arc of a ring in the view by the law of
+    // cosines
     const double beam = 0.5 * std::hypot(0.01, 0.5e-3 * range), view = 0.025 + range * std::tan(0.75e-3);
     double share = 0;
     constexpr int rings = 20'000;

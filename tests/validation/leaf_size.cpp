@@ -70,8 +70,9 @@ Statistics of(const Map& map, std::size_t subrays) {
   int pulses = 0;
   for (int x = -9; x <= 9; ++x)
     for (int y = -9; y <= 9; ++y, ++pulses) {
-      const Platform source{Tripod{.position = {x, y, 50}}, Mount{.boresight = rotation_about(axis::right, -pi / 2)},
-                            Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = {.pulse_length = 4e-9, .divergence = 0.6 / 47}}}};
+      const Platform source{
+          Tripod{.position = {x, y, 50}}, Mount{.boresight = rotation_about(axis::right, -pi / 2)},
+          Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = {.pulse_length = 4e-9, .divergence = 0.6 / 47}}}};
       const Survey survey{source,
                           SunflowerFootprint{subrays},
                           map,
@@ -96,7 +97,8 @@ TEST_CASE("leaves of a size") {
   using Mesh = TriangleMesh<>;
   using Grid = VoxelGrid<TransmissiveVoxels>;
   const Scene<Mesh> leaves({{std::make_shared<const Mesh>(facets(7)), material_table(), {}, 1}});
-  const Scene<Grid> sized({{std::make_shared<const Grid>(voxels(), TransmissiveVoxels{.leaf_area = leaf}), material_table(), {}, 1}});
+  const Scene<Grid> sized(
+      {{std::make_shared<const Grid>(voxels(), TransmissiveVoxels{.leaf_area = leaf}), material_table(), {}, 1}});
 
   for (const std::size_t n : std::array<std::size_t, 5>{7, 19, 62, 279, 2001}) {
     const Statistics facets = of(leaves, n), voxels = of(sized, n);

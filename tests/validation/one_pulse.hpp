@@ -31,8 +31,8 @@ inline const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity
 
 /// One pulse from the origin to the north, along +y.
 template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
-[[nodiscard]] Result one_pulse(const Map& map, const Pattern& footprint, const Laser& laser = {}, const Receiver& receiver = vacuum,
-                               const Instrument& detector = {}) {
+[[nodiscard]] Result one_pulse(const Map& map, const Pattern& footprint, const Laser& laser = {},
+                               const Receiver& receiver = vacuum, const Instrument& detector = {}) {
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
   const Survey survey{source, WithSubrayRecord{footprint}, map, receiver, detector};
   auto workspace = survey.workspace();

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Echoes of roofs and spheres, and cross sections of targets, by single pulses: beside published figures and quadratures of the waveform.
+// Echoes of roofs and spheres, and cross sections of targets, by single pulses: beside published figures and
+// quadratures of the waveform.
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +37,8 @@ struct Lit {
   double range, power;  ///< range [m]; power, of all light from a white wall that faces the beam
 };
 
-/// Outgoing pulse at a time since its peak, which is 1. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, tau the pulse length
-/// by 3.3947.
+/// Outgoing pulse at a time since its peak, which is 1. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, tau the
+/// pulse length by 3.3947.
 double outgoing(double t, double length) {
   const double u = t / (length / 3.3946806708) + 2;
   return u > 0 ? 0.25 * u * u * std::exp(2 - u) : 0;
@@ -94,14 +95,17 @@ double reading(const Curve& c, EchoTiming timing, double threshold) {
 }
 
 /// Timings that read the samples.
-constexpr EchoTiming timings[] = {EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::centroid, EchoTiming::peak};
+constexpr EchoTiming timings[] = {EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::centroid,
+                                  EchoTiming::peak};
 
 const char* name_of(EchoTiming timing) {
-  constexpr const char* names[]{"mean of true ranges", "maximum", "leading edge", "constant fraction", "centre of gravity"};
+  constexpr const char* names[]{"mean of true ranges", "maximum", "leading edge", "constant fraction",
+                                "centre of gravity"};
   return names[static_cast<std::size_t>(timing)];
 }
 
-// -------------------------------------------------------------------------------------------------------------- targets
+// --------------------------------------------------------------------------------------------------------------
+// targets
 
 /// A white roof that the beam's axis meets at a range, turned aside by an angle.
 struct Roof {
@@ -130,7 +134,9 @@ constexpr double deviation = 0.25;                       ///< of that footprint'
 const SunflowerFootprint sunflower(2001);
 
 /// Power received from a white wall that fills the footprint [W].
-double white_wall(const Laser& laser) { return laser.peak_power * std::pow(0.5 * vacuum.diameter / far_off, 2) * vacuum.efficiency; }
+double white_wall(const Laser& laser) {
+  return laser.peak_power * std::pow(0.5 * vacuum.diameter / far_off, 2) * vacuum.efficiency;
+}
 
 /// Light of a Gaussian footprint on a white roof.
 std::vector<Lit> on_roof(double angle) {
@@ -152,8 +158,9 @@ std::vector<Lit> on_ball(double radius) {
   constexpr int n = 2000;
   for (int k = 0; k < n; ++k) {
     const double r = (k + 0.5) / n * radius, cosine = std::sqrt(1 - r * r / (radius * radius));
-    lit.push_back({far_off + radius * (1 - cosine),
-                   r / (deviation * deviation) * std::exp(-0.5 * r * r / (deviation * deviation)) * radius / n * cosine});
+    lit.push_back(
+        {far_off + radius * (1 - cosine),
+         r / (deviation * deviation) * std::exp(-0.5 * r * r / (deviation * deviation)) * radius / n * cosine});
   }
   return lit;
 }
@@ -177,7 +184,8 @@ std::vector<Lit> lit_by(const Result& result) {
   return lit;
 }
 
-// ------------------------------------------------------------------------------------------------------- cross sections
+// ------------------------------------------------------------------------------------------------------- cross
+// sections
 
 /// Even light over the disc of a beam's 1/e^2 radius.
 class EvenFootprint {
@@ -185,7 +193,8 @@ class EvenFootprint {
   [[nodiscard]] std::size_t size() const noexcept { return 200'000; }
   [[nodiscard]] double share(std::size_t) const noexcept { return 1.0 / 200'000; }
   [[nodiscard]] Vec2 offset(std::size_t j) const noexcept {
-    const double r = std::sqrt((static_cast<double>(j) + 0.5) / 200'000), turn = static_cast<double>(j) * circle * (3 - std::sqrt(5.0));
+    const double r = std::sqrt((static_cast<double>(j) + 0.5) / 200'000),
+                 turn = static_cast<double>(j) * circle * (3 - std::sqrt(5.0));
     return {r * std::cos(turn), r * std::sin(turn)};
   }
 };
@@ -204,8 +213,10 @@ double cross_section(const Map& map, const Pattern& footprint) {
 
 /// A square plate of two triangles on the beam's axis, turned aside by an angle.
 Scene<TriangleMesh<>> plate(double side, double angle) {
-  const Vec3 across = 0.5 * side * Vec3{std::cos(angle), std::sin(angle), 0}, up = 0.5 * side * axis::up, centre{0, range, 0};
-  const MeshData data{{centre - across - up, centre + across - up, centre + across + up, centre - across + up}, {{0, 1, 2}, {0, 2, 3}}};
+  const Vec3 across = 0.5 * side * Vec3{std::cos(angle), std::sin(angle), 0}, up = 0.5 * side * axis::up,
+             centre{0, range, 0};
+  const MeshData data{{centre - across - up, centre + across - up, centre + across + up, centre - across + up},
+                      {{0, 1, 2}, {0, 2, 3}}};
   return Scene<TriangleMesh<>>(
       {{std::make_shared<const TriangleMesh<>>(data), material_table({Material{.reflectance = reflectance}}), {}, 1}});
 }
@@ -223,11 +234,13 @@ TEST_CASE("ranges of a roof by timings of its echo") {
       REQUIRE(echoes.size() == 1);
       return echoes[0].range - far_off;
     };
-    const std::string head = "roof of 45 degrees, footprint of 1 m, threshold 1/" + std::to_string(part) + " of a wall's peak: ";
+    const std::string head =
+        "roof of 45 degrees, footprint of 1 m, threshold 1/" + std::to_string(part) + " of a wall's peak: ";
     double least = 1, most = -1, nearest = 1, farthest = -1;
     for (const EchoTiming timing : timings) {
       // corrected as instruments are, by a flat target of ten thresholds
-      const double expected = reading(roof, timing, threshold) - reading(received({{far_off, 10 * threshold}}, length), timing, threshold);
+      const double expected =
+          reading(roof, timing, threshold) - reading(received({{far_off, 10 * threshold}}, length), timing, threshold);
       const double found = simulated(timing);
       if (part == 20) row(head + name_of(timing) + " [m]", expected, found, 0.002);
       least = std::min(least, expected);
@@ -245,10 +258,12 @@ TEST_CASE("ranges of a roof by timings of its echo") {
 TEST_CASE("range of a wall by timings of its echo") {
   for (const EchoTiming timing : timings)
     for (const double record : {0.0, 100e-9}) {
-      const FullWaveform detector{WaveformSettings{.threshold = 0.1 * white_wall(one_metre), .timing = timing, .record_length = record}};
+      const FullWaveform detector{
+          WaveformSettings{.threshold = 0.1 * white_wall(one_metre), .timing = timing, .record_length = record}};
       const auto echoes = one_pulse(Roof{far_off, 0}, sunflower, one_metre, vacuum, detector).echoes;
       REQUIRE(echoes.size() == 1);
-      row(Kind::bound, std::string("wall, ") + (record > 0 ? "waveform kept: " : "no waveform kept: ") + name_of(timing) + " [m]", 0,
+      row(Kind::bound,
+          std::string("wall, ") + (record > 0 ? "waveform kept: " : "no waveform kept: ") + name_of(timing) + " [m]", 0,
           echoes[0].range - far_off, 0.001);
     }
 }
@@ -256,12 +271,14 @@ TEST_CASE("range of a wall by timings of its echo") {
 TEST_CASE("times of light from slopes and spheres") {
   for (const int angle : {20, 45, 70}) {
     const auto lit = lit_by(one_pulse(Roof{far_off, angle * circle / 180}, sunflower, one_metre));
-    // a Gaussian footprint on a plane is a Gaussian in time; slopes and spheres as in Jutzi & Stilla 2006, ISPRS Archives 36-3
+    // a Gaussian footprint on a plane is a Gaussian in time; slopes and spheres as in Jutzi & Stilla 2006, ISPRS
+    // Archives 36-3
     row("slope of " + std::to_string(angle) + " degrees, footprint of 1 m: deviation of times [ns]",
         1e9 * 2 * std::tan(angle * circle / 180) * deviation / light, 1e9 * spread(lit), 0.005);
   }
   const Laser laser{.pulse_length = 1e-9, .divergence = one_metre.divergence};
-  const double pulse = std::sqrt(3.0) * 1e-9 / 3.3946806708, interval = 1e-9 / 16;  // deviation of (t/tau)^2 exp(-t/tau): sqrt(3) tau
+  const double pulse = std::sqrt(3.0) * 1e-9 / 3.3946806708,
+               interval = 1e-9 / 16;  // deviation of (t/tau)^2 exp(-t/tau): sqrt(3) tau
   for (const double radius : {0.25, 0.5, 1.0}) {
     char head[64];
     std::snprintf(head, sizeof head, "sphere of radius %g m, footprint of 1 m: ", radius);
@@ -271,7 +288,8 @@ TEST_CASE("times of light from slopes and spheres") {
     REQUIRE(found.echoes.size() == 1);
     const auto lit = on_ball(radius);
     row(std::string(head) + "deviation of times [ns]", 1e9 * spread(lit), 1e9 * spread(lit_by(found)), 0.005);
-    row(std::string(head) + "width of the echo [ns]", 1e9 * std::hypot(spread(lit), pulse), 1e9 * found.echoes[0].width, 0.005);
+    row(std::string(head) + "width of the echo [ns]", 1e9 * std::hypot(spread(lit), pulse), 1e9 * found.echoes[0].width,
+        0.005);
     const Curve expected = received(lit, laser.pulse_length);
     double worst = 0;
     for (std::size_t i = 0; i < found.waveform.size(); ++i) {
@@ -289,14 +307,17 @@ TEST_CASE("backscatter cross sections") {
   // if the surface fills it
   row("wall, reflectance 0.3, even light of 1 mrad, 1 km: cross section [m^2]",
       circle * reflectance * range * range * divergence * divergence, cross_section(plate(4, 0), even), 1e-4);
-  row("plate of 0.1 m in that light: cross section [m^2]", 4 * reflectance * area, cross_section(plate(side, 0), even), 2e-5);
+  row("plate of 0.1 m in that light: cross section [m^2]", 4 * reflectance * area, cross_section(plate(side, 0), even),
+      2e-5);
   const double facing = 0.5;  // cosine: of the light that is met, and of that which is sent back
   row("the same, turned by 60 degrees: cross section [m^2]", 4 * reflectance * area * facing * facing,
       cross_section(plate(side, circle / 3), even), 2e-5);
   // the squared cosine integrated over the hemisphere's area: 2 pi a^2 / 3
   row("sphere of radius 0.05 m in that light: cross section [m^2]", 4 * reflectance * 2 * circle * radius * radius / 3,
       cross_section(Ball{range - radius, radius, reflectance}, even), 2e-5);
-  const double inside = std::pow(std::erf(std::sqrt(0.5) * side / w), 2);  // of a Gaussian beam's light, in the plate's square
-  row("plate of 0.1 m on the axis of a Gaussian beam: power, of that in even light of its 1/e^2 diameter", inside * circle * w * w / area,
+  const double inside =
+      std::pow(std::erf(std::sqrt(0.5) * side / w), 2);  // of a Gaussian beam's light, in the plate's square
+  row("plate of 0.1 m on the axis of a Gaussian beam: power, of that in even light of its 1/e^2 diameter",
+      inside * circle * w * w / area,
       cross_section(plate(side, 0), SunflowerFootprint(100'000)) / (4 * reflectance * area), 0.01);
 }

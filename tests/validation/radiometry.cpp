@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Received power against range, for targets that fill the footprint in both directions, in one, or in none. Nothing in the radar equation
-// of a subray knows which: the exponents come out of how many subrays hit.
+// Received power against range, for targets that fill the footprint in both directions, in one, or in none. Nothing in
+// the radar equation of a subray knows which: the exponents come out of how many subrays hit.
 
 #include <cmath>
 #include <cstddef>
@@ -24,8 +24,8 @@ using namespace pulsecast::validation;
 
 namespace {
 
-/// A Gaussian beam cut into cells that shrink towards its axis by a tenth each, so that targets a ten-thousandth of its size are
-/// sampled as finely as those that fill it.
+/// A Gaussian beam cut into cells that shrink towards its axis by a tenth each, so that targets a ten-thousandth of its
+/// size are sampled as finely as those that fill it.
 class Lens {
  public:
   Lens() {
@@ -42,8 +42,12 @@ class Lens {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return places_.size() * places_.size(); }
-  [[nodiscard]] Vec2 offset(std::size_t j) const noexcept { return {places_[j % places_.size()], places_[j / places_.size()]}; }
-  [[nodiscard]] double share(std::size_t j) const noexcept { return shares_[j % places_.size()] * shares_[j / places_.size()]; }
+  [[nodiscard]] Vec2 offset(std::size_t j) const noexcept {
+    return {places_[j % places_.size()], places_[j / places_.size()]};
+  }
+  [[nodiscard]] double share(std::size_t j) const noexcept {
+    return shares_[j % places_.size()] * shares_[j / places_.size()];
+  }
 
  private:
   std::vector<double> places_, shares_;
@@ -109,12 +113,15 @@ double mean_power(double range, double radius) {
   const int times = 8;
   double sum = 0;
   for (int k = 0; k < times; ++k)
-    sum += one_pulse(Target{{random.uniform(-radius, radius), range, random.uniform(-radius, radius)}, radius}, lens, laser).power;
+    sum += one_pulse(Target{{random.uniform(-radius, radius), range, random.uniform(-radius, radius)}, radius}, lens,
+                     laser)
+               .power;
   return sum / times;
 }
 
-/// What a white surface that fills the footprint brings back [W]. Source: a disc on the axis of a Lambertian surface holds sin^2 of half
-/// the angle that it subtends of what is scattered, by the cosine law; far off that is D^2 / (4 R^2), as in Winiwarter et al. 2022.
+/// What a white surface that fills the footprint brings back [W]. Source: a disc on the axis of a Lambertian surface
+/// holds sin^2 of half the angle that it subtends of what is scattered, by the cosine law; far off that is D^2 / (4
+/// R^2), as in Winiwarter et al. 2022.
 double extended(double range) {
   return laser.peak_power * std::pow(std::sin(std::atan(0.5 * vacuum.diameter / range)), 2) * vacuum.efficiency;
 }
@@ -128,9 +135,10 @@ TEST_CASE("received power against range") {
   const double radius = 0.25e-3;  // a twentieth of the footprint's radius at 10 m
   row("meadow: exponent of power over range, 10 m to 5 km", -2,
       slope([&](double range) { return one_pulse(Meadow{range}, sunflower, laser).power; }), 0.01);
-  row("wire: exponent of power over range, 10 m to 5 km", -3, slope([&](double range) { return mean_power<Wire>(range, radius); }), 0.01);
-  row("small sphere: exponent of power over range, 10 m to 5 km", -4, slope([&](double range) { return mean_power<Ball>(range, radius); }),
-      0.01);
+  row("wire: exponent of power over range, 10 m to 5 km", -3,
+      slope([&](double range) { return mean_power<Wire>(range, radius); }), 0.01);
+  row("small sphere: exponent of power over range, 10 m to 5 km", -4,
+      slope([&](double range) { return mean_power<Ball>(range, radius); }), 0.01);
 }
 
 TEST_CASE("received power near by") {
@@ -138,19 +146,23 @@ TEST_CASE("received power near by") {
     const char* text;
     double range;
   };
-  for (const Case& c : {Case{"half its diameter", 0.5 * vacuum.diameter}, {"its diameter", vacuum.diameter}, {"0.2 m", 0.2}})
+  for (const Case& c :
+       {Case{"half its diameter", 0.5 * vacuum.diameter}, {"its diameter", vacuum.diameter}, {"0.2 m", 0.2}})
     row(std::string("meadow before an aperture of 0.15 m, at ") + c.text + ": power, of what was sent",
-        extended(c.range) / laser.peak_power, one_pulse(Meadow{c.range}, SunflowerFootprint(2001), laser).power / laser.peak_power, 1e-6);
+        extended(c.range) / laser.peak_power,
+        one_pulse(Meadow{c.range}, SunflowerFootprint(2001), laser).power / laser.peak_power, 1e-6);
 }
 
 TEST_CASE("received power at a range") {
   const double range = 1000, radius = 0.25e-3, w = 0.5e-3 * range;
   row("meadow at 1 km: power, of that by the radar equation", 1,
       one_pulse(Meadow{range}, SunflowerFootprint(2001), laser).power / extended(range), 1e-4);
-  // a Gaussian beam's irradiance over the cosine of the surface, integrated: pi a / 2 of a cylinder's width, 2 pi a^2 / 3 of a sphere's
-  // disc
+  // a Gaussian beam's irradiance over the cosine of the surface, integrated: pi a / 2 of a cylinder's width, 2 pi a^2 /
+  // 3 of a sphere's disc
   const double wire = extended(range) * std::sqrt(2 / pi) / w * pi * radius / 2;
   const double ball = extended(range) * 2 / (pi * w * w) * 2 * pi * radius * radius / 3;
-  row("wire of 0.5 mm at 1 km: power, of that by the integral over its surface", 1, mean_power<Wire>(range, radius) / wire, 0.01);
-  row("sphere of 0.5 mm at 1 km: power, of that by the integral over its surface", 1, mean_power<Ball>(range, radius) / ball, 0.01);
+  row("wire of 0.5 mm at 1 km: power, of that by the integral over its surface", 1,
+      mean_power<Wire>(range, radius) / wire, 0.01);
+  row("sphere of 0.5 mm at 1 km: power, of that by the integral over its surface", 1,
+      mean_power<Ball>(range, radius) / ball, 0.01);
 }

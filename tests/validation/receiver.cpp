@@ -36,7 +36,8 @@ const Laser laser{.pulse_length = 4e-9};
 const Emitter emitter{.laser = laser};
 
 template <class D, class Workspace>
-std::vector<Echo> echoes(const D& d, Workspace& w, std::vector<Reflection> reflections, std::uint64_t pulse, RangeGate gate) {
+std::vector<Echo> echoes(const D& d, Workspace& w, std::vector<Reflection> reflections, std::uint64_t pulse,
+                         RangeGate gate) {
   const Detection found = d.detect({emitter, gate, reflections, {.seed = 20, .pulse = pulse}}, w);
   return {found.echoes.begin(), found.echoes.end()};
 }
@@ -50,8 +51,9 @@ std::string number(double value) {
 /// Noise-equivalent power [W/sqrt(Hz)] for a peak of so many deviations of the noise in 2 GHz.
 double noise_power(double snr) { return power / snr / std::sqrt(2e9); }
 
-/// Least deviation of an unbiased range [m]. Source: Cramer-Rao bound in white noise of one-sided density N: N/2 by the integral of the
-/// squared slope; of (t/tau)^2 exp(-t/tau) e^2/4, with a full width at half maximum of 3.3946807 tau, it is e^4/(64 tau).
+/// Least deviation of an unbiased range [m]. Source: Cramer-Rao bound in white noise of one-sided density N: N/2 by the
+/// integral of the squared slope; of (t/tau)^2 exp(-t/tau) e^2/4, with a full width at half maximum of 3.3946807 tau,
+/// it is e^4/(64 tau).
 double bound(double snr) {
   const double tau = 4e-9 / 3.3946806708, slope = std::exp(4.0) / (64 * tau);
   return 0.5 * light * std::sqrt(0.5 / (snr * snr * 2e9) / slope);
@@ -64,21 +66,25 @@ TEST_CASE("ranging in noise") {
     for (const double snr : {30.0, 100.0, 300.0})
       for (const double bin : {1e-9, 0.25e-9, 0.05e-9}) {
         FullWaveform d{
-            WaveformSettings{.sample_interval = bin, .threshold = 0.4 * power, .prominence = 0.2 * power, .timing = EchoTiming::peak},
+            WaveformSettings{.sample_interval = bin,
+                             .threshold = 0.4 * power,
+                             .prominence = 0.2 * power,
+                             .timing = EchoTiming::peak},
             NoWidth{},
-            BandLimitedReceiver{
-                ReceiverChain{.bandwidth = matched ? 350e6 : 0, .noise_power = noise_power(snr), .matched_filter = matched}}};
+            BandLimitedReceiver{ReceiverChain{
+                .bandwidth = matched ? 350e6 : 0, .noise_power = noise_power(snr), .matched_filter = matched}}};
         d.prepare(laser);
         auto w = d.workspace(1);
         double squares = 0;
         constexpr int pulses = 400;
         for (int k = 0; k < pulses; ++k) {
           const double range = 100 + (k + 0.5) / pulses * bin * light / 2;
-          for (const Echo& echo : echoes(d, w, {{.range = range, .power = power}}, static_cast<std::uint64_t>(k), {95, 105}))
+          for (const Echo& echo :
+               echoes(d, w, {{.range = range, .power = power}}, static_cast<std::uint64_t>(k), {95, 105}))
             squares += std::pow(echo.range - range, 2) / pulses;
         }
-        row(std::string(matched ? "matched filter" : "default low-pass") + ", peak over noise in 2 GHz " + number(snr) + ", bins of " +
-                number(1e9 * bin) + " ns: range error by Cramer-Rao bound",
+        row(std::string(matched ? "matched filter" : "default low-pass") + ", peak over noise in 2 GHz " + number(snr) +
+                ", bins of " + number(1e9 * bin) + " ns: range error by Cramer-Rao bound",
             1, std::sqrt(squares) / bound(snr), matched ? 0.3 : 1);
       }
 }
@@ -126,7 +132,8 @@ TEST_CASE("noise that is next to none") {
 }
 
 TEST_CASE("saturation and overlapping echoes") {
-  const double s = 4e-9 / std::sqrt(8 * std::numbers::ln2) * std::numbers::sqrt2;  // of a Gaussian pulse and its low-pass
+  const double s =
+      4e-9 / std::sqrt(8 * std::numbers::ln2) * std::numbers::sqrt2;  // of a Gaussian pulse and its low-pass
   const auto rise = [&](double by_level) { return -s * std::sqrt(2 * std::log(by_level)); };
   FullWaveform clipped{WaveformSettings{.threshold = 0.01 * power, .timing = EchoTiming::constant_fraction}, NoWidth{},
                        BandLimitedReceiver{ReceiverChain{.saturation = power / 20}, GaussianPulse{}}};
@@ -134,14 +141,16 @@ TEST_CASE("saturation and overlapping echoes") {
   auto w = clipped.workspace(1);
   row("Gaussian pulse clipped at 1/20: walk of half its height [m]", 0.5 * light * (rise(40) - rise(2)),
       echoes(clipped, w, {{.range = 100, .power = power}}, 0, {80, 120}).at(0).range - 100, 1e-3);
-  GaussianDecomposition parts{
-      FullWaveform{WaveformSettings{.threshold = 0.05 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 100e-9}, NoWidth{},
-                   BandLimitedReceiver{ReceiverChain{}, GaussianPulse{}}}};
+  GaussianDecomposition parts{FullWaveform{
+      WaveformSettings{.threshold = 0.05 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 100e-9},
+      NoWidth{}, BandLimitedReceiver{ReceiverChain{}, GaussianPulse{}}}};
   parts.prepare(laser);
   auto v = parts.workspace(2);
-  const auto two = echoes(parts, v, {{.range = 100, .power = power}, {.range = 101, .power = 0.6 * power}}, 0, {80, 120});
+  const auto two =
+      echoes(parts, v, {{.range = 100, .power = power}, {.range = 101, .power = 0.6 * power}}, 0, {80, 120});
   row("Gaussian echoes 1 m apart, decomposed: second range [m]", 101, two.at(1).range, 1e-4);
-  row("Gaussian echoes 1 m apart, decomposed: second amplitude by the first", 0.6, two.at(1).amplitude / two.at(0).amplitude, 1e-3);
+  row("Gaussian echoes 1 m apart, decomposed: second amplitude by the first", 0.6,
+      two.at(1).amplitude / two.at(0).amplitude, 1e-3);
 }
 
 TEST_CASE("photons") {
@@ -154,7 +163,8 @@ TEST_CASE("photons") {
     d.prepare(laser);
     auto w = d.workspace(1);
     int found = 0;
-    for (std::uint64_t k = 0; k < pulses; ++k) found += echoes(d, w, {{.range = 100, .power = power_for(mean)}}, k, {}).empty() ? 0 : 1;
+    for (std::uint64_t k = 0; k < pulses; ++k)
+      found += echoes(d, w, {{.range = 100, .power = power_for(mean)}}, k, {}).empty() ? 0 : 1;
     const double p = 1 - std::exp(-mean);
     row(number(mean) + " photoelectrons: probability of detection", p, static_cast<double>(found) / pulses,
         3 * std::sqrt(p * (1 - p) / pulses));
@@ -214,15 +224,17 @@ TEST_CASE("phases") {
 TEST_CASE("moments of footprints, and leaves against the light") {
   const auto variance = [](const auto& footprint) {
     double sum = 0;
-    for (std::size_t j = 0; j < footprint.size(); ++j) sum += footprint.share(j) * dot(footprint.offset(j), footprint.offset(j));
+    for (std::size_t j = 0; j < footprint.size(); ++j)
+      sum += footprint.share(j) * dot(footprint.offset(j), footprint.offset(j));
     return sum;
   };
   row("lattice of 7: squared distance from the axis, in squared radii", 0.5, variance(LatticeFootprint(7)), 1e-6);
   row("lattice of 19: squared distance from the axis, in squared radii", 0.5, variance(LatticeFootprint(19)), 1e-6);
   row("sunflower of 37: squared distance from the axis, in squared radii", 0.5, variance(SunflowerFootprint(37)), 1e-6);
-  // Source: mean squared cosine by mean cosine; of spherical leaves 1/3 by 1/2; of density (2/pi)(1 +- cos 2t) from above 3/4 by 8/(3 pi),
-  // and 1/4 by 4/(3 pi)
-  row("spherical leaves from above: backscatter by reflectance", 2.0 / 3, LeafAngles::spherical().incidence_cosine(axis::up), 1e-6);
+  // Source: mean squared cosine by mean cosine; of spherical leaves 1/3 by 1/2; of density (2/pi)(1 +- cos 2t) from
+  // above 3/4 by 8/(3 pi), and 1/4 by 4/(3 pi)
+  row("spherical leaves from above: backscatter by reflectance", 2.0 / 3,
+      LeafAngles::spherical().incidence_cosine(axis::up), 1e-6);
   row("planophile leaves from above: backscatter by reflectance", 0.75 / (8 / (3 * std::numbers::pi)),
       LeafAngles::planophile().incidence_cosine(axis::up), 1e-5);
   row("erectophile leaves from above: backscatter by reflectance", 0.25 / (4 / (3 * std::numbers::pi)),

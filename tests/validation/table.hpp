@@ -36,8 +36,8 @@ enum class Kind : std::uint8_t {
   return text;
 }
 
-/// A number to a tenth of a tolerance: what is below, compilers may round differently. In full if there is no tolerance; by a power of ten
-/// if there would be too many digits before or behind the point, or none but zeros.
+/// A number to a tenth of a tolerance: what is below, compilers may round differently. In full if there is no
+/// tolerance; by a power of ten if there would be too many digits before or behind the point, or none but zeros.
 [[nodiscard]] inline std::string to_a_tenth(double value, double tolerance) {
   const auto exponent = [](double size) { return static_cast<int>(std::floor(std::log10(size) + 1e-9)); };
   if (tolerance == 0 || !std::isfinite(value)) return pulsecast::detail::to_text(value);
@@ -51,13 +51,14 @@ enum class Kind : std::uint8_t {
 }
 
 namespace detail {
-/// Checks a figure against the expected one, and prints both, how far they are apart, and the tolerance as the cells of a row after `head`.
+/// Checks a figure against the expected one, and prints both, how far they are apart, and the tolerance as the cells of
+/// a row after `head`.
 inline void check_and_print(const std::string& head, double expected, double found, double tolerance) {
   char allowed[32];
   std::snprintf(allowed, sizeof allowed, "%g", tolerance);
   const double error = found == expected ? 0 : std::fabs(found - expected);
-  std::printf("| %s | %s | %s | %s | %s |\n", head.c_str(), to_a_tenth(expected, tolerance).c_str(), to_a_tenth(found, tolerance).c_str(),
-              to_two_digits(error).c_str(), allowed);
+  std::printf("| %s | %s | %s | %s | %s |\n", head.c_str(), to_a_tenth(expected, tolerance).c_str(),
+              to_a_tenth(found, tolerance).c_str(), to_two_digits(error).c_str(), allowed);
   CAPTURE(head);
   CAPTURE(expected);
   CAPTURE(found);
@@ -65,8 +66,8 @@ inline void check_and_print(const std::string& head, double expected, double fou
 }
 }  // namespace detail
 
-/// Checks a simulated figure against the expected one, and prints both as a row of a table in docs/validation.md. The tolerance is in the
-/// unit of the figures, which `what` names.
+/// Checks a simulated figure against the expected one, and prints both as a row of a table in docs/validation.md. The
+/// tolerance is in the unit of the figures, which `what` names.
 inline void row(Kind kind, const std::string& what, double expected, double simulated, double tolerance) {
   detail::check_and_print(what + " | " + name_of(kind), expected, simulated, tolerance);
 }

@@ -75,15 +75,19 @@ Errors of(const Pattern& footprint) {
 }  // namespace
 
 TEST_CASE("thin wires") {
-  const Errors fixed = of(LatticeFootprint(19)), turned = of(TurnedFootprint{LatticeFootprint(19)}), dense = of(LatticeFootprint(97));
+  const Errors fixed = of(LatticeFootprint(19)), turned = of(TurnedFootprint{LatticeFootprint(19)}),
+               dense = of(LatticeFootprint(97));
   const std::string title = "wire of 10 mm in a footprint of 0.5 m, ";
   row(title + "lattice of 19: mean share of the light", 1, fixed.mean, 0.05);
   row(title + "lattice of 19 turned for each pulse: mean share of the light", 1, turned.mean, 0.05);
   row(title + "lattice of 97: mean share of the light", 1, dense.mean, 0.05);
   row(title + "lattice of 97: share of the pulses with an echo", 1, dense.echoes, 0.01);
-  row(Kind::bound, title + "lattice of 97, 100 pulses along it: error of the mean, by the right one", 0, dense.along, 0.3);
-  row(Kind::bound, title + "lattice of 19, 100 pulses along it: error of the mean, by the right one", 0, fixed.along, 1.2);
-  row(Kind::bound, title + "lattice of 19 turned for each pulse, 100 pulses along it: error of the mean, by the right one", 0, turned.along,
+  row(Kind::bound, title + "lattice of 97, 100 pulses along it: error of the mean, by the right one", 0, dense.along,
       0.3);
+  row(Kind::bound, title + "lattice of 19, 100 pulses along it: error of the mean, by the right one", 0, fixed.along,
+      1.2);
+  row(Kind::bound,
+      title + "lattice of 19 turned for each pulse, 100 pulses along it: error of the mean, by the right one", 0,
+      turned.along, 0.3);
   CHECK(fixed.along > 3 * turned.along);
 }

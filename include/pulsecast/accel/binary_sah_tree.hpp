@@ -20,22 +20,23 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of least SAH cost. Leaves of
-/// the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of the leaves.
-/// Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
+/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of least
+/// SAH cost. Leaves of the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of the
+/// leaves. Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
 template <std::floating_point Real>
 class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the node's index; 0 for one primitive.
+  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the node's index; 0 for
+  /// one primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of primitives per leaf of the collapsed
-  /// tree.
+  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of primitives per leaf
+  /// of the collapsed tree.
   BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, const Workers& workers)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // upper levels: one node at a time on all threads; then the subtrees in parallel
@@ -45,7 +46,8 @@ class BinarySahTree {
       std::size_t halves = 0;  // index of the first half, the second follows it; 0 if built as one subtree
     };
     const unsigned threads = workers.count();
-    const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
+    const std::size_t grain =
+        threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
     std::vector<Step> steps;
     steps.push_back({{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(workers)}});
     std::vector<std::size_t> subtrees;
@@ -53,7 +55,8 @@ class BinarySahTree {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         subtrees.push_back(i);
-        for (std::size_t k = subtrees.size() - 1; k > 0 && steps[subtrees[k - 1]].task.size() < steps[i].task.size(); --k)
+        for (std::size_t k = subtrees.size() - 1; k > 0 && steps[subtrees[k - 1]].task.size() < steps[i].task.size();
+             --k)
           std::swap(subtrees[k - 1], subtrees[k]);  // largest first
         continue;
       }
@@ -68,7 +71,8 @@ class BinarySahTree {
     for (std::size_t i = steps.size(); i-- > 0;)
       if (const std::size_t halves = steps[i].halves; halves > 0) {
         const Step &first = steps[halves], &second = steps[halves + 1];
-        steps[i].sums = plan(nodes_[*steps[i].task.number], first.sums, first.task.size(), second.sums, second.task.size());
+        steps[i].sums =
+            plan(nodes_[*steps[i].task.number], first.sums, first.task.size(), second.sums, second.task.size());
       }
     spare_ = {};
   }
@@ -100,14 +104,15 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at once, and their
-                                            ///< primitives may be shapes with trees of their own
-  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
+  static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at
+                                            ///< once, and their primitives may be shapes with trees of their own
+  static constexpr double leaf_cost = 1;  ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;
 
-  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its position is the node's index.
+  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its position is the
+  /// node's index.
   struct Node {
     BoundingBox<Real> box;
     std::uint32_t first, second;    ///< indices of the children, 0 for one primitive
@@ -197,12 +202,16 @@ class BinarySahTree {
     const std::size_t parts = alone ? 1 : chunk_count(task.size());
     const auto each_part = [&](const auto& act) {
       if (alone) return act(space[0], from, from + task.size());
-      for_each_chunk(task.size(), workers,
-                     [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
+      for_each_chunk(task.size(), workers, [&](std::size_t i, std::size_t begin, std::size_t end) {
+        act(space[i], from + begin, from + end);
+      });
     };
-    const std::size_t count = primitives_.size() <= few ? Bins::max_slices : std::min<std::size_t>(Bins::max_slices, 4 + task.size() / 16);
+    const std::size_t count =
+        primitives_.size() <= few ? Bins::max_slices : std::min<std::size_t>(Bins::max_slices, 4 + task.size() / 16);
     const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
-    each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { part.bins.fill(slices, begin, end); });
+    each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+      part.bins.fill(slices, begin, end);
+    });
     Bins together;
     const Bins* all = &space[0].bins;
     if (parts > 1) {
@@ -213,7 +222,8 @@ class BinarySahTree {
     const Split split = best_split(*all, slices, task.size());
     if (split.slice == 0) return halve(task);
     std::uint32_t left = 0;
-    Task first{task.begin, 0, task.depth + 1, !task.spare, nullptr, {}}, second{0, task.end, task.depth + 1, !task.spare, nullptr, {}};
+    Task first{task.begin, 0, task.depth + 1, !task.spare, nullptr, {}},
+        second{0, task.end, task.depth + 1, !task.spare, nullptr, {}};
     for (std::size_t i = 0; i < slices.count(); ++i) {
       (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
       if (i < split.slice) left += all->counts[split.axis][i];
@@ -246,12 +256,13 @@ class BinarySahTree {
   }
 
   /// Moves primitives to their halves, stable in order.
-  static void scatter(ChunkBins& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
-                      const Boxed<Real>* end) noexcept {
+  static void scatter(ChunkBins& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to,
+                      const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
     part.centres[0] = part.centres[1] = Growing();
     for (; begin != end; ++begin) {
       const Corner centre = begin->low() + begin->high();
-      const std::size_t half = slices.reaches(split.axis, begin->box.min[split.axis] + begin->box.max[split.axis], split.slice) ? 1 : 0;
+      const std::size_t half =
+          slices.reaches(split.axis, begin->box.min[split.axis] + begin->box.max[split.axis], split.slice) ? 1 : 0;
       to[part.to[half]++] = *begin;
       part.centres[half].extend(centre, centre);
     }
@@ -305,7 +316,8 @@ class BinarySahTree {
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
   /// Plans a node from the costs and sizes of its halves.
-  Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second, std::size_t in_second) const noexcept {
+  Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second,
+            std::size_t in_second) const noexcept {
     Sums sums;
     const std::size_t size = in_first + in_second;
     for (std::size_t j = 1; j < places; ++j) {

@@ -25,17 +25,17 @@ namespace PULSECAST_NAMESPACE {
 template <std::floating_point Real>
 class BvhRefit;
 
-/// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary SAH tree down to
-/// single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to `leaf_size` primitives. Every primitive
-/// is in exactly one leaf. A bundle traverses the tree as a whole, front to back. The build halves a range where an SAH split would exceed
-/// 64 levels of the binary tree. The tree is the same for any workers.
-/// Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
-/// (collapsing).
+/// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary
+/// SAH tree down to single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to
+/// `leaf_size` primitives. Every primitive is in exactly one leaf. A bundle traverses the tree as a whole, front to
+/// back. The build halves a range where an SAH split would exceed 64 levels of the binary tree. The tree is the same
+/// for any workers. Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic);
+/// Wald, Benthin & Boulos 2008 (collapsing).
 template <std::floating_point Real = float>
 class Bvh {
  public:
-  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. `leaf_size`, from 1 to 7: several
-  /// primitives for vectorized tests; 1 where a test is a search of its own, as for the parts of a scene.
+  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. `leaf_size`, from 1 to
+  /// 7: several primitives for vectorized tests; 1 where a test is a search of its own, as for the parts of a scene.
   /// @throws SettingError for a `leaf_size` out of range, coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit Bvh(const detail::BoxRangeRef& boxes, const Workers& workers = {}, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
@@ -77,12 +77,15 @@ class Bvh {
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + primitives_.memory(); }
 
   /// Primitives in the order of the leaves.
-  [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {primitives_.data(), primitives_.size()}; }
+  [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept {
+    return {primitives_.data(), primitives_.size()};
+  }
 
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may meet.
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may
+  /// meet.
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
@@ -95,8 +98,8 @@ class Bvh {
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
 
-  /// True only if no ray of a cone comes near a primitive, as of one that `MissesCones`. Opens few nodes: a cone between the leaves deep in
-  /// the tree gets false.
+  /// True only if no ray of a cone comes near a primitive, as of one that `MissesCones`. Opens few nodes: a cone
+  /// between the leaves deep in the tree gets false.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     if (nodes_.empty() || cone.passes(bounds_)) return true;
     constexpr std::size_t max_opened = 16;
@@ -108,7 +111,8 @@ class Bvh {
       if (opened == max_opened) return false;
       const Node& node = nodes_[waiting[--count]];
       std::array<Real, places> entries;
-      for (unsigned met = interval.inside(node.boxes, std::numeric_limits<Real>::max(), entries); met != 0; met &= met - 1) {
+      for (unsigned met = interval.inside(node.boxes, std::numeric_limits<Real>::max(), entries); met != 0;
+           met &= met - 1) {
         const auto place = static_cast<std::size_t>(std::countr_zero(met));
         if (node.size(place) > 0) return false;
         waiting[count++] = node.first(place);
@@ -124,9 +128,10 @@ class Bvh {
 
   struct alignas(64) Node {
     QuantizedBox8<Real> boxes;
-    std::uint32_t children = 0;       ///< index of the first child node; the others follow it
-    std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
-    std::uint8_t kinds[places] = {};  ///< per child: leaf size in the lower three bits, 0 for a node; above, offset from the first
+    std::uint32_t children = 0;    ///< index of the first child node; the others follow it
+    std::uint32_t primitives = 0;  ///< index of the first leaf primitive; the others follow it
+    std::uint8_t kinds[places] =
+        {};  ///< per child: leaf size in the lower three bits, 0 for a node; above, offset from the first
 
     [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
     [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {
@@ -182,8 +187,8 @@ class Bvh {
     }
   }
 
-  /// Child of a node, to be visited by a single ray: first primitive of a leaf, or index of a node. The key has the size of a leaf as its
-  /// tag, or 0.
+  /// Child of a node, to be visited by a single ray: first primitive of a leaf, or index of a node. The key has the
+  /// size of a leaf as its tag, or 0.
   struct Child {
     typename RayInterval<Real>::Key key;
     std::uint32_t first;
@@ -286,20 +291,21 @@ class Bvh {
     }
     const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
-    for_each_index(subtrees.size(), workers, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
-      const Subtree& own = subtrees[i];
-      for (std::size_t k = 0; k < own.nodes.size(); ++k) {
-        Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];
-        node.children += static_cast<std::uint32_t>(own.first_node - 1);
-      }
-    });
+    for_each_index(subtrees.size(), workers,
+                   [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
+                     const Subtree& own = subtrees[i];
+                     for (std::size_t k = 0; k < own.nodes.size(); ++k) {
+                       Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];
+                       node.children += static_cast<std::uint32_t>(own.first_node - 1);
+                     }
+                   });
     nodes_ = all;
     primitives_ = primitives;
     depth_ = depth;
   }
 
-  /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the
-  /// depth.
+  /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain` primitives go to `below`
+  /// instead. Returns the depth.
   static std::size_t make_nodes(const BinaryTree& binary, const Open& open, std::vector<Node>& nodes,
                                 const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, std::size_t grain,
                                 std::vector<Open>& below) {

@@ -19,13 +19,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is in every leaf that its box reaches: at
-/// most four leaves on average.
-/// Source: Wald & Havran 2006; binned: Shevtsov, Soupikov & Kapustin 2007.
+/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is in every leaf that
+/// its box reaches: at most four leaves on average. Source: Wald & Havran 2006; binned: Shevtsov, Soupikov & Kapustin
+/// 2007.
 template <std::floating_point Real = float>
 class KdTree {
  public:
-  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. It is the same for any workers.
+  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. It is the same for any
+  /// workers.
   /// @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit KdTree(const detail::BoxRangeRef& boxes, const Workers& workers = {}) {
     const detail::BuildInput<Real> input(boxes, workers);
@@ -73,7 +74,8 @@ class KdTree {
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may meet.
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may
+  /// meet.
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
@@ -88,7 +90,8 @@ class KdTree {
     for (;;) {
       if (node->axis() < 3) {
         const Node* const children = &nodes_[node->first()];
-        const Span low = interval.below(span, node->axis(), node->split), high = interval.above(span, node->axis(), node->split);
+        const Span low = interval.below(span, node->axis(), node->split),
+                   high = interval.above(span, node->axis(), node->split);
         const bool into_low = !low.empty() && low.entry <= limit, into_high = !high.empty() && high.entry <= limit;
         const bool earlier = low.entry < high.entry || (low.entry == high.entry && low.exit <= high.exit);
         const bool low_first = into_low && (!into_high || earlier);
@@ -131,7 +134,9 @@ class KdTree {
       node.split = split;
       return node;
     }
-    void place(std::size_t first, int axis) noexcept { packed = std::uint64_t{first} << 2 | static_cast<std::uint64_t>(axis); }
+    void place(std::size_t first, int axis) noexcept {
+      packed = std::uint64_t{first} << 2 | static_cast<std::uint64_t>(axis);
+    }
   };
   static_assert(sizeof(Node) == 16);
 

@@ -20,15 +20,17 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Build of a kd-tree: large nodes level by level, in chunks of their primitives, then the subtrees below, both on all threads. Nodes and
-/// leaves are in depth-first order, lower children first, for any number of threads. `Node`: a node of 16 bytes, as `KdTree` has it.
+/// Build of a kd-tree: large nodes level by level, in chunks of their primitives, then the subtrees below, both on all
+/// threads. Nodes and leaves are in depth-first order, lower children first, for any number of threads. `Node`: a node
+/// of 16 bytes, as `KdTree` has it.
 template <std::floating_point Real, class Node>
 class KdTreeBuilder {
  public:
   /// Takes at least one primitive.
   KdTreeBuilder(const SharedBuffer<Boxed<Real>>& primitives, const Workers& workers)
       // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
-      : deepest_(std::min(max_depth, static_cast<std::size_t>(8 + 1.3 * std::log2(static_cast<double>(primitives.size()))))) {
+      : deepest_(std::min(max_depth,
+                          static_cast<std::size_t>(8 + 1.3 * std::log2(static_cast<double>(primitives.size()))))) {
     const Box whole = box_of(primitives);
     cell_ = whole.box();
     steps_.push_back({{whole, cell_, leaves_per_primitive * static_cast<double>(primitives.size()), 0}, primitives});
@@ -52,7 +54,8 @@ class KdTreeBuilder {
   static constexpr std::size_t grain = 4096;  ///< primitives of a subtree at most: what is pending then fits a cache
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
-  static constexpr double empty_bonus = 0.8;  ///< cost factor for a split with an empty side. Source: Wald & Havran 2006, sec. 3.2
+  static constexpr double empty_bonus =
+      0.8;  ///< cost factor for a split with an empty side. Source: Wald & Havran 2006, sec. 3.2
 
   /// Node to be made.
   struct Task {
@@ -102,7 +105,8 @@ class KdTreeBuilder {
     Split split{};
     std::size_t lower = 0;  ///< index of the lower child, the upper one follows it; 0 for a subtree
     Subtree subtree{};
-    std::size_t own = 0, first_node = 0, first_reference = 0;  ///< places of its node, and of the first node and reference below
+    std::size_t own = 0, first_node = 0,
+                first_reference = 0;  ///< places of its node, and of the first node and reference below
   };
 
   /// Chunk of the primitives of a large node.
@@ -114,7 +118,9 @@ class KdTreeBuilder {
     std::array<Box, 2> filled{};
   };
 
-  static bool reaches_lower(const Boxed<Real>& b, const Split& s) noexcept { return b.box.min[s.axis] < s.at || b.box.max[s.axis] <= s.at; }
+  static bool reaches_lower(const Boxed<Real>& b, const Split& s) noexcept {
+    return b.box.min[s.axis] < s.at || b.box.max[s.axis] <= s.at;
+  }
   static bool reaches_upper(const Boxed<Real>& b, const Split& s) noexcept { return b.box.max[s.axis] > s.at; }
 
   static Box box_of(Primitives part) noexcept {
@@ -135,8 +141,11 @@ class KdTreeBuilder {
   }
 
   /// Halves of a node, without their bounds.
-  static std::array<Task, 2> halves(const Task& task, const Split& split, std::size_t lower, std::size_t upper) noexcept {
-    const auto share = [&](std::size_t side) { return task.allowance * static_cast<double>(side) / static_cast<double>(lower + upper); };
+  static std::array<Task, 2> halves(const Task& task, const Split& split, std::size_t lower,
+                                    std::size_t upper) noexcept {
+    const auto share = [&](std::size_t side) {
+      return task.allowance * static_cast<double>(side) / static_cast<double>(lower + upper);
+    };
     Task below{{}, task.cell, share(lower), task.depth + 1}, above{{}, task.cell, share(upper), task.depth + 1};
     below.cell.max[split.axis] = above.cell.min[split.axis] = split.at;
     return {below, above};
@@ -226,16 +235,19 @@ class KdTreeBuilder {
   void make_halves(std::span<Piece> pieces, Step& step) {
     std::size_t sizes[2] = {};
     for (Piece& piece : pieces)
-      for (std::size_t half = 0; half < 2; ++half) piece.to[half] = std::exchange(sizes[half], sizes[half] + piece.sizes[half]);
+      for (std::size_t half = 0; half < 2; ++half)
+        piece.to[half] = std::exchange(sizes[half], sizes[half] + piece.sizes[half]);
     if (step.split.axis < 0 || !worthwhile(step.task, step.primitives.size(), sizes[0], sizes[1])) return;
     step.lower = steps_.size();
     const auto tasks = halves(step.task, step.split, sizes[0], sizes[1]);
-    for (std::size_t half = 0; half < 2; ++half) steps_.push_back({tasks[half], SharedBuffer<Boxed<Real>>(sizes[half])});
+    for (std::size_t half = 0; half < 2; ++half)
+      steps_.push_back({tasks[half], SharedBuffer<Boxed<Real>>(sizes[half])});
   }
 
   /// Copies primitives to the halves that they reach, in their order.
   void scatter(Piece& piece, const Step& step) noexcept {
-    Boxed<Real>* const to[2] = {steps_[step.lower].primitives.data() + piece.to[0], steps_[step.lower + 1].primitives.data() + piece.to[1]};
+    Boxed<Real>* const to[2] = {steps_[step.lower].primitives.data() + piece.to[0],
+                                steps_[step.lower + 1].primitives.data() + piece.to[1]};
     Boxed<Real>* lower = to[0];
     Boxed<Real>* upper = to[1];
     for (const Boxed<Real>& boxed : piece.part) {
@@ -307,7 +319,8 @@ class KdTreeBuilder {
       return;
     }
     node += 2;
-    for (std::size_t half = 0; half < 2; ++half) place(steps_[step.lower + half], step.first_node + half, node, reference);
+    for (std::size_t half = 0; half < 2; ++half)
+      place(steps_[step.lower + half], step.first_node + half, node, reference);
   }
 
   /// Joins the subtrees.

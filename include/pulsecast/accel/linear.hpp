@@ -16,8 +16,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Accelerator without a search structure: tests every primitive. Oracle for the other accelerators, and efficient for a handful of
-/// primitives.
+/// Accelerator without a search structure: tests every primitive. Oracle for the other accelerators, and efficient for
+/// a handful of primitives.
 template <std::floating_point Real = float>
 class Linear {
  public:
@@ -43,7 +43,9 @@ class Linear {
 
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return primitives_.memory(); }
-  [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {primitives_.data(), primitives_.size()}; }
+  [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept {
+    return {primitives_.data(), primitives_.size()};
+  }
 
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>

@@ -17,15 +17,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and recomputes its boxes; `update` builds the
-/// tree anew where that would be too slow. Quality is the SAH cost of the boxes. Hits do not depend on it.
-/// Source: Lauterbach et al. 2006 (refit, with the cost watched).
+/// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and recomputes its boxes;
+/// `update` builds the tree anew where that would be too slow. Quality is the SAH cost of the boxes. Hits do not depend
+/// on it. Source: Lauterbach et al. 2006 (refit, with the cost watched).
 template <std::floating_point Real>
 class BvhRefit {
  public:
   static constexpr double max_growth = 1.6;  ///< SAH cost at which a tree is made anew, in units of its cost when built
 
-  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for a tree without surface.
+  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for a tree without
+  /// surface.
   [[nodiscard]] static double cost(const Bvh<Real>& tree) noexcept {
     double sum = 0, root = 0;
     for (const Node& node : tree.nodes_) {
@@ -44,12 +45,13 @@ class BvhRefit {
     return relative(sum, root);
   }
 
-  /// Sets `to` to the topology of `from` over boxes that have moved. `box_of(primitives)` returns the `Box` [m] around some primitives of
-  /// `from.order()`. `bounds` hold all of them [m]. `to`, last set by this object or empty, gives its memory;
-  /// without another owner nothing is allocated. Returns false if the cost exceeds `max_growth`: `to` is then empty. @throws SettingError
-  /// for boxes beyond 1e18 m
+  /// Sets `to` to the topology of `from` over boxes that have moved. `box_of(primitives)` returns the `Box` [m] around
+  /// some primitives of `from.order()`. `bounds` hold all of them [m]. `to`, last set by this object or empty, gives
+  /// its memory; without another owner nothing is allocated. Returns false if the cost exceeds `max_growth`: `to` is
+  /// then empty. @throws SettingError for boxes beyond 1e18 m
   template <class BoxOf>
-  [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const BoxOf& box_of, Bvh<Real>& to) {
+  [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const BoxOf& box_of,
+                           Bvh<Real>& to) {
     if (from.nodes_.empty()) {
       to = from;
       return true;
@@ -60,15 +62,18 @@ class BvhRefit {
     built_cost_ = state.built_cost_ > 0 ? state.built_cost_ : cost(from);
     to.nodes_ = {};
     to.primitives_ = {};
-    if (nodes_.size() != topology.size() || nodes_.memory().use_count() != 1) nodes_ = SharedBuffer<Node>(topology.size());
-    static_cast<void>(SharedBuffer<Node>(nodes_));  // counting an owner down acquires what another thread did to the memory before
+    if (nodes_.size() != topology.size() || nodes_.memory().use_count() != 1)
+      nodes_ = SharedBuffer<Node>(topology.size());
+    static_cast<void>(
+        SharedBuffer<Node>(nodes_));  // counting an owner down acquires what another thread did to the memory before
     around_.resize(topology.size());
     return finish(topology.data(), order, depth, bounds, box_of, to);
   }
 
-  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new one, built
-  /// by `workers`.
-  void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to, const Workers& workers = {}) {
+  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new
+  /// one, built by `workers`.
+  void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to,
+              const Workers& workers = {}) {
     Box bounds;
     for (const Box& box : boxes) bounds.extend(box);  // an empty box changes nothing
     const auto box_of = [&](std::span<const PrimitiveIndex> primitives) noexcept { return boxes[primitives[0]]; };
@@ -115,10 +120,11 @@ class BvhRefit {
 
   /// Computes all boxes, children before their parents, and sets the tree unless its cost is too high.
   template <class BoxOf>
-  [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth, const Box& bounds,
-                            const BoxOf& box_of, Bvh<Real>& to) {
+  [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth,
+                            const Box& bounds, const BoxOf& box_of, Bvh<Real>& to) {
     const double extent = std::max(max_norm(bounds.min), max_norm(bounds.max));
-    if (!(extent <= detail::max_coordinate)) throw_setting_error("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
+    if (!(extent <= detail::max_coordinate))
+      throw_setting_error("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
     const Vec3 centre = bounds.centre();
     const double reach = 0.5 * max_norm(bounds.size()) * 2 * static_cast<double>(std::numeric_limits<Real>::epsilon());
     const simd::Vec4<Real> margin(static_cast<Real>(reach) + std::numeric_limits<Real>::min());
@@ -130,7 +136,8 @@ class BvhRefit {
       GrowingBox around;
       for (std::size_t place = 0; place < count; ++place) {
         const std::size_t first = node.first(place), size = node.size(place);
-        boxes[place] = size > 0 ? rounded(box_of(std::span(order.data() + first, size)), centre, margin) : around_[first];
+        boxes[place] =
+            size > 0 ? rounded(box_of(std::span(order.data() + first, size)), centre, margin) : around_[first];
         around.extend(boxes[place]);
         sum += boxes[place].half_area();
       }

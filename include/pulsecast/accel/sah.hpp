@@ -19,9 +19,9 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
-/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it. The probability that a
-/// ray through a box meets a box inside is the ratio of their surface areas.
-/// Source: Goldsmith & Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
+/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it. The
+/// probability that a ray through a box meets a box inside is the ratio of their surface areas. Source: Goldsmith &
+/// Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Cost of a primitive test, in traversal steps. Affects speed only.
@@ -110,7 +110,9 @@ class Slices {
   }
 
   /// Lower edge of slice i along axis k.
-  [[nodiscard]] Real edge(std::size_t k, std::size_t i) const noexcept { return low_[k] + static_cast<Real>(i) * width_[k]; }
+  [[nodiscard]] Real edge(std::size_t k, std::size_t i) const noexcept {
+    return low_[k] + static_cast<Real>(i) * width_[k];
+  }
 
  private:
   std::size_t count_;
@@ -165,13 +167,16 @@ struct Bins {
   }
 };
 
-/// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there is more than one chunk. Results merged in chunk
-/// order, or independent of it, do not depend on the number of threads.
+/// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there is more than one chunk. Results
+/// merged in chunk order, or independent of it, do not depend on the number of threads.
 inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
-[[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept { return (count + chunk_size - 1) / chunk_size; }
+[[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept {
+  return (count + chunk_size - 1) / chunk_size;
+}
 template <class Act>
 void for_each_chunk(std::size_t count, const Workers& workers, const Act& act) {
-  for_each_index(chunk_count(count), workers, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
+  for_each_index(chunk_count(count), workers,
+                 [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
 
 /// Indexable range of boxes: an array, or a generator.
@@ -180,8 +185,8 @@ concept BoxRange = requires(const B& boxes) {
   { boxes[boxes.size()] } -> std::convertible_to<Box>;
 };
 
-/// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive the view, and yield
-/// the same `Box` for an index every time.
+/// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive
+/// the view, and yield the same `Box` for an index every time.
 class BoxRangeRef {
  public:
   template <BoxRange Boxes>
@@ -219,7 +224,8 @@ struct BuildInput {
   SharedBuffer<Boxed<Real>> primitives;
 
   explicit BuildInput(const BoxRangeRef& boxes, const Workers& workers = 1) {
-    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
+    constexpr std::size_t most =
+        std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
     struct ChunkBounds {
@@ -231,7 +237,8 @@ struct BuildInput {
       ChunkBounds own;
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
-        if (!(extent <= max_coordinate)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
+        if (!(extent <= max_coordinate))
+          throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
         own.bounds.extend(box);
         ++own.met;
       });
@@ -256,7 +263,9 @@ struct BuildInput {
 };
 
 /// Levels of halving down to single parts.
-[[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept { return parts < 2 ? 0 : std::bit_width(parts - 1); }
+[[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept {
+  return parts < 2 ? 0 : std::bit_width(parts - 1);
+}
 
 }  // namespace PULSECAST_NAMESPACE::detail
 

@@ -6,8 +6,8 @@
 #include <pulsecast/base/namespace.hpp>
 #include <pulsecast/version.hpp>
 
-/// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML surveys. The target defines
-/// `PULSECAST_COMPILED` for its users, who then include declarations only.
+/// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML
+/// surveys. The target defines `PULSECAST_COMPILED` for its users, who then include declarations only.
 
 #if defined(PULSECAST_COMPILED)
 #define PULSECAST_DEFINITIONS 0  ///< true where a public header ends with its definitions
@@ -42,8 +42,8 @@ namespace PULSECAST_NAMESPACE::detail {
 #if defined(PULSECAST_COMPILED)
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Marks a build of the library by what a program must have in common with it: its version here, and all else in the namespace. A program
-/// of another build does not link, for want of this function.
+/// Marks a build of the library by what a program must have in common with it: its version here, and all else in the
+/// namespace. A program of another build does not link, for want of this function.
 template <unsigned version>
 void compiled_library_of_this_build()
 #if defined(PULSECAST_COMPILED_SOURCE)

@@ -42,24 +42,32 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
-  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no number by itself is at fault.
+  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no number by itself is at
+  /// fault.
   SettingError(std::string field, std::string problem)
-      : std::invalid_argument(detail::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
+      : std::invalid_argument(detail::joined({field, problem})),
+        field_(std::move(field)),
+        problem_(std::move(problem)) {}
 
   /// Copy of this error whose field is prefixed by a name, as in `leg 3: Scanner::pulse_rate`.
   [[nodiscard]] SettingError of(const std::string& name) const {
     std::string field = detail::joined({name, ": ", field_});
-    return problem_.empty() ? SettingError(std::move(field), value_, unit_, allowed_) : SettingError(std::move(field), problem_);
+    return problem_.empty() ? SettingError(std::move(field), value_, unit_, allowed_)
+                            : SettingError(std::move(field), problem_);
   }
 
-  [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< name of the setting, as in `Scanner::pulse_rate`
-  [[nodiscard]] double value() const noexcept { return value_; }                  ///< value that was refused, in `unit()`; NaN if none
-  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty for a pure number
+  [[nodiscard]] const std::string& field() const noexcept {
+    return field_;
+  }                                                               ///< name of the setting, as in `Scanner::pulse_rate`
+  [[nodiscard]] double value() const noexcept { return value_; }  ///< value that was refused, in `unit()`; NaN if none
+  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }  ///< SI symbol; empty for a pure number
   [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
 
  private:
-  static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
-    return detail::joined({field, " is ", detail::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
+  static std::string message(const std::string& field, double value, const std::string& unit,
+                             const std::string& allowed) {
+    return detail::joined(
+        {field, " is ", detail::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
   }
 
   std::string field_, unit_, allowed_, problem_;
@@ -87,8 +95,10 @@ class FileError : public std::runtime_error {
         place_(std::move(place)),
         problem_(std::move(problem)) {}
 
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }        ///< name of the file
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }      ///< as in "line 12"; empty for the whole file
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< name of the file
+  [[nodiscard]] const std::string& place() const noexcept {
+    return place_;
+  }  ///< as in "line 12"; empty for the whole file
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< defect and expectation, in words
 
  private:

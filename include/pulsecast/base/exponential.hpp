@@ -21,11 +21,12 @@ template <class V>
 using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / sizeof(double)>>;
 }  // namespace simd::detail
 
-/// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
-/// Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor series for r, with a remainder of 4e-18.
+/// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative error at most 4e-16
+/// for |x| up to 708. Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor series for r, with a
+/// remainder of 4e-18.
 template <class Number>
-requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 2>> || std::same_as<Number, simd::Vec<double, 4>> ||
-    std::same_as<Number, simd::Vec<double, 8>>
+requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 2>> ||
+    std::same_as<Number, simd::Vec<double, 4>> || std::same_as<Number, simd::Vec<double, 8>>
 [[nodiscard]] inline Number exponential(const Number& x) noexcept {
   using Bits = simd::detail::Bits<Number>;
   constexpr double per_ln2 = 1.4426950408889634, ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
@@ -34,9 +35,14 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 
   const Number shifted = x * per_ln2 + whole, n = shifted - whole;
   const Number r = (x - n * ln2_high) - n * ln2_low;
   const Number upper =
-      (((((r * (1.0 / 6227020800) + 1.0 / 479001600) * r + 1.0 / 39916800) * r + 1.0 / 3628800) * r + 1.0 / 362880) * r + 1.0 / 40320);
+      (((((r * (1.0 / 6227020800) + 1.0 / 479001600) * r + 1.0 / 39916800) * r + 1.0 / 3628800) * r + 1.0 / 362880) *
+           r +
+       1.0 / 40320);
   const Number series =
-      (((((((upper * r + 1.0 / 5040) * r + 1.0 / 720) * r + 1.0 / 120) * r + 1.0 / 24) * r + 1.0 / 6) * r + 0.5) * r + 1.0) * r + 1.0;
+      (((((((upper * r + 1.0 / 5040) * r + 1.0 / 720) * r + 1.0 / 120) * r + 1.0 / 24) * r + 1.0 / 6) * r + 0.5) * r +
+       1.0) *
+          r +
+      1.0;
   const Number power_of_two = std::bit_cast<Number>(static_cast<Bits>((std::bit_cast<Bits>(shifted) + 1023) << 52));
   return x < least ? Number{} : series * power_of_two;
 }

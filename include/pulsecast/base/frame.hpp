@@ -43,7 +43,9 @@ struct Pose {
   }
 
   /// True if the position is finite and the rotation unit to 1e-6 (single precision): the law of every motion.
-  [[nodiscard]] bool rigid() const noexcept { return pulsecast::finite(position) && std::fabs(length(rotation) - 1) <= 1e-6; }
+  [[nodiscard]] bool rigid() const noexcept {
+    return pulsecast::finite(position) && std::fabs(length(rotation) - 1) <= 1e-6;
+  }
 };
 
 /// Composition of two poses, the right one first.

@@ -11,8 +11,9 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector_math.hpp>
 
-/// Ticks, vectors and poses by the register: one in each of `simd::lane_count` lanes. A lane has the bits that a register of one tick or
-/// pose in all lanes has, so that a motion's pose does not depend on what is computed beside it.
+/// Ticks, vectors and poses by the register: one in each of `simd::lane_count` lanes. A lane has the bits that a
+/// register of one tick or pose in all lanes has, so that a motion's pose does not depend on what is computed beside
+/// it.
 namespace PULSECAST_NAMESPACE {
 
 /// One number in all lanes, with its sign if it is zero.
@@ -28,8 +29,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Rounding error of a product, exact while products of halves neither overflow nor underflow. Source: Dekker 1971, A floating-point
-/// technique for extending the available precision, with the halves of Veltkamp.
+/// Rounding error of a product, exact while products of halves neither overflow nor underflow. Source: Dekker 1971, A
+/// floating-point technique for extending the available precision, with the halves of Veltkamp.
 [[nodiscard, gnu::always_inline]] inline simd::Doubles product_error(const simd::Doubles& a, const simd::Doubles& b,
                                                                      const simd::Doubles& product) noexcept {
 #if defined(__FMA__)
@@ -52,11 +53,13 @@ struct TickLanes {
   /// Of whole and fractional parts.
   TickLanes(const simd::Doubles& whole, const simd::Doubles& part) noexcept : second(whole), fraction(part) {}
   /// One time in all lanes.
-  explicit TickLanes(const Tick& t) noexcept : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
+  explicit TickLanes(const Tick& t) noexcept
+      : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
 
   /// Begins of the slots from i on of a source of constant rate [Hz], as `Tick::of`.
   [[nodiscard]] static TickLanes of(PulseIndex i, double rate) noexcept {
-    const simd::Doubles n = simd::generate([i](std::size_t lane) { return static_cast<double>(i + lane); }), zero{}, rates = zero + rate;
+    const simd::Doubles n = simd::generate([i](std::size_t lane) { return static_cast<double>(i + lane); }), zero{},
+                        rates = zero + rate;
     const auto rest_of = [&](const simd::Doubles& whole) {
       const simd::Doubles product = whole * rates;
       return (n - product) - detail::product_error(whole, rates, product);
@@ -71,7 +74,9 @@ struct TickLanes {
     return normal(whole, rest / rates);
   }
 
-  [[nodiscard]] Tick operator[](std::size_t lane) const noexcept { return {static_cast<std::int64_t>(second[lane]), fraction[lane]}; }
+  [[nodiscard]] Tick operator[](std::size_t lane) const noexcept {
+    return {static_cast<std::int64_t>(second[lane]), fraction[lane]};
+  }
   /// Sets the time of a lane.
   void set(std::size_t lane, const Tick& t) noexcept {
     second[lane] = static_cast<double>(t.second);
@@ -121,9 +126,15 @@ struct Vec3Lanes {
     z[lane] = v.z;
   }
 
-  [[nodiscard]] friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  [[nodiscard]] friend Vec3Lanes operator*(const simd::Doubles& s, const Vec3Lanes& v) noexcept { return {s * v.x, s * v.y, s * v.z}; }
-  [[nodiscard]] friend simd::Doubles dot(const Vec3Lanes& a, const Vec3Lanes& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  [[nodiscard]] friend Vec3Lanes operator+(const Vec3Lanes& a, const Vec3Lanes& b) noexcept {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  [[nodiscard]] friend Vec3Lanes operator*(const simd::Doubles& s, const Vec3Lanes& v) noexcept {
+    return {s * v.x, s * v.y, s * v.z};
+  }
+  [[nodiscard]] friend simd::Doubles dot(const Vec3Lanes& a, const Vec3Lanes& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
   [[nodiscard]] friend Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) noexcept {
     return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
   }
@@ -139,7 +150,8 @@ struct RotationLanes {
 
   RotationLanes() = default;
   /// Of components.
-  RotationLanes(const simd::Doubles& w_, const simd::Doubles& x_, const simd::Doubles& y_, const simd::Doubles& z_) noexcept
+  RotationLanes(const simd::Doubles& w_, const simd::Doubles& x_, const simd::Doubles& y_,
+                const simd::Doubles& z_) noexcept
       : w(w_), x(x_), y(y_), z(z_) {}
   /// One rotation in all lanes.
   explicit RotationLanes(const Rotation& r) noexcept
@@ -150,7 +162,9 @@ struct RotationLanes {
     return {half.cos, axis.x * half.sin, axis.y * half.sin, axis.z * half.sin};
   }
 
-  [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept { return detail::rotation_wxyz(w[lane], x[lane], y[lane], z[lane]); }
+  [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept {
+    return detail::rotation_wxyz(w[lane], x[lane], y[lane], z[lane]);
+  }
   /// Sets the rotation of a lane.
   void set(std::size_t lane, const Rotation& r) noexcept {
     w[lane] = r.w;
@@ -159,13 +173,15 @@ struct RotationLanes {
     z[lane] = r.z;
   }
 
-  [[nodiscard, gnu::always_inline]] friend RotationLanes operator*(const RotationLanes& p, const RotationLanes& q) noexcept {
+  [[nodiscard, gnu::always_inline]] friend RotationLanes operator*(const RotationLanes& p,
+                                                                   const RotationLanes& q) noexcept {
     return {p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
             p.w * q.y + p.y * q.w + p.z * q.x - p.x * q.z, p.w * q.z + p.z * q.w + p.x * q.y - p.y * q.x};
   }
   [[nodiscard, gnu::always_inline]] friend Vec3Lanes operator*(const RotationLanes& r, const Vec3Lanes& v) noexcept {
     const Vec3Lanes axis{r.x, r.y, r.z}, once = cross(axis, v), twice = cross(axis, once);
-    return {v.x + (once.x * r.w + twice.x) * 2.0, v.y + (once.y * r.w + twice.y) * 2.0, v.z + (once.z * r.w + twice.z) * 2.0};
+    return {v.x + (once.x * r.w + twice.x) * 2.0, v.y + (once.y * r.w + twice.y) * 2.0,
+            v.z + (once.z * r.w + twice.z) * 2.0};
   }
   [[nodiscard]] friend RotationLanes normalize(const RotationLanes& r) noexcept {
     const simd::Doubles scale = 1.0 / simd::sqrt((r.w * r.w + r.x * r.x) + (r.y * r.y + r.z * r.z));
@@ -196,7 +212,8 @@ struct PoseLanes {
 /// Composition of the poses of each lane, the right one first.
 template <class A, class B, class C>
 [[nodiscard]] PoseLanes<A, C> operator*(const PoseLanes<B, C>& c_from_b, const PoseLanes<A, B>& b_from_a) noexcept {
-  return PoseLanes<A, C>{c_from_b.rotation * b_from_a.rotation, c_from_b.rotation * b_from_a.position + c_from_b.position};
+  return PoseLanes<A, C>{c_from_b.rotation * b_from_a.rotation,
+                         c_from_b.rotation * b_from_a.position + c_from_b.position};
 }
 
 /// True if in each of these lanes the pose is `rigid`, or not finite: a run reports NaN.

@@ -5,10 +5,11 @@
 
 #include <cstddef>  // with the macros of the standard library
 
-/// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones by macros that
-/// change the layout of types or the meaning of their constructors. Files of one program may thus be compiled for different processors, and
-/// with different settings of GLM and of the standard library: their functions and types have different names, so that the linker never
-/// takes one for another. What passes between such files does not link. `pulsecast::Scene` names that of the file's own flags.
+/// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones
+/// by macros that change the layout of types or the meaning of their constructors. Files of one program may thus be
+/// compiled for different processors, and with different settings of GLM and of the standard library: their functions
+/// and types have different names, so that the linker never takes one for another. What passes between such files does
+/// not link. `pulsecast::Scene` names that of the file's own flags.
 #if defined(__AVX512F__)
 #define PULSECAST_INSTRUCTIONS avx512
 #elif defined(__AVX2__)
@@ -25,7 +26,8 @@
 #else
 #define PULSECAST_FUSED
 #endif
-#if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_DATA_XYZW)  // of GLM 0.9.9 and 1.0: the other order than by default
+#if defined(GLM_FORCE_QUAT_DATA_WXYZ) || \
+    defined(GLM_FORCE_QUAT_DATA_XYZW)  // of GLM 0.9.9 and 1.0: the other order than by default
 #define PULSECAST_QUATERNIONS ::inline other_quaternions
 #else
 #define PULSECAST_QUATERNIONS
@@ -47,8 +49,8 @@
 #else
 #define PULSECAST_LIBRARY
 #endif
-#define PULSECAST_NAMESPACE                                                                                                  \
-  pulsecast::inline PULSECAST_INSTRUCTIONS PULSECAST_FUSED PULSECAST_QUATERNIONS PULSECAST_CONSTRUCTORS PULSECAST_CONTAINERS \
-      PULSECAST_LIBRARY
+#define PULSECAST_NAMESPACE                                                                             \
+  pulsecast::inline PULSECAST_INSTRUCTIONS PULSECAST_FUSED PULSECAST_QUATERNIONS PULSECAST_CONSTRUCTORS \
+      PULSECAST_CONTAINERS PULSECAST_LIBRARY
 
 #endif

@@ -29,7 +29,8 @@ class IndexTask {
  public:
   /// Refers to a function.
   template <class Task>
-  requires(!std::same_as<Task, IndexTask> && requires(const Task& task, std::size_t i) { task(i); }) IndexTask(const Task& task)
+  requires(!std::same_as<Task, IndexTask> && requires(const Task& task, std::size_t i) { task(i); })
+      IndexTask(const Task& task)
   noexcept : task_(&task), call_([](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }) {}
 
   void operator()(std::size_t i) const { call_(task_, i); }
@@ -39,11 +40,11 @@ class IndexTask {
   void (*call_)(const void*, std::size_t);
 };
 
-/// Threads of the user's: `ThreadPool`, or an adaptor to a task scheduler. `threads()` is the number of threads that a call may use, the
-/// caller's included. `for_each(count, task)` calls task(i) once for each i below `count`, on any threads.
-/// Law: `for_each` returns when all calls have returned. While it waits it runs no task of another call (oneTBB: by
-/// `this_task_arena::isolate`). If several threads share an executor, they may call it at once.
-/// Not required: tasks that run at the same time; an order; handling of exceptions, as the library's tasks throw none.
+/// Threads of the user's: `ThreadPool`, or an adaptor to a task scheduler. `threads()` is the number of threads that a
+/// call may use, the caller's included. `for_each(count, task)` calls task(i) once for each i below `count`, on any
+/// threads. Law: `for_each` returns when all calls have returned. While it waits it runs no task of another call
+/// (oneTBB: by `this_task_arena::isolate`). If several threads share an executor, they may call it at once. Not
+/// required: tasks that run at the same time; an order; handling of exceptions, as the library's tasks throw none.
 template <class E>
 concept Executor = requires(E& e, std::size_t count, const IndexTask& task) {
   { e.threads() } -> std::convertible_to<unsigned>;
@@ -83,14 +84,15 @@ class ExecutorRef {
     ScratchMemory* (*memory)(void*);
   };
   template <class E>
-  static constexpr Functions functions{[](void* e) { return static_cast<unsigned>(static_cast<E*>(e)->threads()); },
-                                       [](void* e, std::size_t count, const IndexTask& task) { static_cast<E*>(e)->for_each(count, task); },
-                                       [](void* e) -> ScratchMemory* {
-                                         if constexpr (MemoryKeepingExecutor<E>)
-                                           return &static_cast<E*>(e)->memory();
-                                         else
-                                           return nullptr;
-                                       }};
+  static constexpr Functions functions{
+      [](void* e) { return static_cast<unsigned>(static_cast<E*>(e)->threads()); },
+      [](void* e, std::size_t count, const IndexTask& task) { static_cast<E*>(e)->for_each(count, task); },
+      [](void* e) -> ScratchMemory* {
+        if constexpr (MemoryKeepingExecutor<E>)
+          return &static_cast<E*>(e)->memory();
+        else
+          return nullptr;
+      }};
 
   void* executor_ = nullptr;
   const Functions* functions_ = nullptr;
@@ -164,9 +166,9 @@ inline void work_on_threads(IndexLoop& loop, std::size_t threads) {
 
 }  // namespace detail
 
-/// Calls task(i) once for each i below `count`, low ones first, on up to as many threads as `workers` says. Tasks that share no data need
-/// no lock. Starts no thread for a single index, and none with an executor. Rethrows the exception of a task, or one of several; indices
-/// not yet begun are then skipped.
+/// Calls task(i) once for each i below `count`, low ones first, on up to as many threads as `workers` says. Tasks that
+/// share no data need no lock. Starts no thread for a single index, and none with an executor. Rethrows the exception
+/// of a task, or one of several; indices not yet begun are then skipped.
 inline void for_each_index(std::size_t count, const Workers& workers, const IndexTask& task) {
   detail::IndexLoop loop(count, task);
   const std::size_t threads = std::min<std::size_t>(workers.count(), count);

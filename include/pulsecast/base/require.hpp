@@ -20,9 +20,10 @@ namespace PULSECAST_NAMESPACE {
 /// Limit of angles [rad]: one turn, and room for rounding.
 inline constexpr double max_angle = 6.2831854;
 
-/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than 1 Hz. Separate from the checks, so that
-/// these stay small when inlined.
-[[noreturn]] inline void throw_setting_error(std::string_view field, double value, std::string_view unit, std::string_view allowed) {
+/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than 1 Hz. Separate from
+/// the checks, so that these stay small when inlined.
+[[noreturn]] inline void throw_setting_error(std::string_view field, double value, std::string_view unit,
+                                             std::string_view allowed) {
   const bool degrees = unit == "rad" && std::isfinite(value) && std::fabs(value) > max_angle;
   const bool period = unit == "Hz" && value > 0 && value < 1;
   throw SettingError(std::string(field), value, std::string(unit),
@@ -36,7 +37,8 @@ inline void require_positive(std::string_view field, double value, std::string_v
   if (!(value > 0) || !std::isfinite(value)) throw_setting_error(field, value, unit, "finite and greater than 0");
 }
 
-/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` resolves the phase of 1e12 Hz to some 1e-4 of a cycle.
+/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` resolves the phase of 1e12 Hz to some 1e-4 of
+/// a cycle.
 inline void require_rate(std::string_view field, double value) {
   if (!(value > 0 && value <= 1e12)) throw_setting_error(field, value, "Hz", "greater than 0 and at most 1e12");
 }
@@ -52,8 +54,10 @@ inline void require_finite(std::string_view field, double value, std::string_vie
 }
 
 namespace detail {
-[[noreturn]] inline void refuse_outside(std::string_view field, double value, double low, double high, std::string_view unit) {
-  throw_setting_error(field, value, unit, std::string("from ").append(to_text(low)).append(" to ").append(to_text(high)));
+[[noreturn]] inline void refuse_outside(std::string_view field, double value, double low, double high,
+                                        std::string_view unit) {
+  throw_setting_error(field, value, unit,
+                      std::string("from ").append(to_text(low)).append(" to ").append(to_text(high)));
 }
 }  // namespace detail
 
@@ -92,11 +96,12 @@ concept Normalizable = requires(Settings& settings) {
 template <class T>
 concept Validating = Validated<T> || ValidatesLaser<T>;
 
-PULSECAST_OPTIONAL_MEMBER(Validating, "void validate() const, or of a detector void validate(const Laser&) const", validate, (), check,
-                          verify, is_valid, validate_settings)
-PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate_laser, (std::declval<const Laser&>()), validate,
-                          check, check_laser, validate_for)
-PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, (), normalise, normalized, normalised, make_unit)
+PULSECAST_OPTIONAL_MEMBER(Validating, "void validate() const, or of a detector void validate(const Laser&) const",
+                          validate, (), check, verify, is_valid, validate_settings)
+PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate_laser,
+                          (std::declval<const Laser&>()), validate, check, check_laser, validate_for)
+PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, (), normalise, normalized, normalised,
+                          make_unit)
 
 /// Validates settings in place, and normalizes them. Throws a `SettingError`.
 template <class Settings>

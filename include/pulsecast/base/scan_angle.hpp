@@ -10,9 +10,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angle of a beam from the vertical, about the level heading of the body: 0 straight down, positive to the right, in [-pi, pi] [rad]. It
-/// includes the roll of the body. Made from a direction, it is computed where it is read. Source: ASPRS LAS 1.4 R15, Scan Angle, formats 6
-/// to 10.
+/// Angle of a beam from the vertical, about the level heading of the body: 0 straight down, positive to the right, in
+/// [-pi, pi] [rad]. It includes the roll of the body. Made from a direction, it is computed where it is read. Source:
+/// ASPRS LAS 1.4 R15, Scan Angle, formats 6 to 10.
 class ScanAngle {
  public:
   ScanAngle() = default;
@@ -22,7 +22,9 @@ class ScanAngle {
   ScanAngle(double right, double down) noexcept : right_(std::isnan(down) ? down : right), down_(down) {}
 
   /// Angle [rad].
-  operator double() const noexcept { return std::isnan(down_) ? right_ : std::atan2(right_, down_); }  // NOLINT: as above
+  operator double() const noexcept {
+    return std::isnan(down_) ? right_ : std::atan2(right_, down_);
+  }  // NOLINT: as above
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();

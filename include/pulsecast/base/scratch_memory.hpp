@@ -26,8 +26,8 @@ class ScratchItem {
   std::unique_ptr<ScratchItem> next_{};
 };
 
-/// Objects that calls leave for later calls, by their type. Several threads may use it at once. An object of type T tells whether it
-/// `fits(need)`, and if not, whether it is `outdated(need)`: of no use to anyone any more.
+/// Objects that calls leave for later calls, by their type. Several threads may use it at once. An object of type T
+/// tells whether it `fits(need)`, and if not, whether it is `outdated(need)`: of no use to anyone any more.
 class ScratchMemory {
  public:
   /// Removes an object of type T that fits; null if there is none. Deletes outdated ones that it comes upon.
@@ -93,8 +93,8 @@ class ScratchMemory {
   std::unique_ptr<ScratchItem> items_;  // linked list
 };
 
-/// Object of type T for the duration of a call: taken from `memory` if one fits, or else new, and given back to `memory` unless that is
-/// null.
+/// Object of type T for the duration of a call: taken from `memory` if one fits, or else new, and given back to
+/// `memory` unless that is null.
 template <class T>
 class Borrowed {
  public:

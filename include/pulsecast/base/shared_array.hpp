@@ -23,8 +23,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and with small pages
-/// the address translation takes longer than the read.
+/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and
+/// with small pages the address translation takes longer than the read.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
@@ -35,7 +35,8 @@ inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 
 /// Allocates uninitialized memory [byte]. No template, as each instance would cost compile time.
 [[nodiscard]] inline std::shared_ptr<void> allocate_shared(std::size_t size, std::align_val_t alignment) {
-  std::shared_ptr<void> memory(::operator new(size, alignment), [=](void* bytes) { ::operator delete(bytes, alignment); });
+  std::shared_ptr<void> memory(::operator new(size, alignment),
+                               [=](void* bytes) { ::operator delete(bytes, alignment); });
   advise_huge_pages(memory.get(), size);
   return memory;
 }

@@ -12,8 +12,8 @@
 #include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
-/// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set in the lanes where
-/// it holds; `mask ? a : b` selects by lane.
+/// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set
+/// in the lanes where it holds; `mask ? a : b` selects by lane.
 namespace PULSECAST_NAMESPACE::simd {
 
 /// Size of a SIMD register [byte].
@@ -100,7 +100,8 @@ template <class V>
   return a > b ? a : b;
 }
 
-/// Numbers that a sum over a column adds up side by side, in one register or two: the same for every instruction set, so that sums are.
+/// Numbers that a sum over a column adds up side by side, in one register or two: the same for every instruction set,
+/// so that sums are.
 inline constexpr std::size_t sum_stride = 4;
 static_assert(sum_stride % lane_count == 0);
 
@@ -238,7 +239,8 @@ template <class M>
   constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
 #if defined(__SSE2__)
   if constexpr (sizeof mask == 16)
-    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Vec<float, 4>(mask)) : __builtin_ia32_movmskpd(Vec<double, 2>(mask)));
+    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Vec<float, 4>(mask))
+                                            : __builtin_ia32_movmskpd(Vec<double, 2>(mask)));
 #endif
 #if defined(__AVX__)
   if constexpr (sizeof mask == 32)
@@ -257,7 +259,8 @@ namespace PULSECAST_NAMESPACE {
 /// Prefetches an object into the cache.
 template <class T>
 inline void prefetch(const T* object) noexcept {
-  for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
+  for (std::size_t byte = 0; byte < sizeof(T); byte += 64)
+    __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
 }
 
 }  // namespace PULSECAST_NAMESPACE

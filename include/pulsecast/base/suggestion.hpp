@@ -17,8 +17,8 @@
 /// Known names in place of a misspelt one, for messages.
 namespace PULSECAST_NAMESPACE::text {
 
-/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored. Source: optimal
-/// string alignment distance, Damerau 1964.
+/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored.
+/// Source: optimal string alignment distance, Damerau 1964.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto is_same = [](char x, char y) { return lower(x) == lower(y); };
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -27,7 +27,8 @@ namespace PULSECAST_NAMESPACE::text {
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (is_same(a[i - 1], b[j - 1]) ? 0 : 1)});
-      if (i > 1 && j > 1 && is_same(a[i - 1], b[j - 2]) && is_same(a[i - 2], b[j - 1])) row[j] = std::min(row[j], before_last[j - 2] + 1);
+      if (i > 1 && j > 1 && is_same(a[i - 1], b[j - 2]) && is_same(a[i - 2], b[j - 1]))
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
     }
     std::swap(before_last, last);
     std::swap(last, row);
@@ -60,7 +61,8 @@ struct NearestName {
   if (nearest.distance <= std::max<std::size_t>(std::min(unknown.size(), longest) / 2, 2))
     return "; did you mean '" + std::string(nearest.name) + "'?";
   std::string list;
-  for (const std::string& name : known.first(std::min(known.size(), max_listed))) list += (list.empty() ? "" : ", ") + name;
+  for (const std::string& name : known.first(std::min(known.size(), max_listed)))
+    list += (list.empty() ? "" : ", ") + name;
   return "; known names: " + list + (known.size() > max_listed ? ", ..." : "");
 }
 

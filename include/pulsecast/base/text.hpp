@@ -38,7 +38,9 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
 }
 
 /// Small letter of a capital; other characters are kept.
-[[nodiscard]] constexpr char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+[[nodiscard]] constexpr char lower(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 /// Text in small letters.
 [[nodiscard]] inline std::string lower(std::string_view text) {
@@ -61,7 +63,8 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
   return detail::joined({"'", out, text.size() > longest ? "...'" : "'"});
 }
 
-/// Removes the first word from a text, and the separators behind it. Returns the word; it is empty if a separator comes first.
+/// Removes the first word from a text, and the separators behind it. Returns the word; it is empty if a separator comes
+/// first.
 inline std::string_view take_word(std::string_view& text, std::string_view separators = blanks) noexcept {
   const std::string_view word = text.substr(0, text.find_first_of(separators));
   text.remove_prefix(std::min(text.find_first_not_of(separators, word.size()), text.size()));
@@ -76,8 +79,8 @@ inline std::string_view take_line(std::string_view& text) noexcept {
   return line;
 }
 
-/// Removes a number from the beginning of a text. Empty if there is none, or `Number` cannot hold it; the text is kept then.
-/// `format` may limit the notation of a floating-point number, as in `std::chars_format::fixed`.
+/// Removes a number from the beginning of a text. Empty if there is none, or `Number` cannot hold it; the text is kept
+/// then. `format` may limit the notation of a floating-point number, as in `std::chars_format::fixed`.
 template <class Number, class... Format>
 std::optional<Number> take_number(std::string_view& text, Format... format) noexcept {
   Number value{};

@@ -23,7 +23,8 @@ struct Tick {
   /// Begin of slot i of a source of constant rate [Hz].
   [[nodiscard]] static Tick of(PulseIndex i, double rate) noexcept {
     const double n = static_cast<double>(i);
-    double whole = std::floor(n / rate), rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two candidates
+    double whole = std::floor(n / rate),
+           rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two candidates
     if (rest < 0) {
       --whole;
       rest = std::fma(-whole, rate, n);

@@ -16,7 +16,8 @@ namespace PULSECAST_NAMESPACE {
 /// Throws a `SettingError` unless the norm of a rotation is within 1e-3 of 1.
 inline void require_rotation(std::string_view field, const Rotation& rotation) {
   const double norm = length(rotation);
-  if (!(norm >= 0.999 && norm <= 1.001)) throw_setting_error(std::string(field) + " (norm)", norm, "", "from 0.999 to 1.001");
+  if (!(norm >= 0.999 && norm <= 1.001))
+    throw_setting_error(std::string(field) + " (norm)", norm, "", "from 0.999 to 1.001");
 }
 
 /// Normalized rotation; bit-identical to its argument where the norm is within 1e-9 of 1.

@@ -19,8 +19,8 @@
 #include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
-// GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it must not be linked. Linkers accept an
-// absolute symbol many times if it has one value.
+// GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it must not be linked.
+// Linkers accept an absolute symbol many times if it has one value.
 #if defined(__ELF__)
 #if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_DATA_XYZW)
 __asm__(".globl pulsecast_order_of_quaternion_data\n.set pulsecast_order_of_quaternion_data, 1");
@@ -44,9 +44,9 @@ using Vec3 = glm::vec<3, double, glm::packed_highp>;  ///< vector in three dimen
 /// Rotation as a unit quaternion; `rotation * vector` rotates the vector.
 using Rotation = glm::qua<double, glm::packed_highp>;
 
-static_assert(
-    std::is_trivially_copyable_v<Vec3> && std::is_trivially_copyable_v<Rotation>,
-    "vectors must be copied as memory: compile without GLM_FORCE_CTOR_INIT, GLM_FORCE_CXX98, GLM_FORCE_CXX03, GLM_FORCE_CXX_UNKNOWN");
+static_assert(std::is_trivially_copyable_v<Vec3> && std::is_trivially_copyable_v<Rotation>,
+              "vectors must be copied as memory: compile without GLM_FORCE_CTOR_INIT, GLM_FORCE_CXX98, "
+              "GLM_FORCE_CXX03, GLM_FORCE_CXX_UNKNOWN");
 
 using glm::conjugate;
 using glm::cross;
@@ -76,7 +76,9 @@ namespace detail {
 inline const Rotation no_rotation = detail::rotation_wxyz(1, 0, 0, 0);  ///< identity rotation
 
 /// Right-handed rotation about an axis of any length but zero, by an angle [rad].
-[[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
+[[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept {
+  return glm::angleAxis(angle, normalize(axis));
+}
 
 /// Rotation matrix: its columns are the rotated x, y and z. Cheaper than the quaternion for more than one vector.
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
@@ -86,7 +88,9 @@ using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 [[nodiscard]] inline Rotation rotation_of(const Matrix3& matrix) noexcept { return glm::quat_cast(matrix); }
 
 /// True if no component is infinite or NaN.
-[[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+[[nodiscard]] inline bool finite(const Vec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// Component-wise minimum.
 [[nodiscard]] inline Vec3 min(const Vec3& a, const Vec3& b) noexcept {

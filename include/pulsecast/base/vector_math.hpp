@@ -15,11 +15,13 @@
 #include <pulsecast/base/simd.hpp>
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register: all functions are inlined, so that none is passed
+#pragma GCC diagnostic ignored \
+    "-Wpsabi"  // of vectors wider than a register: all functions are inlined, so that none is passed
 
-/// Elementary functions of a number or of all lanes of a vector, without tables and branches by lane. Without contraction of products and
-/// sums (`-ffp-contract=off`), a lane has the bits that the plain number gives, whatever the number of lanes and the instruction set. With
-/// contraction the errors below hold, but the last bits differ. Errors are in units in the last place of the result (ulp).
+/// Elementary functions of a number or of all lanes of a vector, without tables and branches by lane. Without
+/// contraction of products and sums (`-ffp-contract=off`), a lane has the bits that the plain number gives, whatever
+/// the number of lanes and the instruction set. With contraction the errors below hold, but the last bits differ.
+/// Errors are in units in the last place of the result (ulp).
 namespace PULSECAST_NAMESPACE::simd {
 
 namespace detail {
@@ -47,7 +49,8 @@ template <class M>
   return set != 0;
 }
 
-/// Greatest argument that `reduced` takes: its number of quarter turns has 20 bits, so that its products with 33 bits are exact.
+/// Greatest argument that `reduced` takes: its number of quarter turns has 20 bits, so that its products with 33 bits
+/// are exact.
 inline constexpr double greatest_angle = 1e6;
 
 /// Angle less its nearest multiple of pi/2, as a sum of two numbers, and the number of quarter turns.
@@ -60,7 +63,8 @@ struct Reduced {
 template <class V>
 [[nodiscard, gnu::always_inline]] inline Reduced<V> reduced(const V& x) noexcept {
   constexpr double per_quarter = 6.36619772367581382433e-01, whole = 0x1.8p52;
-  constexpr double first = 1.57079632673412561417e+00, second = 6.07710050630396597660e-11, third = 2.02226624879595063154e-21;
+  constexpr double first = 1.57079632673412561417e+00, second = 6.07710050630396597660e-11,
+                   third = 2.02226624879595063154e-21;
   const V shifted = x * per_quarter + whole;
   const V n = shifted - whole;
   const V coarse = x - n * first;
@@ -128,7 +132,8 @@ template <class V>
   const V sine_or = odd ? cosine : sine, cosine_or = odd ? sine : cosine;
   const V size = detail::magnitude(x);
   const V turned = std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(sine_or) ^ sine_sign));
-  SineCosine<V> both{size < 0x1p-27 ? x : turned, std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(cosine_or) ^ cosine_sign))};
+  SineCosine<V> both{size < 0x1p-27 ? x : turned,
+                     std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(cosine_or) ^ cosine_sign))};
   if (detail::any(size > detail::greatest_angle)) [[unlikely]] {
     SineCosine<V> all = both;  // copies, so that the others stay in registers
     const V angles = x;
@@ -149,8 +154,8 @@ template <class V>
   return sincos(x).cos;
 }
 
-/// Angle of (x, y) from the x axis, in [-pi, pi] [rad], with the signed zeros and infinities of `std::atan2`; error at most 2 ulp.
-/// Source: fdlibm s_atan.c, with the quotient reduced before the division.
+/// Angle of (x, y) from the x axis, in [-pi, pi] [rad], with the signed zeros and infinities of `std::atan2`; error at
+/// most 2 ulp. Source: fdlibm s_atan.c, with the quotient reduced before the division.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V atan2(const V& y, const V& x) noexcept {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -166,10 +171,12 @@ template <class V>
   const V even = z * (3.33333333333329318027e-01 +
                       w * (1.42857142725034663711e-01 +
                            w * (9.09088713343650656196e-02 +
-                                w * (6.66107313738753120669e-02 + w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
-  const V odd = w * (1.99999999998764832476e-01 +
-                     w * (1.11111104054623557880e-01 +
-                          w * (7.69187620504482999495e-02 + w * (5.83357013379057348645e-02 + w * 3.65315727442169155270e-02))));
+                                w * (6.66107313738753120669e-02 +
+                                     w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
+  const V odd =
+      w * (1.99999999998764832476e-01 +
+           w * (1.11111104054623557880e-01 +
+                w * (7.69187620504482999495e-02 + w * (5.83357013379057348645e-02 + w * 3.65315727442169155270e-02))));
   const V part = q - q * (even - odd);
   const V back = whole ? zero + 7.85398163397448278999e-01 : (half ? zero + 4.63647609000806093515e-01 : zero);
   const V back_low = whole ? zero + 3.06161699786838301793e-17 : (half ? zero + 2.26987774529616870924e-17 : zero);
@@ -192,10 +199,11 @@ template <class V>
   const V k = std::bit_cast<V>(static_cast<Bits<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
   const V f = std::bit_cast<V>(static_cast<Bits<V>>((shifted & fraction) + root_half)) - 1.0;
   const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
-  const V r =
-      w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
-      z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-  return k * 6.93147180369123816490e-01 - ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
+  const V r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
+              z * (6.666666666666735130e-01 +
+                   w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  return k * 6.93147180369123816490e-01 -
+         ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
 }
 }  // namespace detail
 
@@ -212,8 +220,9 @@ template <class V>
   return x > 0.0 ? (x < infinity ? value : edge) : edge;
 }
 
-/// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2 |ln(result)| ulp. 1 for the exponent 0 and for
-/// the base 1; 0 for results below e^-708, and infinity for those above e^709. NaN for a base below 0, and for a NaN else.
+/// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2 |ln(result)| ulp. 1 for the
+/// exponent 0 and for the base 1; 0 for results below e^-708, and infinity for those above e^709. NaN for a base below
+/// 0, and for a NaN else.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V pow(const V& base, const V& exponent) noexcept {
   const V zero{};
@@ -222,7 +231,8 @@ template <class V>
   return exponent == 0.0 ? zero + 1.0 : (base == 1.0 ? zero + 1.0 : value);
 }
 
-/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0. Error at most `exponent` ulp.
+/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0. Error at most
+/// `exponent` ulp.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V whole_power(V base, unsigned exponent) noexcept {
   V power = V{} + 1.0;

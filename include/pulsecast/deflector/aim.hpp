@@ -22,9 +22,13 @@ namespace PULSECAST_NAMESPACE {
   return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes::about(axis::right, angle)};
 }
 
-/// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right axis stays level.
-[[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation, const Vec3& origin = {}) noexcept {
-  return {detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)) * aimed_above(elevation).rotation, origin};
+/// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right
+/// axis stays level.
+[[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation,
+                                                                   const Vec3& origin = {}) noexcept {
+  return {
+      detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)) * aimed_above(elevation).rotation,
+      origin};
 }
 
 /// Pose of a beam along a unit direction, by the shortest rotation from forward, so that its up axis turns least.
@@ -32,7 +36,8 @@ namespace PULSECAST_NAMESPACE {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;
   if (y < 0 && aside_squared < 1e-300) return {detail::rotation_wxyz(0, 0, 0, 1), {}};  // straight back: about up
-  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
+  const double w =
+      y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
   return {normalize(detail::rotation_wxyz(w, z, 0, -x)), {}};
 }
 
@@ -43,8 +48,9 @@ namespace PULSECAST_NAMESPACE {
   const auto behind = y < 0.0, straight_back = behind & (aside_squared < 1e-300);
   const simd::Doubles w = behind ? aside_squared / (1.0 - y) : 1.0 + y;
   const RotationLanes shortest = normalize(RotationLanes{straight_back ? zero + 1.0 : w, z, zero, -x});
-  return PoseLanes<frame::Beam, frame::Instrument>{
-      RotationLanes{straight_back ? zero : shortest.w, straight_back ? zero : shortest.x, zero, straight_back ? zero + 1.0 : shortest.z}};
+  return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes{straight_back ? zero : shortest.w,
+                                                                 straight_back ? zero : shortest.x, zero,
+                                                                 straight_back ? zero + 1.0 : shortest.z}};
 }
 
 }  // namespace PULSECAST_NAMESPACE

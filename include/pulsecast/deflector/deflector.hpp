@@ -24,18 +24,22 @@ class Deflector {
   // clang-format on
   static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
   static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
-  static_assert(Gated<Moving> || !ForeseesOpening<Moving>, "Deflector: an optic with next_open(Tick) needs open(Tick), too");
+  static_assert(Gated<Moving> || !ForeseesOpening<Moving>,
+                "Deflector: an optic with next_open(Tick) needs open(Tick), too");
   static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;
 
  public:
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
-  Deflector(Moving moving, Source source) : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
+  Deflector(Moving moving, Source source)
+      : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return source_.emitters(); }
 
-  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
+    return pulse_lanes(i, 1)[0];
+  }
 
   /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
@@ -56,13 +60,14 @@ class Deflector {
     if constexpr (SkipsBlocked<Source>) i = source_.next_pulse(i);
     if constexpr (foresees)
       if (const auto inner = i < size() ? source_.pulse(i) : std::nullopt)
-        if (const Tick opens = moving_.next_open(inner->tick); opens > inner->tick) return std::max(i, source_.slot_from(opens));
+        if (const Tick opens = moving_.next_open(inner->tick); opens > inner->tick)
+          return std::max(i, source_.slot_from(opens));
     return i;
   }
 
   /// As the concept MeasuresBeam requires: the measured beam, turned by the head.
-  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i,
-                                                                             Tick t) const noexcept requires MeasuresBeam<Source> {
+  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(
+      PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
     const auto inner = source_.measured(i, t);
     if (!inner) return std::nullopt;
     return moving_.at(t) * *inner;

@@ -13,7 +13,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included, and repeat.
+/// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included,
+/// and repeat.
 struct FiberArray {
   std::uint32_t fibers = 128;        ///< number of fibres in the row
   double fibers_per_second = 100e3;  ///< rate of change from fibre to fibre: best the pulse rate; at most 1e12 [Hz]

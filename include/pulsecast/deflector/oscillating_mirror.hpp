@@ -17,17 +17,20 @@ enum class Swing : std::uint8_t {
   sine,      ///< harmonic, as of a resonant mirror
 };
 
-/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a cycle is two lines.
+/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a
+/// cycle is two lines.
 struct OscillatingMirror {
   double cycles_per_second = 50;  ///< rate of full oscillations, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
   Swing swing = Swing::triangle;  ///< motion from end to end
-  double turning_time = 0;        ///< duration of a reversal, half before the end, half after; triangle: at most half a cycle, sine: 0 [s]
+  double turning_time =
+      0;  ///< duration of a reversal, half before the end, half after; triangle: at most half a cycle, sine: 0 [s]
 
   void validate() const {
     require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
     require_within("OscillatingMirror::half_angle", half_angle, 0, pi, "rad");
-    require_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
+    require_within("OscillatingMirror::turning_time", turning_time, 0,
+                   swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
   }
 
   /// Elevation of the beam above forward [rad].
@@ -48,10 +51,13 @@ struct OscillatingMirror {
     const simd::Doubles phase = t.phase(cycles_per_second);
     if (swing == Swing::sine) return -half_angle * simd::cos(simd::Doubles(2 * pi * phase));
     const double turn = turning_time * cycles_per_second;  // [cycles]
-    const double rate = 4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
-    const simd::Doubles after = phase < 0.5 ? phase : 1.0 - phase;  // since the lower end; the second half mirrors the first [cycles]
-    const simd::Doubles before = 0.5 - after;                       // until the upper end [cycles]
-    const simd::Doubles lower = rate * after * after / turn - half_angle, upper = half_angle - rate * before * before / turn;
+    const double rate =
+        4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
+    const simd::Doubles after =
+        phase < 0.5 ? phase : 1.0 - phase;     // since the lower end; the second half mirrors the first [cycles]
+    const simd::Doubles before = 0.5 - after;  // until the upper end [cycles]
+    const simd::Doubles lower = rate * after * after / turn - half_angle,
+                        upper = half_angle - rate * before * before / turn;
     return after < 0.5 * turn ? lower : (before < 0.5 * turn ? upper : rate * (after - 0.25));
   }
 };

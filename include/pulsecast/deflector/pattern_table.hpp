@@ -34,7 +34,9 @@ struct PatternTable {
   }
 
   /// Index of the current entry, from 0.
-  [[nodiscard]] std::size_t entry(Tick t) const noexcept { return step_in_cycle(t, entries_per_second, entries.size()); }
+  [[nodiscard]] std::size_t entry(Tick t) const noexcept {
+    return step_in_cycle(t, entries_per_second, entries.size());
+  }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const BeamAngles& e = entries[entry(t)];

@@ -13,15 +13,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the next one takes over.
-/// The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside the gate are blocked; those on its ends
-/// pass, whatever the rounding of their time.
+/// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the
+/// next one takes over. The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside
+/// the gate are blocked; those on its ends pass, whatever the rounding of their time.
 struct PolygonMirror {
-  double lines_per_second = 100;      ///< rate of facets, at most 1e12 [Hz]
-  double sweep = 2 * pi / 3;          ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
-  double angle_min = -pi;             ///< lower end of the gate [rad]
-  double angle_max = pi;              ///< upper end of the gate [rad]
-  std::vector<double> facet_tilts{};  ///< deflection of each facet in turn out of the plane, to the right; none if empty [rad]
+  double lines_per_second = 100;  ///< rate of facets, at most 1e12 [Hz]
+  double sweep = 2 * pi / 3;      ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
+  double angle_min = -pi;         ///< lower end of the gate [rad]
+  double angle_max = pi;          ///< upper end of the gate [rad]
+  std::vector<double>
+      facet_tilts{};  ///< deflection of each facet in turn out of the plane, to the right; none if empty [rad]
 
   void validate() const {
     require_rate("PolygonMirror::lines_per_second", lines_per_second);
@@ -39,7 +40,8 @@ struct PolygonMirror {
   [[nodiscard]] std::size_t facet(Tick t) const noexcept {
     if (facet_tilts.size() < 2) return 0;
     const double n = static_cast<double>(facet_tilts.size());
-    // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase does
+    // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase
+    // does
     const double line = std::round(n * t.phase(lines_per_second / n) - phases(TickLanes(t))[0]);
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
@@ -50,7 +52,8 @@ struct PolygonMirror {
   /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     if (open(t)) return t;
-    const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless it is there from the start [cycles]
+    const double begin =
+        0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless it is there from the start [cycles]
     const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
     const double wait = (left < 2 ? left : 1) - 2 * margin();
@@ -69,7 +72,8 @@ struct PolygonMirror {
     poses = aimed_above(angle);
     if (!facet_tilts.empty()) {
       RotationLanes tilts;
-      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) tilts.set(lane, aimed_at(facet_tilts[facet(t[lane])], 0).rotation);
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
+        tilts.set(lane, aimed_at(facet_tilts[facet(t[lane])], 0).rotation);
       poses.rotation = poses.rotation * tilts;
     }
     return gate(angle);
@@ -79,7 +83,8 @@ struct PolygonMirror {
   /// Error of a phase: 16 units in its last place, and in that of a fraction of a second [cycles].
   [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + lines_per_second); }
 
-  /// Phases by which a gate is wider, for slots on its ends: rates of decimal digits stay together for 1e6 lines [cycles].
+  /// Phases by which a gate is wider, for slots on its ends: rates of decimal digits stay together for 1e6 lines
+  /// [cycles].
   [[nodiscard]] double margin() const noexcept { return 0x1p-33 + rounding(); }
 
   /// Phase of the line; one that rounding leaves just before the end of a line is the begin of the next one [cycles].

@@ -12,24 +12,26 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end, towards which it
-/// bends the beam, is below.
+/// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end,
+/// towards which it bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;          ///< angle between the faces [rad]
-  double turns_per_second = 100;   ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
+  double wedge = pi / 10;  ///< angle between the faces [rad]
+  double turns_per_second =
+      100;  ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
   double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
 };
 
-/// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from the front of the
-/// face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by that behind it. Source: Born & Wolf
-/// 1999, sec. 1.5.1, in vector form.
+/// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from
+/// the front of the face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by
+/// that behind it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
 inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double ratio) noexcept {
   const simd::Doubles zero{}, ratios = zero + ratio, cosine = -dot(direction, normal);
   const simd::Doubles sine_squared = ratios * ratios * (1.0 - cosine * cosine);
   const simd::Mask passes = (cosine > zero) & (sine_squared <= 1.0);
-  direction = normalize(ratios * direction + (ratios * cosine - simd::sqrt(simd::Doubles(1.0 - sine_squared))) * normal);
+  direction =
+      normalize(ratios * direction + (ratios * cosine - simd::sqrt(simd::Doubles(1.0 - sine_squared))) * normal);
   return passes;
 }
 
@@ -40,8 +42,8 @@ inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double 
   return light[0];
 }
 
-/// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked. The wedges bend the
-/// beam without shifting it: thickness and distance are neglected.
+/// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked.
+/// The wedges bend the beam without shifting it: thickness and distance are neglected.
 struct RisleyPrisms {
   std::vector<Prism> prisms{};    ///< wedges in the order of the beam, from 1 to 16
   double surrounding_index = 1;   ///< refractive index between and around the prisms

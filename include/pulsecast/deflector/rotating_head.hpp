@@ -10,7 +10,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
-  double rate = 2 * pi;  ///< angular rate, positive to the left about an upward axis; from -1e12 to 1e12, rounded as turns a second [rad/s]
+  double rate = 2 * pi;  ///< angular rate, positive to the left about an upward axis; from -1e12 to 1e12, rounded as
+                         ///< turns a second [rad/s]
   double start = 0;      ///< angle at the survey's start, from -2 pi to 2 pi [rad]
   Vec3 axis = axis::up;  ///< axis of rotation, of any length but zero
 

@@ -17,12 +17,13 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
   for (std::size_t e = 0; e < echoes.size(); ++e) echoes[e].number = static_cast<std::uint8_t>(e + 1);
 }
 
-/// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so that none of the
-/// optional members is lost:
+/// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so
+/// that none of the optional members is lost:
 ///
 ///     template <Detector Inner>
 ///     struct LastEcho : DetectorAdaptor<Inner> {
-///       Detection detect(const Heard& heard, auto& workspace) const noexcept { ... this->inner.detect(heard, workspace) ... }
+///       Detection detect(const Heard& heard, auto& workspace) const noexcept { ... this->inner.detect(heard,
+///       workspace) ... }
 ///     };
 ///     template <Detector Inner>
 ///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
@@ -47,7 +48,9 @@ struct DetectorAdaptor {
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 
   /// Sample spacing of waveforms [s].
-  [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> { return inner.sample_interval(); }
+  [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> {
+    return inner.sample_interval();
+  }
 
   /// Scratch memory of the detector inside.
   [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }

@@ -30,16 +30,18 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact. Between two leading
-/// edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a quadratic. One pass over the reflections
-/// finds them all. A `SinglePeakGroup` is evaluated without sorting.
-/// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the
-/// digitiser's bins and the receiver's noise.
+/// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact.
+/// Between two leading edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a
+/// quadratic. One pass over the reflections finds them all. A `SinglePeakGroup` is evaluated without sorting.
+/// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform`
+/// models the digitiser's bins and the receiver's noise.
 ///
-/// Continuous returns are exact, too: between the edges of reflections, and of theirs, the sum is a quadratic polynomial times an
-/// exponential, and a linear one. Its extrema are bracketed in steps of a quarter of tau, where it may rise. They have no part in widths.
+/// Continuous returns are exact, too: between the edges of reflections, and of theirs, the sum is a quadratic
+/// polynomial times an exponential, and a linear one. Its extrema are bracketed in steps of a quarter of tau, where it
+/// may rise. They have no part in widths.
 ///
-/// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
+/// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum;
+/// moments are exact.
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
@@ -48,7 +50,8 @@ class AnalyticWaveform {
       : s_(validated(settings)), width_(validated(std::move(width))) {
     require_within("AnalyticWaveform: WaveformSettings::prominence", s_.prominence, 0, 0, "W");
     if (s_.timing > EchoTiming::peak)
-      throw SettingError("AnalyticWaveform: WaveformSettings::timing", static_cast<double>(s_.timing), "", "true_range or peak");
+      throw SettingError("AnalyticWaveform: WaveformSettings::timing", static_cast<double>(s_.timing), "",
+                         "true_range or peak");
   }
 
   /// Settings, as validated.
@@ -66,7 +69,8 @@ class AnalyticWaveform {
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if constexpr (by_samples) {
       const double whole = (PulseShape::peak + SampledSum::negligible) * shape.tau;
-      return pulsecast::pulse_width(width_, shape, std::fmax(s_.sample_interval, whole / static_cast<double>(max_samples - 2)));
+      return pulsecast::pulse_width(width_, shape,
+                                    std::fmax(s_.sample_interval, whole / static_cast<double>(max_samples - 2)));
     } else if constexpr (by_moments) {
       EdgeAgeMoments pulse;
       pulse.add(1);
@@ -122,13 +126,15 @@ class AnalyticWaveform {
     const detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
     for (Peak& peak : w.peaks) {
       if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
-      keep_return(echo_of(peak, reflections, shape, s_.timing, rises.sources(0)), s_.returns_kept, s_.returns_max, w.echoes);
+      keep_return(echo_of(peak, reflections, shape, s_.timing, rises.sources(0)), s_.returns_kept, s_.returns_max,
+                  w.echoes);
     }
     number_echoes(w.echoes);
     if (!continuous.empty()) return {w.echoes, w.record, record(heard, reflections, w.record)};
     const double start = SampledSum::first_sample(reflections.front(), shape, s_.sample_interval);
     SampledSum sum(reflections, shape, s_.sample_interval, 0, start);
-    while (w.record.size() < w.record.capacity() && (!sum.all_in() || sum.time() < sum.last_peak() + SampledSum::negligible * shape.tau))
+    while (w.record.size() < w.record.capacity() &&
+           (!sum.all_in() || sum.time() < sum.last_peak() + SampledSum::negligible * shape.tau))
       w.record.push_back(static_cast<float>(sum.power()));
     return {w.echoes, w.record, start * s_.sample_interval};
   }
@@ -191,7 +197,8 @@ class AnalyticWaveform {
       const double per_metre = 2 / (speed_of_light * shape.tau);
       for (std::size_t k = 0; k < reflections.size(); ++k) {
         ages.add(reflections[k].power);
-        const double next = k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
+        const double next =
+            k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
         if (next == 0) continue;
         const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
         double x = 0;  // time since the edge [tau]
@@ -256,7 +263,9 @@ class AnalyticWaveform {
       detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
       const double to_edge = PulseShape::peak * shape.tau;
       std::size_t next = 0;
-      const auto next_edge = [&] { return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity; };
+      const auto next_edge = [&] {
+        return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity;
+      };
       double time = std::fmin(next_edge(), rises.next());
       const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // up to here, if no reflection comes
       if (only_rises > time && next_edge() > only_rises + to_edge) time = only_rises;
@@ -269,7 +278,8 @@ class AnalyticWaveform {
         }
         rises.pass(time);
         const bool falls = !rising && time > rising_until && time >= rises.until();
-        const double soon = std::fmin(next_edge(), rises.next()), to = falls ? soon : std::fmin(soon, time + 0.25 * shape.tau);
+        const double soon = std::fmin(next_edge(), rises.next()),
+                     to = falls ? soon : std::fmin(soon, time + 0.25 * shape.tau);
         if (!(to < infinity)) break;
         Sum then = sum;
         then.advance(to, shape.tau);
@@ -290,7 +300,8 @@ class AnalyticWaveform {
   };
 
   /// Keeps the record of a pulse with continuous returns. Returns the time of its first sample [s].
-  double record(const Heard& heard, std::span<const Reflection> reflections, std::vector<float>& record) const noexcept {
+  double record(const Heard& heard, std::span<const Reflection> reflections,
+                std::vector<float>& record) const noexcept {
     IdealSamples samples(0, 0, s_, heard, reflections, 0);
     while (record.size() < record.capacity() && samples.begin_section())
       for (bool more = true; more && record.size() < record.capacity();) {
@@ -310,7 +321,8 @@ class AnalyticWaveform {
     const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(max_samples - 2));
     const double faded = peak.begin - SampledSum::negligible * shape.tau;
     const auto first = std::partition_point(reflections.begin(), reflections.end(), before(faded));
-    SampledSum sum(reflections, shape, interval, static_cast<std::size_t>(first - reflections.begin()), std::ceil(peak.begin / interval));
+    SampledSum sum(reflections, shape, interval, static_cast<std::size_t>(first - reflections.begin()),
+                   std::ceil(peak.begin / interval));
     samples.clear();
     while (sum.time() <= end) samples.push_back(sum.power());
     return width_.width(samples, interval);

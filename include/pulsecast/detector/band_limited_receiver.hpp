@@ -32,14 +32,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of finite bandwidth, as real ones are: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and the form of the
-/// laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. Noise makes it listen to the whole gate.
+/// Receiver of finite bandwidth, as real ones are: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and
+/// the form of the laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. Noise
+/// makes it listen to the whole gate.
 template <PulseForm Form = GammaPulse>
 class BandLimitedReceiver {
  public:
   BandLimitedReceiver() : BandLimitedReceiver(ReceiverChain{}) {}  ///< receiver without noise
   /// @throws SettingError for settings out of range
-  explicit BandLimitedReceiver(ReceiverChain settings, Form form = {}) : chain_(validated(settings)), form_(std::move(form)) {}
+  explicit BandLimitedReceiver(ReceiverChain settings, Form form = {})
+      : chain_(validated(settings)), form_(std::move(form)) {}
 
   /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
@@ -77,7 +79,9 @@ class BandLimitedReceiver {
 
   /// As the concept WaveformReceiver requires: for `filtered_top`, where noise or steps may be finer than the pulse.
   [[nodiscard]] double timing_reach(const Laser& laser) const noexcept {
-    return chain_.matched_filter || (chain_.bandwidth == 0 && chain_.full_scale == 0) ? 0 : 0.6 * (*known_.find(laser))->pulse.width();
+    return chain_.matched_filter || (chain_.bandwidth == 0 && chain_.full_scale == 0)
+               ? 0
+               : 0.6 * (*known_.find(laser))->pulse.width();
   }
 
   /// Scratch memory for the pulses that were prepared.
@@ -92,10 +96,11 @@ class BandLimitedReceiver {
             std::vector<double>(taps == 0 ? 0 : std::bit_ceil(taps))};
   }
 
-  /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections that are none or
-  /// too far apart, or where continuous returns may rise, and for receivers whose samples are more than the sum of the pulses. `reach` is
-  /// that of `timing_reach`.
-  [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard, double reach) const noexcept {
+  /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections
+  /// that are none or too far apart, or where continuous returns may rise, and for receivers whose samples are more
+  /// than the sum of the pulses. `reach` is that of `timing_reach`.
+  [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard,
+                                                  double reach) const noexcept {
     if (!is_linear() || heard.reflections.empty()) return {};
     const ReceivedPulse& pulse = (*known_.find(heard.emitter.laser))->pulse;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -114,24 +119,30 @@ class BandLimitedReceiver {
     for (const Reflection& r : heard.reflections) {
       const ReceivedPulse::Phase phase = pulse.phase(arrival(r));
       const double before = from - pulse.first_sample(arrival(r));
-      if (!(before >= 0 && before + static_cast<double>(count + simd::lane_count) <= static_cast<double>(pulse.stride()))) return {};
+      if (!(before >= 0 &&
+            before + static_cast<double>(count + simd::lane_count) <= static_cast<double>(pulse.stride())))
+        return {};
       const double* const row = pulse.row(phase.first) + static_cast<std::size_t>(before);
       for (std::size_t k = 0; k < count; k += simd::lane_count) {
         simd::Doubles sum{};
-        for (std::size_t j = 0; j < 4; ++j) sum += phase.weights[j] * simd::load<simd::Doubles>(row[j * pulse.stride() + k]);
+        for (std::size_t j = 0; j < 4; ++j)
+          sum += phase.weights[j] * simd::load<simd::Doubles>(row[j * pulse.stride() + k]);
         simd::store(simd::Doubles(simd::load<simd::Doubles>(y[k]) + r.power * sum), y[k]);
       }
     }
     if (!heard.continuous.empty()) {
       detail::ContinuousRises<const ReceivedPulse&> continuous(heard.continuous, pulse);
       continuous.pass((from + static_cast<double>(count)) * s.sample_interval);
-      if (!(continuous.until() <= from * s.sample_interval - pulse.end() && continuous.next() >= to * s.sample_interval + pulse.end()))
+      if (!(continuous.until() <= from * s.sample_interval - pulse.end() &&
+            continuous.next() >= to * s.sample_interval + pulse.end()))
         return {};
-      for (std::size_t k = 0; k < count; ++k) y[k] += continuous.power((from + static_cast<double>(k)) * s.sample_interval);
+      for (std::size_t k = 0; k < count; ++k)
+        y[k] += continuous.power((from + static_cast<double>(k)) * s.sample_interval);
     }
-    const auto top =
-        static_cast<std::size_t>(std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
-    if (!heard.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};  // on the flank of continuous returns
+    const auto top = static_cast<std::size_t>(
+        std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
+    if (!heard.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1]))
+      return {};  // on the flank of continuous returns
     const Vertex between = vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
     const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);
@@ -146,8 +157,9 @@ class BandLimitedReceiver {
   }
 
   /// As the concept WaveformReceiver requires; for pulses that were prepared.
-  [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
-                                           double width_tail, Workspace& w) const noexcept {
+  [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const Heard& heard,
+                                           std::span<const Reflection> reflections, double width_tail,
+                                           Workspace& w) const noexcept {
     const auto* pulses = known_.find(heard.emitter.laser);
     PULSECAST_ASSERT(pulses != nullptr);
     return {chain_, **pulses, s, heard, reflections, width_tail == 0, w};
@@ -156,7 +168,8 @@ class BandLimitedReceiver {
  private:
   /// True if samples are the sum of the pulses.
   [[nodiscard]] bool is_linear() const noexcept {
-    return !chain_.noisy() && !chain_.shot_noise && chain_.saturation == 0 && chain_.full_scale == 0 && !chain_.matched_filter;
+    return !chain_.noisy() && !chain_.shot_noise && chain_.saturation == 0 && chain_.full_scale == 0 &&
+           !chain_.matched_filter;
   }
 
   ReceiverChain chain_;

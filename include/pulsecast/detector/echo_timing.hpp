@@ -14,14 +14,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Point of an echo that defines its range. All but `true_range` are read from the samples of the waveform, as instruments do, and are
-/// corrected by what the estimator gives for a flat target at normal incidence. Sources: Wagner et al. 2004, ISPRS Archives 35-B3 (a
-/// comparison); Jutzi & Stilla 2006.
+/// Point of an echo that defines its range. All but `true_range` are read from the samples of the waveform, as
+/// instruments do, and are corrected by what the estimator gives for a flat target at normal incidence. Sources: Wagner
+/// et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
-  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows: unbiased for an echo of
+  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows:
+  /// unbiased for an echo of
   /// any length. What media send back does not count; an echo that is theirs has the range of its peak.
   true_range,
-  /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or the steps of a
+  /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or
+  /// the steps of a
   /// digitiser
   /// it is that after a filter about as wide as the pulse, so that it errs less with more samples.
   peak,
@@ -35,11 +37,13 @@ struct Vertex {
   double offset, height;  ///< offset from the middle sample [samples]; power [W]
 };
 
-/// Maximum of the quartic through five samples about a peak, `y[-2]` to `y[2]`, by Newton's method from the vertex of the parabola through
-/// the middle three. Returns that vertex where the quartic has no maximum, as in noise.
+/// Maximum of the quartic through five samples about a peak, `y[-2]` to `y[2]`, by Newton's method from the vertex of
+/// the parabola through the middle three. Returns that vertex where the quartic has no maximum, as in noise.
 [[nodiscard]] inline Vertex vertex(const double* y) noexcept {
-  const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12, c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
-  const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12, c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;
+  const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12,
+               c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
+  const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12,
+               c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;
   const double middle = 0.5 * (y[-1] - y[1]) / (y[-1] - 2 * y[0] + y[1]);
   double x = middle;
   for (int step = 0; step < 3; ++step) {
@@ -53,8 +57,8 @@ struct Vertex {
 
 namespace detail {
 
-/// Place [samples] at which samples rise to a level before the peak at index i: on the cubic through the four samples about it. The
-/// lowest place before the peak, if they do not fall below the level there.
+/// Place [samples] at which samples rise to a level before the peak at index i: on the cubic through the four samples
+/// about it. The lowest place before the peak, if they do not fall below the level there.
 [[nodiscard]] inline double rise_before(std::span<const double> y, std::size_t i, double level) noexcept {
   std::size_t above = i;
   while (above > 0 && y[above - 1] >= level && y[above - 1] <= y[i]) --above;
@@ -87,12 +91,14 @@ namespace detail {
   return static_cast<double>(i) + (sum > 0 ? first / sum : 0);
 }
 
-/// Maximum about a place [samples] after a filter that reaches `reach` samples either side, of the form (1 - u^2)^2, by Newton's method
-/// from that place. With a reach of 0.6 of the width of the gamma pulse it errs by 1.3 times the Cramer-Rao bound of white noise, and parts
-/// closer echoes than the best reach, of 0.75. Source: biweight, Beaton & Tukey 1974; the factor by integrals of slope and filter.
+/// Maximum about a place [samples] after a filter that reaches `reach` samples either side, of the form (1 - u^2)^2, by
+/// Newton's method from that place. With a reach of 0.6 of the width of the gamma pulse it errs by 1.3 times the
+/// Cramer-Rao bound of white noise, and parts closer echoes than the best reach, of 0.75. Source: biweight, Beaton &
+/// Tukey 1974; the factor by integrals of slope and filter.
 [[nodiscard]] inline double filtered_top(std::span<const double> y, double place, double reach) noexcept {
   for (int step = 0; step < 12 && reach > 2; ++step) {
-    const auto end = static_cast<std::size_t>(std::clamp(std::floor(place + reach) + 1, 0.0, static_cast<double>(y.size())));
+    const auto end =
+        static_cast<std::size_t>(std::clamp(std::floor(place + reach) + 1, 0.0, static_cast<double>(y.size())));
     double slope = 0, bend = 0;
     for (auto i = static_cast<std::size_t>(std::max(std::ceil(place - reach), 0.0)); i < end; ++i) {
       const double u = (static_cast<double>(i) - place) / reach;
@@ -109,12 +115,13 @@ namespace detail {
 
 }  // namespace detail
 
-inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `EchoTiming::centroid` weighs samples
+inline constexpr double centroid_level =
+    0.1;  ///< share of the maximum above which `EchoTiming::centroid` weighs samples
 
-/// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is the level of a
-/// leading edge, and `fraction` the share of the maximum of a constant fraction.
-[[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top, double threshold,
-                                      double fraction) noexcept {
+/// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is
+/// the level of a leading edge, and `fraction` the share of the maximum of a constant fraction.
+[[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top,
+                                      double threshold, double fraction) noexcept {
   switch (timing) {
     case EchoTiming::leading_edge:
       return detail::rise_before(y, i, threshold);

@@ -15,7 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Moments of a section of waveform about a reference time: integrals of power, of power times time, and of power times time squared.
+/// Moments of a section of waveform about a reference time: integrals of power, of power times time, and of power times
+/// time squared.
 struct WaveformMoments {
   double energy = 0, first = 0, second = 0;  ///< moments of order 0, 1 and 2
 
@@ -68,12 +69,13 @@ template <EchoWidth Width>
     return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;
 }
 
-/// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence. Sampled every
-/// `interval` [s]; not for the hot path.
+/// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence.
+/// Sampled every `interval` [s]; not for the hot path.
 template <EchoWidth Width>
 [[nodiscard]] double pulse_width(const Width& width, const PulseShape& shape, double interval) {
   std::vector<double> samples;
-  for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval) samples.push_back(shape(t));
+  for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval)
+    samples.push_back(shape(t));
   return width.width(samples, interval);
 }
 

@@ -23,13 +23,15 @@ struct LowPass {
     return {std::sqrt(std::numbers::ln2) / (2 * std::numbers::pi * bandwidth)};
   }
 
-  /// Bandwidth of a rectangular filter that passes as much white noise [Hz]: the integral of |H|^2 over positive frequencies.
+  /// Bandwidth of a rectangular filter that passes as much white noise [Hz]: the integral of |H|^2 over positive
+  /// frequencies.
   [[nodiscard]] double noise_bandwidth() const noexcept { return std::numbers::inv_sqrtpi / (4 * deviation); }
 };
 
-/// White Gaussian noise behind a `LowPass`, scaled to a deviation of 1: a function of time, the same however it is sampled. Impulses, whose
-/// heights are drawn by the key and their number, follow each other at 3/4 of the filter's deviation, so that the deviation at different
-/// times differs by less than 1e-7. Its autocorrelation is exp(-(t / 2 deviation)^2).
+/// White Gaussian noise behind a `LowPass`, scaled to a deviation of 1: a function of time, the same however it is
+/// sampled. Impulses, whose heights are drawn by the key and their number, follow each other at 3/4 of the filter's
+/// deviation, so that the deviation at different times differs by less than 1e-7. Its autocorrelation is exp(-(t / 2
+/// deviation)^2).
 class FilteredNoise {
  public:
   /// Noise of a pulse; the key's subray and part number the impulses.
@@ -40,13 +42,15 @@ class FilteredNoise {
   [[nodiscard]] double operator()(double time) noexcept {
     const double place = time / spacing_, middle = std::floor(place), beyond = place - middle;
     const auto first = static_cast<std::int64_t>(middle) - (reach - 1);
-    for (next_ = next_ < first ? first : next_; next_ < first + 2 * reach; ++next_) impulses_[index(next_)] = impulse(next_);
-    // weights exp(-(j - from)^2 step^2 / 2) of impulses first + j: each is a factor times the one before, and the factor falls by a
-    // constant
+    for (next_ = next_ < first ? first : next_; next_ < first + 2 * reach; ++next_)
+      impulses_[index(next_)] = impulse(next_);
+    // weights exp(-(j - from)^2 step^2 / 2) of impulses first + j: each is a factor times the one before, and the
+    // factor falls by a constant
     constexpr double square = 0.75 * 0.75, decay = 0.569782824730923;  // exp(-square)
     const double from = beyond + (reach - 1);
     double weight = exponential(-0.5 * square * from * from), factor = exponential(square * (from - 0.5)), sum = 0;
-    for (std::int64_t j = 0; j < 2 * reach; ++j, weight *= factor, factor *= decay) sum += impulses_[index(first + j)] * weight;
+    for (std::int64_t j = 0; j < 2 * reach; ++j, weight *= factor, factor *= decay)
+      sum += impulses_[index(first + j)] * weight;
     return scale_ * sum;
   }
 

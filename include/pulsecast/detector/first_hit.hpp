@@ -9,8 +9,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility. Continuous returns have no power
-/// at any one range, so that it does not detect fog, but what fog leaves of surfaces.
+/// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility. Continuous
+/// returns have no power at any one range, so that it does not detect fog, but what fog leaves of surfaces.
 struct FirstHit {
   double threshold = 0;  ///< least detectable power [W]
 

@@ -24,14 +24,15 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
-  double bandwidth = 1e9;     ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from 1e6 to 1e12 [Hz]
-  double sweep_time = 10e-6;  ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
-  double threshold = 1e-12;   ///< least power of an echo, greater than 0 [W]
+  double bandwidth = 1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from
+                           ///< 1e6 to 1e12 [Hz]
+  double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
+  double threshold = 1e-12;       ///< least power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
-  bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum efficiency, has the
-                                  ///< power of the noise
-  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
-  std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
+  bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum
+                            ///< efficiency, has the power of the noise
+  bool speckle = false;          ///< adds fields of random phases, as of rough surfaces, in place of powers
+  std::size_t returns_max = 15;  ///< strongest echoes kept, from 1 to 64
 
   /// @throws SettingError
   void validate() const {
@@ -49,15 +50,17 @@ struct FmcwSettings {
   [[nodiscard]] double velocity_resolution(double wavelength) const noexcept { return 0.5 * wavelength / sweep_time; }
 };
 
-/// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a share of the light
-/// that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that both range and radial velocity are
-/// known. Beats have a sign, as of a receiver of both quadratures. The spectrum of each sweep, weighted by a window of Hann, is searched
-/// for peaks. The sweeps' peaks are paired in order of power, and in order of frequency where powers are alike: the latter are wrong if
-/// surfaces of different velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
-/// powers, as where two peaks are one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the middle.
-/// The laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean. Continuous returns,
-/// which stand still, are in the spectrum, of which only what is near to surfaces is searched. It needs a target that knows velocities,
-/// such as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+/// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a
+/// share of the light that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that
+/// both range and radial velocity are known. Beats have a sign, as of a receiver of both quadratures. The spectrum of
+/// each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order of power, and
+/// in order of frequency where powers are alike: the latter are wrong if surfaces of different velocities overtake each
+/// other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different powers, as where two peaks are
+/// one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the middle. The
+/// laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean.
+/// Continuous returns, which stand still, are in the spectrum, of which only what is near to surfaces is searched. It
+/// needs a target that knows velocities, such as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla &
+/// Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   /// @throws SettingError for settings out of range
@@ -98,7 +101,8 @@ class Fmcw {
 
   /// Echoes of all reflections. Noise and phases are drawn from the seed and pulse of `heard.key`.
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const double wavelength = heard.emitter.laser.wavelength, metres = s_.resolution(), speed = s_.velocity_resolution(wavelength);
+    const double wavelength = heard.emitter.laser.wavelength, metres = s_.resolution(),
+                 speed = s_.velocity_resolution(wavelength);
     for (const std::size_t sweep : {std::size_t{0}, std::size_t{1}}) {
       set_lines(heard, sweep == 0 ? 1 / speed : -1 / speed, w);
       find_peaks(heard, w.lines, noise_of(heard, sweep), w.peaks[sweep]);
@@ -109,7 +113,8 @@ class Fmcw {
     for (std::size_t first = 0, last = 0; first < pairs; first = last) {
       const bool sure = pair_next(first, last, noise_of(heard, 0).deviation, w.peaks);
       for (std::size_t e = first; e < last; ++e) {
-        Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres, 0.5 * (up[e].power + down[e].power));
+        Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres,
+                              0.5 * (up[e].power + down[e].power));
         echo.velocity = 0.5 * (up[e].beat - down[e].beat) * speed;
         echo.ambiguous = !sure;
         if (echo.range >= 0) w.echoes.push_back(echo);
@@ -122,8 +127,9 @@ class Fmcw {
 
  private:
   using Line = Workspace::Line;
-  static constexpr double reach = 2;    ///< half the main lobe of the window [periods in a sweep]
-  static constexpr double grid = 0.25;  ///< spacing of the spectrum, of four times as many samples by zeros added [periods in a sweep]
+  static constexpr double reach = 2;  ///< half the main lobe of the window [periods in a sweep]
+  static constexpr double grid =
+      0.25;  ///< spacing of the spectrum, of four times as many samples by zeros added [periods in a sweep]
 
   /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
   struct Noise {
@@ -162,24 +168,30 @@ class Fmcw {
     return simd::sincos(pi * x).sin / (pi * x * (1 - square));
   }
 
-  /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of less power in both sweeps. True if
-  /// there is one pair, of one power.
-  static bool pair_next(std::size_t first, std::size_t& last, double deviation, std::array<std::vector<Peak>, 2>& peaks) noexcept {
+  /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of less power in both
+  /// sweeps. True if there is one pair, of one power.
+  static bool pair_next(std::size_t first, std::size_t& last, double deviation,
+                        std::array<std::vector<Peak>, 2>& peaks) noexcept {
     std::vector<Peak>& up = peaks[0];
     std::vector<Peak>& down = peaks[1];
     const std::size_t pairs = std::min(up.size(), down.size());
-    const auto amplitude = [](const std::vector<Peak>& of, std::size_t k) { return k < of.size() ? std::sqrt(of[k].power) : 0; };
-    // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and by three deviations of the difference of
-    // two amplitudes. The noise through the window has 1 + 1/4 + 1/4 times its variance.
+    const auto amplitude = [](const std::vector<Peak>& of, std::size_t k) {
+      return k < of.size() ? std::sqrt(of[k].power) : 0;
+    };
+    // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and by three deviations
+    // of the difference of two amplitudes. The noise through the window has 1 + 1/4 + 1/4 times its variance.
     const double high = std::max(amplitude(up, first), amplitude(down, first));
     const double alike = 2 * std::pow(10, -32.0 / 20) * high + 3 * std::sqrt(2 * 1.5) * deviation;
     const auto low = [&](std::size_t k) { return std::min(amplitude(up, k), amplitude(down, k)); };
-    const auto apart = [&](std::size_t k) { return low(k - 1) - std::max(amplitude(up, k), amplitude(down, k)) > alike; };
+    const auto apart = [&](std::size_t k) {
+      return low(k - 1) - std::max(amplitude(up, k), amplitude(down, k)) > alike;
+    };
     last = first + 1;
     while (last < pairs && !apart(last)) ++last;
     if (last == first + 1) return apart(last) && high - low(first) <= alike;
     for (std::vector<Peak>* of : {&up, &down})
-      std::sort(of->begin() + static_cast<std::ptrdiff_t>(first), of->begin() + static_cast<std::ptrdiff_t>(last), by_beat);
+      std::sort(of->begin() + static_cast<std::ptrdiff_t>(first), of->begin() + static_cast<std::ptrdiff_t>(last),
+                by_beat);
     return false;
   }
 
@@ -195,7 +207,8 @@ class Fmcw {
       Line line{.beat = r.range / s_.resolution() + r.velocity * per_velocity, .power = r.power, .from = &r};
       if (!(std::fabs(line.beat) < 0x1p40)) continue;  // else it could not be counted
       if (s_.speckle) {
-        const double turns = uniform({heard.key.seed, heard.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
+        const double turns =
+            uniform({heard.key.seed, heard.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
         const auto phase = simd::sincos(2 * pi * turns);
         line.cos = phase.cos;
         line.sin = phase.sin;
@@ -205,8 +218,8 @@ class Fmcw {
     std::sort(w.lines.begin(), w.lines.end(), [](const Line& a, const Line& b) { return a.beat < b.beat; });
   }
 
-  /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no ripple, as the square of Hann's window
-  /// has no higher harmonics than its own.
+  /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no ripple, as the
+  /// square of Hann's window has no higher harmonics than its own.
   struct Haze {
     std::span<const ContinuousReturn> returns;  ///< those that matter
     double resolution;                          ///< of `FmcwSettings` [m]
@@ -241,7 +254,8 @@ class Fmcw {
   }
 
   /// Power of the spectrum of a sweep at a frequency [W]. Only lines within 8 periods matter.
-  [[nodiscard]] double power_at(std::span<const Line> lines, const Haze& haze, const Noise& noise, double beat) const noexcept {
+  [[nodiscard]] double power_at(std::span<const Line> lines, const Haze& haze, const Noise& noise,
+                                double beat) const noexcept {
     double real = 0, imaginary = 0, power = 0;
     for (const Line& line : lines) {
       if (std::fabs(line.beat - beat) > 8) continue;
@@ -273,12 +287,15 @@ class Fmcw {
     return real * real + imaginary * imaginary;
   }
 
-  /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near lines.
-  void find_peaks(const Heard& heard, std::span<const Line> lines, const Noise& noise, std::vector<Peak>& peaks) const noexcept {
+  /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near
+  /// lines.
+  void find_peaks(const Heard& heard, std::span<const Line> lines, const Noise& noise,
+                  std::vector<Peak>& peaks) const noexcept {
     peaks.clear();
     for (std::size_t first = 0, last = 0; first < lines.size(); first = last) {
       for (last = first + 1; last < lines.size() && lines[last].beat - lines[last - 1].beat < 2 * reach;) ++last;
-      const double begin = std::floor((lines[first].beat - reach) / grid), end = std::ceil((lines[last - 1].beat + reach) / grid);
+      const double begin = std::floor((lines[first].beat - reach) / grid),
+                   end = std::ceil((lines[last - 1].beat + reach) / grid);
       const Haze haze = haze_of(heard, lines[first].beat - reach, lines[last - 1].beat + reach);
       std::array<double, 5> y{};  // the last five powers, about the one that may be a peak
       for (double g = begin; g <= end; ++g) {

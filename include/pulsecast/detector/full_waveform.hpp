@@ -31,13 +31,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// What turns the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's reflections, sorted by
-/// range, and gives them section by section, as `IdealSamples`. It is told of each laser before the first pulse by `prepare`.
-/// `timing_reach` is the time beside a maximum whose samples define its place [s], or 0 for those next to it.
+/// What turns the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's
+/// reflections, sorted by range, and gives them section by section, as `IdealSamples`. It is told of each laser before
+/// the first pulse by `prepare`. `timing_reach` is the time beside a maximum whose samples define its place [s], or 0
+/// for those next to it.
 template <class R>
 concept WaveformReceiver = std::copyable<R> &&
-    requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
-             double width_tail, typename R::Workspace& w, bool& more) {
+    requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard,
+             std::span<const Reflection> reflections, double width_tail, typename R::Workspace& w, bool& more) {
   any.prepare(laser, s);
   any.silence();
   { r.workspace() } -> std::same_as<typename R::Workspace>;
@@ -50,17 +51,19 @@ concept WaveformReceiver = std::copyable<R> &&
   { R::listens_always } -> std::convertible_to<bool>;
 };
 
-/// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks. Their heights and times are interpolated
-/// between samples. The receiver is ideal by default, and adds the pulse shapes of all reflections; a `BandLimitedReceiver` is as real
-/// ones are.
+/// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks. Their heights and times
+/// are interpolated between samples. The receiver is ideal by default, and adds the pulse shapes of all reflections; a
+/// `BandLimitedReceiver` is as real ones are.
 ///
-/// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection on, for the record's length and as long
-/// as reflections arrive, and detects false echoes. The threshold applies to the samples themselves. Echoes are then timed by their peaks
-/// in place of true ranges. Amplitudes and widths are relative to the mean background, which the record includes.
+/// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection on, for the record's
+/// length and as long as reflections arrive, and detects false echoes. The threshold applies to the samples themselves.
+/// Echoes are then timed by their peaks in place of true ranges. Amplitudes and widths are relative to the mean
+/// background, which the record includes.
 ///
-/// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and by 0.5 mm at 1/8. At
-/// 1/5 its amplitude errs by -0.13 to 0.40 % with the place between samples; at 1/4 it errs by 10 mm, and its amplitude by 2 %. Pulses
-/// shorter than one interval or longer than 10,000 are refused. At most 4096 noise peaks per pulse are considered.
+/// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and
+/// by 0.5 mm at 1/8. At 1/5 its amplitude errs by -0.13 to 0.40 % with the place between samples; at 1/4 it errs by 10
+/// mm, and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise
+/// peaks per pulse are considered.
 template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
@@ -77,15 +80,17 @@ class FullWaveform {
   /// Refuses pulses that the samples do not resolve, or that exceed the sample window. @throws SettingError
   void validate(const Laser& laser) const { s_.require_sampled(laser.pulse_length, WaveformSettings::max_samples); }
 
-  /// Prepares for the pulses of a laser: the receiver, and the correction of echo times. @throws SettingError as `validate`
+  /// Prepares for the pulses of a laser: the receiver, and the correction of echo times. @throws SettingError as
+  /// `validate`
   void prepare(const Laser& laser) {
     validate(laser);
     receiver_.prepare(laser, s_);
     if (reads_samples() && !corrections_.find(laser)) corrections_.add(laser, correction_for(laser));
   }
 
-  /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold, whose pulse arrives at
-  /// the place k of `places` between two samples [s]; the last place is the next sample. Records, if any, hold the whole pulse.
+  /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold,
+  /// whose pulse arrives at the place k of `places` between two samples [s]; the last place is the next sample.
+  /// Records, if any, hold the whole pulse.
   template <class Visit>
   void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
     FullWaveform quiet = *this;
@@ -131,8 +136,8 @@ class FullWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn from
-  /// the seed and pulse of `heard.key`.
+  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
+  /// Noise is drawn from the seed and pulse of `heard.key`.
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const Laser& laser = heard.emitter.laser;
     w.peaks.clear();
@@ -140,7 +145,8 @@ class FullWaveform {
     w.record.clear();
     std::optional<OnlyPeak> only;
     if constexpr (ideal) {
-      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak && is_apart(heard)) {
+      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak &&
+          is_apart(heard)) {
         const PulseShape shape(laser.pulse_length, s_.shape_divisor);
         const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
         if (group.one() && !heard.continuous.empty())
@@ -149,7 +155,8 @@ class FullWaveform {
           return {w.echoes, {}, 0};
       }
     } else if constexpr (std::same_as<Width, NoWidth>) {
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && is_apart(heard)) only = receiver_.only_peak(s_, heard, reach_of(laser));
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && is_apart(heard))
+        only = receiver_.only_peak(s_, heard, reach_of(laser));
       if (only && heard.continuous.empty()) {
         keep_only(only, laser, w.echoes);
         return {w.echoes, {}, 0};
@@ -158,8 +165,12 @@ class FullWaveform {
     const std::span<const Reflection> reflections =
         only ? std::span<Reflection>{} : in_order_of_range(heard.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
-    const typename SampleWindow<Width>::Search search{
-        s_, width_, s_.min_separation(laser.pulse_length), samples.delay(), samples.independent_noise(), reach_of(laser)};
+    const typename SampleWindow<Width>::Search search{s_,
+                                                      width_,
+                                                      s_.min_separation(laser.pulse_length),
+                                                      samples.delay(),
+                                                      samples.independent_noise(),
+                                                      reach_of(laser)};
     while (samples.begin_section()) {
       w.window.clear();
       for (bool more = true; more;) {
@@ -173,10 +184,12 @@ class FullWaveform {
     if constexpr (listens_always)  // the samples before and after the gate complete the pulses at its ends
       std::erase_if(w.peaks, [&](const Peak& peak) { return !heard.gate.contains(0.5 * speed_of_light * peak.mark); });
     keep_echoes(s_, w.peaks);
-    const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
+    const EchoTiming timing =
+        samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
     for (const Peak& peak : w.peaks) {
       if (only && peak.time > only->time) keep_only(only, laser, w.echoes);
-      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_.returns_kept, s_.returns_max, w.echoes);
+      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_.returns_kept,
+                  s_.returns_max, w.echoes);
     }
     if (only) keep_only(only, laser, w.echoes);
     number_echoes(w.echoes);
@@ -206,8 +219,8 @@ class FullWaveform {
     }
   };
 
-  /// Time after the peak of its last pulse up to which a waveform affects a width or a time [tau]. Of pulses that have passed their peaks,
-  /// the sum falls at least as fast as one that is at its peak.
+  /// Time after the peak of its last pulse up to which a waveform affects a width or a time [tau]. Of pulses that have
+  /// passed their peaks, the sum falls at least as fast as one that is at its peak.
   [[nodiscard]] double tail() const noexcept {
     const double of_time = s_.timing == EchoTiming::centroid ? PulseShape::fallen_to(centroid_level) : 0;
     return std::fmax(tail_of(width_), of_time);
@@ -240,14 +253,16 @@ class FullWaveform {
     const Correction* correction = corrections_.find(laser);
     const double time = correction ? correction->arrival(only->time, s_.sample_interval) : only->time;
     if (only->height >= s_.threshold)
-      keep_return(echo_from(*only->strongest, 0.5 * speed_of_light * time, only->height), s_.returns_kept, s_.returns_max, echoes);
+      keep_return(echo_from(*only->strongest, 0.5 * speed_of_light * time, only->height), s_.returns_kept,
+                  s_.returns_max, echoes);
     only.reset();
   }
 
-  /// True if a maximum of reflections that is farther from those of continuous returns than a pulse is an echo whatever these are.
+  /// True if a maximum of reflections that is farther from those of continuous returns than a pulse is an echo whatever
+  /// these are.
   [[nodiscard]] bool is_apart(const Heard& heard) const noexcept {
-    return heard.continuous.empty() ||
-           (s_.dead_time == 0 && s_.prominence == 0 && std::fmax(s_.window, s_.separation) <= heard.emitter.laser.pulse_length);
+    return heard.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
+                                        std::fmax(s_.window, s_.separation) <= heard.emitter.laser.pulse_length);
   }
 
   /// Samples near the peak of a group, from two before it on.
@@ -256,18 +271,24 @@ class FullWaveform {
     std::array<double, 8> y;  ///< [W]
   };
   /// Takes those of a group; false if they reach back before the last edge.
-  [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape, TopSamples& top) const noexcept {
+  [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape,
+                                                TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
-    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
-    const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
+    const double before =
+        std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
+    const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau,
+                 step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
     top.first = before - 2;
     for (std::size_t j = 0; j < top.y.size(); j += simd::lane_count)
-      simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), top.y[j]);
+      simd::store(
+          group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })),
+          top.y[j]);
     return true;
   }
 
-  /// Maximum of a group among continuous returns that only fall near it; none if they may rise there, or if it is on their flank.
+  /// Maximum of a group among continuous returns that only fall near it; none if they may rise there, or if it is on
+  /// their flank.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const SinglePeakGroup& group, const PulseShape& shape,
                                                   std::span<const ContinuousReturn> continuous) const noexcept {
     TopSamples top;
@@ -290,8 +311,8 @@ class FullWaveform {
     return OnlyPeak{mark, at.height, &group.strongest((peak - group.last_edge()) / shape.tau)};
   }
 
-  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
-  /// reach back before the last edge.
+  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its
+  /// peak. False if these reach back before the last edge.
   bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
     TopSamples samples;
     if (!sample(group, shape, samples)) return false;

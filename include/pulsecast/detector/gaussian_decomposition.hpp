@@ -23,12 +23,13 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Detector that decomposes the waveform of a `FullWaveform`, which must keep it (`WaveformSettings::record_length`), into waveforms of
-/// flat targets after the receiver, each widened by a Gaussian: overlapping echoes get the ranges, amplitudes and widths that they have
-/// alone. The simplest fit is taken unless the next leaves less than a tenth of the squared residuals: flat targets, then wide ones, then
-/// two flat ones, at least a deviation of that waveform apart, in place of the widest. Widths are those of the wide ones. Echoes outside
-/// the record, more than six that overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with the
-/// system waveform in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
+/// Detector that decomposes the waveform of a `FullWaveform`, which must keep it (`WaveformSettings::record_length`),
+/// into waveforms of flat targets after the receiver, each widened by a Gaussian: overlapping echoes get the ranges,
+/// amplitudes and widths that they have alone. The simplest fit is taken unless the next leaves less than a tenth of
+/// the squared residuals: flat targets, then wide ones, then two flat ones, at least a deviation of that waveform
+/// apart, in place of the widest. Widths are those of the wide ones. Echoes outside the record, more than six that
+/// overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with the system waveform
+/// in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
 template <class Inner>
 class GaussianDecomposition : public DetectorAdaptor<Inner> {
  public:
@@ -58,7 +59,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     Detection d = this->inner.detect(heard, w.inner);
     const auto* wave = waves_.find(heard.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
-    const double apart = 0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
+    const double apart =
+        0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;
@@ -67,7 +69,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       const std::size_t room = w.echoes.capacity() - w.echoes.size() - (d.echoes.size() - first);
       const Section most{first > 0 ? time_of(d.echoes[first - 1]) + (*wave)->fall() : d.waveform_start,
                          last < d.echoes.size() ? time_of(d.echoes[last]) + (*wave)->rise() : infinity};
-      if (!decompose(d, heard, group, most, **wave, room > 0, w.echoes)) w.echoes.insert(w.echoes.end(), group.begin(), group.end());
+      if (!decompose(d, heard, group, most, **wave, room > 0, w.echoes))
+        w.echoes.insert(w.echoes.end(), group.begin(), group.end());
     }
     std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
     number_echoes(w.echoes);
@@ -87,19 +90,22 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   [[nodiscard]] std::shared_ptr<const detail::SystemWaveform> wave_of(const Laser& laser) const {
     const double interval = this->inner.sample_interval(), fine = laser.pulse_length / 40;
     const auto places = static_cast<std::size_t>(std::ceil(interval / fine));
-    const auto stride = std::max(std::size_t{1}, static_cast<std::size_t>(fine * static_cast<double>(places) / interval));
+    const auto stride =
+        std::max(std::size_t{1}, static_cast<std::size_t>(fine * static_cast<double>(places) / interval));
     const double step = interval / static_cast<double>(places);
     std::vector<std::pair<double, double>> samples;
     this->inner.visit_flat_targets(laser, places, [&](std::size_t k, double arrival, const Detection& d) {
       if (k == places || d.echoes.empty()) return;
       for (std::size_t i = 0; i < d.waveform.size(); ++i)
-        samples.emplace_back(d.waveform_start - arrival + static_cast<double>(i) * interval, d.waveform[i] / d.echoes[0].amplitude);
+        samples.emplace_back(d.waveform_start - arrival + static_cast<double>(i) * interval,
+                             d.waveform[i] / d.echoes[0].amplitude);
     });
     std::sort(samples.begin(), samples.end());
     std::vector<double> flat;
     for (std::size_t i = 0; i < samples.size(); i += stride) flat.push_back(samples[i].second);
     while (flat.size() > 1 && std::fabs(flat.back()) < 1e-7) flat.pop_back();
-    return std::make_shared<const detail::SystemWaveform>(std::move(flat), samples.front().first, step * static_cast<double>(stride));
+    return std::make_shared<const detail::SystemWaveform>(std::move(flat), samples.front().first,
+                                                          step * static_cast<double>(stride));
   }
 
   /// Samples that some echoes may affect, of a record.
@@ -123,7 +129,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
         section.last = std::min(most.last, std::max(section.last, p.arrival + wave.fall() + beside));
       }
       const double from = std::max(0.0, std::floor((section.first - d.waveform_start) / interval) - 1);
-      const double to = std::min(static_cast<double>(d.waveform.size()), std::ceil((section.last - d.waveform_start) / interval) + 2);
+      const double to =
+          std::min(static_cast<double>(d.waveform.size()), std::ceil((section.last - d.waveform_start) / interval) + 2);
       if (!(to - from > static_cast<double>(y.size()))) break;
       y = d.waveform.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
       sum.start = d.waveform_start + from * interval;
@@ -156,7 +163,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     const double interval = this->inner.sample_interval(), aside = std::sqrt(std::max(whole.spread, 0.0));
     const Sum::Part left = sum.greatest_residual(wave, y, interval);
     const std::array<std::array<Sum::Part, 2>, 2> guesses{
-        {{{{0.5 * whole.power, whole.arrival - aside, 0, true}, {0.5 * whole.power, whole.arrival + aside, 0, true}}},  // of its variance
+        {{{{0.5 * whole.power, whole.arrival - aside, 0, true},
+           {0.5 * whole.power, whole.arrival + aside, 0, true}}},  // of its variance
          {{{whole.power, whole.arrival, 0, true}, left}}}};
     Sum best = sum;
     for (const auto& guess : guesses) {

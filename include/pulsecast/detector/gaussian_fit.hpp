@@ -27,9 +27,9 @@ struct Gaussian {
 
 /// Echo width by a least-squares Gaussian, fitted by the Levenberg-Marquardt method. NaN without convergence.
 ///
-/// Each sample is weighted by its own power. The Gaussian then matches the echo, not the tail that a pulse has and a Gaussian lacks. The
-/// positions of samples on a steep edge change the width of a pulse by less than 0.5 %.
-/// Source: Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
+/// Each sample is weighted by its own power. The Gaussian then matches the echo, not the tail that a pulse has and a
+/// Gaussian lacks. The positions of samples on a steep edge change the width of a pulse by less than 0.5 %. Source:
+/// Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
 struct GaussianFit {
   int iterations_max = 50;  ///< iteration limit, from 1 to 1000
   double share = 0.03;      ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
@@ -46,7 +46,8 @@ struct GaussianFit {
   struct Result {
     Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
-    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within its width of them
+    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within
+                             ///< its width of them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
@@ -83,7 +84,8 @@ struct GaussianFit {
     while (r.iterations < iterations_max && !r.converged) {
       ++r.iterations;
       const Gaussian step = solution(e, damping);
-      const Gaussian next{r.gaussian.amplitude + step.amplitude, r.gaussian.position + step.position, r.gaussian.width + step.width};
+      const Gaussian next{r.gaussian.amplitude + step.amplitude, r.gaussian.position + step.position,
+                          r.gaussian.width + step.width};
       const double size = std::fmax(std::fabs(step.amplitude / r.gaussian.amplitude),
                                     std::fmax(std::fabs(step.position), std::fabs(step.width)) / r.gaussian.width);
       const bool possible = next.amplitude > 0 && next.width > 0.1 && std::isfinite(size);
@@ -110,7 +112,8 @@ struct GaussianFit {
   static constexpr double small_enough =
       1e-3;  ///< tolerance of the last step, relative to amplitude and width; the error left is far smaller
 
-  /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared residuals.
+  /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared
+  /// residuals.
   struct Equations {
     double aa = 0, ap = 0, aw = 0, pp = 0, pw = 0, ww = 0;
     double a = 0, p = 0, w = 0;
@@ -123,8 +126,10 @@ struct GaussianFit {
     // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: sums over powers of x suffice
     std::array<double, 9> sums{};
     for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
-      simd::Doubles x = (simd::generate([&](std::size_t lane) { return static_cast<double>(part + lane); }) - g.position) * h;
-      const simd::Doubles growth = -step * (x + 0.5 * step), none = simd::Doubles{} + std::numeric_limits<double>::infinity();
+      simd::Doubles x =
+          (simd::generate([&](std::size_t lane) { return static_cast<double>(part + lane); }) - g.position) * h;
+      const simd::Doubles growth = -step * (x + 0.5 * step),
+                          none = simd::Doubles{} + std::numeric_limits<double>::infinity();
       simd::Doubles value = exponential(simd::Doubles(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
       simd::Doubles s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
       for (std::size_t i = part; i < samples.size(); i += simd::sum_stride) {

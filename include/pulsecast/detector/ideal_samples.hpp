@@ -19,15 +19,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Samples of a receiver of infinite bandwidth: the sum of the pulses of all reflections and continuous returns, with independent noise of
-/// each sample. Samples come in sections, with gaps where nothing is heard, or what is heard has no maximum. With noise, it listens from
-/// the first light on, for the length of the record and as long as light arrives.
+/// Samples of a receiver of infinite bandwidth: the sum of the pulses of all reflections and continuous returns, with
+/// independent noise of each sample. Samples come in sections, with gaps where nothing is heard, or what is heard has
+/// no maximum. With noise, it listens from the first light on, for the length of the record and as long as light
+/// arrives.
 class IdealSamples {
  public:
-  /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the samples [W].
-  /// `width_tail` is the time after the last pulse's peak that a width or a centroid needs [tau].
-  IdealSamples(double deviation, double background, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
-               double width_tail) noexcept
+  /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the
+  /// samples [W]. `width_tail` is the time after the last pulse's peak that a width or a centroid needs [tau].
+  IdealSamples(double deviation, double background, const WaveformSettings& s, const Heard& heard,
+               std::span<const Reflection> reflections, double width_tail) noexcept
       : reflections_(reflections),
         shape_(heard.emitter.laser.pulse_length, s.shape_divisor),
         continuous_(heard.continuous, shape_),
@@ -51,14 +52,18 @@ class IdealSamples {
   /// Number of the first sample.
   [[nodiscard]] double start() const noexcept { return start_; }
 
-  [[nodiscard]] double delay() const noexcept { return 0; }                  ///< of a pulse's maximum in the samples [s]
-  [[nodiscard]] double background() const noexcept { return background_; }   ///< mean that is not in the samples [W]
-  [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }  ///< true if samples have noise of their own each
+  [[nodiscard]] double delay() const noexcept { return 0; }                 ///< of a pulse's maximum in the samples [s]
+  [[nodiscard]] double background() const noexcept { return background_; }  ///< mean that is not in the samples [W]
+  [[nodiscard]] bool independent_noise() const noexcept {
+    return noisy();
+  }  ///< true if samples have noise of their own each
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
-    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_), late = before(rises_.first_peak());
-    const double first = std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, before(rises_.next())) : before(rises_.next()));
+    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_),
+                 late = before(rises_.first_peak());
+    const double first =
+        std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, before(rises_.next())) : before(rises_.next()));
     if (!(first < infinity)) return false;
     sum_.emplace(reflections_, shape_, interval_, next_, first);
     falling_ = 0;
@@ -85,7 +90,8 @@ class IdealSamples {
     }
     const bool silent = next_ == 0 || t > sum_->last_peak() + tail_;
     const bool listening = noisy() && n - start_ < record_size_;
-    more = !silent || listening || may_rise || (next_ < reflections_.size() && first_sample(next_) <= n + died_away_ / interval_);
+    more = !silent || listening || may_rise ||
+           (next_ < reflections_.size() && first_sample(next_) <= n + died_away_ / interval_);
     return power;
   }
 
@@ -110,7 +116,9 @@ class IdealSamples {
   [[nodiscard]] double before(double time) const noexcept { return std::floor(time / interval_) - 2; }
 
   [[nodiscard]] bool noisy() const noexcept { return deviation_ > 0; }
-  [[nodiscard]] double first_sample(std::size_t r) const noexcept { return SampledSum::first_sample(reflections_[r], shape_, interval_); }
+  [[nodiscard]] double first_sample(std::size_t r) const noexcept {
+    return SampledSum::first_sample(reflections_[r], shape_, interval_);
+  }
 
   std::span<const Reflection> reflections_;
   PulseShape shape_;
@@ -119,9 +127,10 @@ class IdealSamples {
   RandomKey key_;
   double interval_, record_size_, deviation_, background_;
   double died_away_ = 0, tail_ = 0, start_ = 0;
-  double heard_until_ = 0, last_ = 0;  ///< time up to which continuous returns are sampled everywhere [s]; their last sample [W]
-  int falling_ = 0;                    ///< samples since they rose
-  bool peaks_only_ = false;            ///< true if nothing but maxima is of interest
+  double heard_until_ = 0,
+         last_ = 0;          ///< time up to which continuous returns are sampled everywhere [s]; their last sample [W]
+  int falling_ = 0;          ///< samples since they rose
+  bool peaks_only_ = false;  ///< true if nothing but maxima is of interest
   std::size_t next_ = 0;
   std::optional<SampledSum> sum_;
 };

@@ -32,9 +32,11 @@ struct Peak {
   bool dominated = false;  ///< true if a higher peak is within the window
 };
 
-/// Appends a peak after those before it, within the capacity. Merges it with the last one and returns true if they are closer than
-/// `min_separation` [s], or if the lower of the two rises by less than `prominence` [W] above the valley between them.
-inline bool merge_or_append(const Peak& peak, double min_separation, double prominence, std::vector<Peak>& peaks) noexcept {
+/// Appends a peak after those before it, within the capacity. Merges it with the last one and returns true if they are
+/// closer than `min_separation` [s], or if the lower of the two rises by less than `prominence` [W] above the valley
+/// between them.
+inline bool merge_or_append(const Peak& peak, double min_separation, double prominence,
+                            std::vector<Peak>& peaks) noexcept {
   if (!peaks.empty()) {
     Peak& one = peaks.back();
     const double valley = std::fmin(one.after, peak.before), lower = std::fmin(one.height, peak.height);
@@ -54,7 +56,8 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
 }
 
 /// True if a higher peak, or an earlier one as high, is within the window of peak i. Requires peaks in order of time.
-[[nodiscard]] inline bool is_dominated(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
+[[nodiscard]] inline bool is_dominated(std::size_t i, const WaveformSettings& s,
+                                       const std::vector<Peak>& peaks) noexcept {
   const Peak& peak = peaks[i];
   for (std::size_t j = i; j-- > 0 && peak.time - peaks[j].time <= s.window;)
     if (peaks[j].height >= peak.height) return true;
@@ -64,7 +67,8 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
 }
 
 /// Time from peak i to the nearest one that is not dominated [s].
-[[nodiscard]] inline double distance_of_echoes(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
+[[nodiscard]] inline double distance_of_echoes(std::size_t i, const WaveformSettings& s,
+                                               const std::vector<Peak>& peaks) noexcept {
   std::size_t before = i, after = i + 1;
   while (before > 0 && is_dominated(before - 1, s, peaks)) --before;
   while (after < peaks.size() && is_dominated(after, s, peaks)) ++after;
@@ -90,11 +94,13 @@ inline void keep_return(const Echo& echo, KeptReturns kept, std::size_t most, st
     const auto of_air = [](const Echo& e) { return e.kind == ReflectionKind::air; };
     auto out = echoes.end();
     if (kept == KeptReturns::strongest)
-      out = std::min_element(echoes.begin(), echoes.end(), [](const Echo& a, const Echo& b) { return a.amplitude < b.amplitude; });
+      out = std::min_element(echoes.begin(), echoes.end(),
+                             [](const Echo& a, const Echo& b) { return a.amplitude < b.amplitude; });
     else if (!of_air(echo))
       while (out != echoes.begin() && !of_air(*--out)) {
       }
-    if (out == echoes.end() || (kept == KeptReturns::strongest ? !(out->amplitude < echo.amplitude) : !of_air(*out))) return;
+    if (out == echoes.end() || (kept == KeptReturns::strongest ? !(out->amplitude < echo.amplitude) : !of_air(*out)))
+      return;
     echoes.erase(out);
   }
   echoes.push_back(echo);
@@ -114,15 +120,16 @@ struct NoContinuous {
   [[nodiscard]] const ContinuousReturn* operator()(const Peak&, double, bool) const noexcept { return nullptr; }
 };
 
-/// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its peak, from
-/// `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the peak is of, if it is of one,
-/// for the power of reflections in it [W]; `met` is true if there are any.
+/// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its
+/// peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the
+/// peak is of, if it is of one, for the power of reflections in it [W]; `met` is true if there are any.
 template <class Shape, class Continuous = NoContinuous>
-[[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape, EchoTiming timing,
-                           const Continuous& continuous = NoContinuous{}) noexcept {
+[[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape,
+                           EchoTiming timing, const Continuous& continuous = NoContinuous{}) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
   const auto from = [&](double time) noexcept {
-    return reflections.data() + detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
+    return reflections.data() +
+           detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
   };
 
   Echo echo{.range = 0.5 * speed_of_light * peak.mark, .amplitude = peak.height, .width = peak.width};

@@ -21,8 +21,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a phase-shift scanner.
 struct PhaseShiftSettings {
-  /// Modulation frequencies, ascending, from 1 to 8: the finest gives the range, the coarser ones its place, and the coarsest the
-  /// ambiguity c / 2f [Hz].
+  /// Modulation frequencies, ascending, from 1 to 8: the finest gives the range, the coarser ones its place, and the
+  /// coarsest the ambiguity c / 2f [Hz].
   std::vector<double> frequencies{1e6, 10e6, 120e6};
   double contrast = 1;       ///< modulated share of the power, in (0, 1]
   double threshold = 1e-12;  ///< least modulated power of an echo at the finest frequency [W]
@@ -33,7 +33,9 @@ struct PhaseShiftSettings {
     require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
       require_within("PhaseShiftSettings::frequencies", frequencies[k], 1e3, 1e11, "Hz");
-      if (k > 0) require_within("PhaseShiftSettings::frequencies (by the one before)", frequencies[k] / frequencies[k - 1], 1, 1e4, "");
+      if (k > 0)
+        require_within("PhaseShiftSettings::frequencies (by the one before)", frequencies[k] / frequencies[k - 1], 1,
+                       1e4, "");
     }
     require_positive("PhaseShiftSettings::contrast", contrast, "");
     require_within("PhaseShiftSettings::contrast", contrast, 0, 1, "");
@@ -45,11 +47,12 @@ struct PhaseShiftSettings {
   [[nodiscard]] double ambiguity() const noexcept { return 0.5 * speed_of_light / frequencies.front(); }
 };
 
-/// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the phase of the sum of all reflections at
-/// each frequency, and gives one range: at an edge, one between or beyond the surfaces (mixed pixels); beyond the ambiguity, one that is
-/// folded. Fog and haze draw it towards the scanner. The laser's peak power is its mean power while it measures. The echo has the labels of
-/// the strongest reflection, or those of continuous returns, if these have more power than all reflections. Source: Payne, Jongenelen,
-/// Dorrington, Cree & Carnegie 2009; phasors of a sum of sines.
+/// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the phase of the sum of
+/// all reflections at each frequency, and gives one range: at an edge, one between or beyond the surfaces (mixed
+/// pixels); beyond the ambiguity, one that is folded. Fog and haze draw it towards the scanner. The laser's peak power
+/// is its mean power while it measures. The echo has the labels of the strongest reflection, or those of continuous
+/// returns, if these have more power than all reflections. Source: Payne, Jongenelen, Dorrington, Cree & Carnegie 2009;
+/// phasors of a sum of sines.
 class PhaseShift {
  public:
   /// @throws SettingError for settings out of range
@@ -109,9 +112,10 @@ class PhaseShift {
     }
     if (!(amplitude >= s_.threshold) || range < 0) return {};
     const bool of_continuous = of_air > solid;
-    w.echo =
-        echo_from(of_continuous ? Reflection{.object = air->object, .classification = air->classification, .kind = air->kind} : *strongest,
-                  range, amplitude);
+    w.echo = echo_from(of_continuous
+                           ? Reflection{.object = air->object, .classification = air->classification, .kind = air->kind}
+                           : *strongest,
+                       range, amplitude);
     return {{&w.echo, 1}, {}, 0};
   }
 

@@ -26,18 +26,19 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a receiver that counts photons: single-photon avalanche diodes, in linear or Geiger mode.
 struct PhotonCountingSettings {
-  double efficiency = 0.3;        ///< detections per photon, in (0, 1]
-  double dark_rate = 0;           ///< dark counts of all pixels together, at most 1e12 [1/s]
-  double background = 0;          ///< received sunlight [W]
-  std::size_t pixels = 1;         ///< detectors that share the light evenly, at most 4096
-  double dead_time = 20e-9;       ///< time after a detection in which a pixel is blind; infinite for one detection a shot: Geiger mode [s]
-  double afterpulse = 0;          ///< probability that a detection causes another one of its pixel after the dead time, below 1
-  double afterpulse_time = 1e-8;  ///< mean delay of that after the dead time [s]
-  double jitter = 0;              ///< standard deviation of a detection's time [s]
-  std::size_t shots = 1;          ///< pulses of the laser for one histogram, at most 10,000
-  double bin = 1e-9;              ///< width of the histogram's bins [s]
-  std::size_t threshold = 1;      ///< least count of a peak of the histogram
-  std::size_t returns_max = 15;   ///< number of echoes kept, in order of range; from 1 to 255
+  double efficiency = 0.3;  ///< detections per photon, in (0, 1]
+  double dark_rate = 0;     ///< dark counts of all pixels together, at most 1e12 [1/s]
+  double background = 0;    ///< received sunlight [W]
+  std::size_t pixels = 1;   ///< detectors that share the light evenly, at most 4096
+  double dead_time =
+      20e-9;  ///< time after a detection in which a pixel is blind; infinite for one detection a shot: Geiger mode [s]
+  double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
+  double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
+  double jitter = 0;                              ///< standard deviation of a detection's time [s]
+  std::size_t shots = 1;                          ///< pulses of the laser for one histogram, at most 10,000
+  double bin = 1e-9;                              ///< width of the histogram's bins [s]
+  std::size_t threshold = 1;                      ///< least count of a peak of the histogram
+  std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
   /// @throws SettingError
@@ -58,11 +59,12 @@ struct PhotonCountingSettings {
   }
 };
 
-/// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of sunlight and of dark counts are Poisson
-/// processes. Detections of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the
-/// bin and its neighbours. The energy of a reflection is its power times the full width at half maximum, as in `EnergyLedger`: 8 % less
-/// than in the gamma pulse of that peak. The amplitude is the power that would give as many counts without dead time. With one shot and a
-/// threshold of 1, each isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight
+/// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of sunlight and of
+/// dark counts are Poisson processes. Detections of all shots make a histogram; each of its peaks is an echo, whose
+/// range is the mean time of the detections in the bin and its neighbours. The energy of a reflection is its power
+/// times the full width at half maximum, as in `EnergyLedger`: 8 % less than in the gamma pulse of that peak. The
+/// amplitude is the power that would give as many counts without dead time. With one shot and a threshold of 1, each
+/// isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight
 /// nor dark counts after the last reflection.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
@@ -70,7 +72,8 @@ template <PulseForm Form = GammaPulse>
 class PhotonCounting {
  public:
   /// @throws SettingError for settings out of range
-  explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {}) : s_(validated(settings)), form_(std::move(form)) {}
+  explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {})
+      : s_(validated(settings)), form_(std::move(form)) {}
 
   /// Settings, as validated.
   [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
@@ -145,7 +148,8 @@ class PhotonCounting {
     constexpr std::size_t steps = 1 << 16;
     const double step = (end - begin) / steps;
     std::vector<double> sums(steps + 1);
-    for (std::size_t i = 0; i < steps; ++i) sums[i + 1] = sums[i] + form_.power(begin + (static_cast<double>(i) + 0.5) * step, length);
+    for (std::size_t i = 0; i < steps; ++i)
+      sums[i + 1] = sums[i] + form_.power(begin + (static_cast<double>(i) + 0.5) * step, length);
     std::vector<double> times(quantile_count + 1);
     std::size_t i = 0;
     for (std::size_t q = 0; q <= quantile_count; ++q) {
@@ -196,14 +200,14 @@ class PhotonCounting {
     const double rate = s_.dark_rate + s_.background / energy_per_count(laser);
     const double begin = 2 * heard.gate.near / speed_of_light, end = 2 * heard.gate.far / speed_of_light;
     if (rate > 0)
-      for (double t = begin + draws.exponential() / rate; t < (std::isfinite(end) ? end : last) && shot.size() < counts_max;
-           t += draws.exponential() / rate)
+      for (double t = begin + draws.exponential() / rate;
+           t < (std::isfinite(end) ? end : last) && shot.size() < counts_max; t += draws.exponential() / rate)
         enter(t, none);
     std::sort(shot.begin(), shot.end(), [](const Count& a, const Count& b) { return a.time < b.time; });
   }
 
-  /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back: one Poisson process
-  /// along all of them, whose place in a return is that of the quantile of its density.
+  /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back:
+  /// one Poisson process along all of them, whose place in a return is that of the quantile of its density.
   template <class Enter>
   static void draw_continuous(const Heard& heard, double per_watt, const Enter& enter, Draws& draws) noexcept {
     if (heard.continuous.empty()) return;
@@ -219,8 +223,8 @@ class PhotonCounting {
     }
   }
 
-  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels are armed during the gate alone, and the
-  /// histogram has its length.
+  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels are armed during the
+  /// gate alone, and the histogram has its length.
   void keep_detections(const RangeGate& gate, Draws& draws, Workspace& w) const noexcept {
     const auto armed = [&](double time) { return gate.contains(0.5 * speed_of_light * time); };
     std::fill(w.blind.begin(), w.blind.end(), -std::numeric_limits<double>::infinity());
@@ -229,7 +233,8 @@ class PhotonCounting {
       double& blind = w.blind[count.pixel];
       if (count.time < blind || !armed(count.time)) continue;
       blind = count.time + s_.dead_time;
-      if (s_.afterpulse > 0 && std::isfinite(s_.dead_time) && draws.uniform() < s_.afterpulse && w.shot.size() < counts_max) {
+      if (s_.afterpulse > 0 && std::isfinite(s_.dead_time) && draws.uniform() < s_.afterpulse &&
+          w.shot.size() < counts_max) {
         const Count after{blind + s_.afterpulse_time * draws.exponential(), count.pixel, none};
         const auto later = [&](const Count& other) { return other.time > after.time; };
         w.shot.insert(std::find_if(w.shot.begin() + static_cast<std::ptrdiff_t>(i) + 1, w.shot.end(), later), after);
@@ -239,24 +244,29 @@ class PhotonCounting {
     }
   }
 
-  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least as many as the one behind.
+  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least as many as the
+  /// one behind.
   void find_echoes(const Heard& heard, Workspace& w) const noexcept {
-    const double watts = energy_per_count(heard.emitter.laser) / (heard.emitter.laser.pulse_length * static_cast<double>(s_.shots));
+    const double watts =
+        energy_per_count(heard.emitter.laser) / (heard.emitter.laser.pulse_length * static_cast<double>(s_.shots));
     struct Bin {
       double number = -1e300;
       std::size_t begin = 0, end = 0;
       [[nodiscard]] std::size_t count() const noexcept { return end - begin; }
     };
     Bin before{}, bin{};
-    const auto count_of = [](const Bin& next, const Bin& to, double step) { return next.number == to.number + step ? next.count() : 0; };
+    const auto count_of = [](const Bin& next, const Bin& to, double step) {
+      return next.number == to.number + step ? next.count() : 0;
+    };
     const auto finish = [&](const Bin& behind) {
       const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
       if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right) return;
-      keep_return(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts), s_.returns_kept,
-                  s_.returns_max, w.echoes);
+      keep_return(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts),
+                  s_.returns_kept, s_.returns_max, w.echoes);
     };
     for (std::size_t i = 0; i <= w.counts.size(); ++i) {
-      const double number = i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
+      const double number =
+          i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
       if (bin.count() > 0 && number == bin.number) {
         ++bin.end;
         continue;
@@ -271,8 +281,8 @@ class PhotonCounting {
     }
   }
 
-  /// Echo of some detections: their mean time, and the labels of the first reflection among them, or of the first continuous return, if
-  /// more of them are of such.
+  /// Echo of some detections: their mean time, and the labels of the first reflection among them, or of the first
+  /// continuous return, if more of them are of such.
   [[nodiscard]] static Echo echo_of(const Heard& heard, std::span<const Count> counts, double watts) noexcept {
     double beyond = 0;
     std::ptrdiff_t continuous = 0;  // more detections of continuous returns than of reflections

@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Power of a laser pulse over time. `power(t, length)` is that at a time t since the pulse's peak [s], relative to the peak, for a pulse
-/// of a full width at half maximum of `length` [s]. It is smooth between `begin(length)` and `end(length)` [s], and 0 or negligible
-/// outside.
+/// Power of a laser pulse over time. `power(t, length)` is that at a time t since the pulse's peak [s], relative to the
+/// peak, for a pulse of a full width at half maximum of `length` [s]. It is smooth between `begin(length)` and
+/// `end(length)` [s], and 0 or negligible outside.
 template <class F>
 concept PulseForm = std::copyable<F> && requires(const F form, double time, double length) {
   { form.power(time, length) }
@@ -55,7 +55,9 @@ struct GaussianPulse {
 /// Constant power; its peak is its middle.
 struct RectangularPulse {
   /// As the concept PulseForm requires.
-  [[nodiscard]] double power(double time, double length) const noexcept { return std::fabs(time) <= 0.5 * length ? 1 : 0; }
+  [[nodiscard]] double power(double time, double length) const noexcept {
+    return std::fabs(time) <= 0.5 * length ? 1 : 0;
+  }
   [[nodiscard]] double begin(double length) const noexcept { return -0.5 * length; }
   [[nodiscard]] double end(double length) const noexcept { return 0.5 * length; }
 };
@@ -66,10 +68,12 @@ struct PulseSample {
   double power = 0;  ///< in any unit, at least 0
 };
 
-/// Measured pulse, interpolated linearly; power is 0 outside of the table. Its length is that of the table, whatever the laser's.
+/// Measured pulse, interpolated linearly; power is 0 outside of the table. Its length is that of the table, whatever
+/// the laser's.
 class MeasuredPulse {
  public:
-  /// `samples`: at least two, by increasing time. @throws SettingError for another order, negative powers, or no power at all
+  /// `samples`: at least two, by increasing time. @throws SettingError for another order, negative powers, or no power
+  /// at all
   explicit MeasuredPulse(std::vector<PulseSample> samples) : samples_(std::move(samples)) {
     require_within("MeasuredPulse (number of samples)", static_cast<double>(samples_.size()), 2, 1e6, "");
     const auto lower = [](const PulseSample& a, const PulseSample& b) { return a.power < b.power; };
@@ -86,8 +90,10 @@ class MeasuredPulse {
 
   /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double) const noexcept {
-    const std::size_t after = detail::first_not(samples_.size(), [&](std::size_t i) noexcept { return samples_[i].time <= time; });
-    if (after == 0 || after == samples_.size()) return after > 0 && time == samples_.back().time ? samples_.back().power : 0;
+    const std::size_t after =
+        detail::first_not(samples_.size(), [&](std::size_t i) noexcept { return samples_[i].time <= time; });
+    if (after == 0 || after == samples_.size())
+      return after > 0 && time == samples_.back().time ? samples_.back().power : 0;
     const PulseSample &a = samples_[after - 1], &b = samples_[after];
     return a.power + (b.power - a.power) * (time - a.time) / (b.time - a.time);
   }
@@ -98,7 +104,8 @@ class MeasuredPulse {
   std::vector<PulseSample> samples_;  ///< about the peak, relative to it
 };
 
-static_assert(PulseForm<GammaPulse> && PulseForm<GaussianPulse> && PulseForm<RectangularPulse> && PulseForm<MeasuredPulse>);
+static_assert(PulseForm<GammaPulse> && PulseForm<GaussianPulse> && PulseForm<RectangularPulse> &&
+              PulseForm<MeasuredPulse>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -20,18 +20,20 @@ struct PulseShape {
   /// `by_tau`: full width at half maximum by tau, if it is another.
   explicit PulseShape(double pulse_length, double by_tau = divisor) noexcept : tau(pulse_length / by_tau) {}
 
-  static constexpr double peak = 2;                                              ///< time of the peak since the leading edge [tau]
+  static constexpr double peak = 2;  ///< time of the peak since the leading edge [tau]
   static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< factor that scales the peak to 1
 
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
 
-  /// Upper bound of the time since the peak at which the power falls to a share of it [tau]. As u^2 e^(-u/2) is at most 16/e^2, the shape
-  /// is at most 4 e^(-u/2), with u = t/tau.
+  /// Upper bound of the time since the peak at which the power falls to a share of it [tau]. As u^2 e^(-u/2) is at most
+  /// 16/e^2, the shape is at most 4 e^(-u/2), with u = t/tau.
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
   [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< time of the leading edge since the peak [s]
-  [[nodiscard]] double end() const noexcept { return 60 * tau; }       ///< time since the peak when 1e-22 of a pulse is left [s]
+  [[nodiscard]] double end() const noexcept {
+    return 60 * tau;
+  }  ///< time since the peak when 1e-22 of a pulse is left [s]
 
   /// Power at time t since the peak [s]; 1 at t = 0.
   [[nodiscard]] double operator()(double t) const noexcept {
@@ -42,7 +44,8 @@ struct PulseShape {
 
 namespace detail {
 
-/// Integrals over a pulse of peak 1 up to a time since its arrival: of the pulse [s], and of the pulse times that time [s^2].
+/// Integrals over a pulse of peak 1 up to a time since its arrival: of the pulse [s], and of the pulse times that time
+/// [s^2].
 struct PulseIntegrals {
   double zeroth = 0, first = 0;
 };

@@ -35,7 +35,8 @@ namespace PULSECAST_NAMESPACE {
 }
 
 /// Sorts reflections by range and drops those that cannot be echoes.
-[[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all, double sample_interval) noexcept {
+[[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all,
+                                                             double sample_interval) noexcept {
   const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
   const auto useless = [&](const Reflection& r) { return !can_count(r, sample_interval); };
   Reflection* const begin = all.data();
@@ -46,15 +47,17 @@ namespace PULSECAST_NAMESPACE {
 
 /// Sum of the pulse shapes of reflections, sorted by range, sample by sample.
 ///
-/// The shape is a polynomial times an exponential. Three moments about the leading edges advance the sum of any number of shapes by one
-/// sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus reflections instead of their product.
+/// The shape is a polynomial times an exponential. Three moments about the leading edges advance the sum of any number
+/// of shapes by one sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus
+/// reflections instead of their product.
 class SampledSum {
  public:
   static constexpr double negligible = 20;  ///< time since its peak at which 1e-6 of a pulse is left [tau]
 
-  /// Starts at a reflection and a sample number. Earlier reflections are ignored; `first` and later ones count once their edges have
-  /// passed.
-  SampledSum(std::span<const Reflection> reflections, const PulseShape& shape, double interval, std::size_t first, double sample) noexcept
+  /// Starts at a reflection and a sample number. Earlier reflections are ignored; `first` and later ones count once
+  /// their edges have passed.
+  SampledSum(std::span<const Reflection> reflections, const PulseShape& shape, double interval, std::size_t first,
+             double sample) noexcept
       : reflections_(reflections),
         shape_(shape),
         interval_(interval),
@@ -72,7 +75,7 @@ class SampledSum {
 
   [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
   [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
-  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< index of the first reflection still to arrive
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }  ///< index of the first reflection still to arrive
   /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
   [[nodiscard]] double last_peak() const noexcept {
@@ -96,7 +99,8 @@ class SampledSum {
 
  private:
   void find_next_edge() noexcept {
-    next_edge_ = all_in() ? std::numeric_limits<double>::infinity() : arrival(reflections_[next_]) - PulseShape::peak * shape_.tau;
+    next_edge_ = all_in() ? std::numeric_limits<double>::infinity()
+                          : arrival(reflections_[next_]) - PulseShape::peak * shape_.tau;
   }
 
   std::span<const Reflection> reflections_;

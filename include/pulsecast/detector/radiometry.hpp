@@ -34,11 +34,13 @@ struct RangeErrors {
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
   bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
-  double deviation_at_watt = 0;       ///< further deviation of an echo of an amplitude of 1 W, added [m]. Source: Wujanz et al. 2018
-  double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
+  double deviation_at_watt =
+      0;  ///< further deviation of an echo of an amplitude of 1 W, added [m]. Source: Wujanz et al. 2018
+  double power_exponent = -0.5;  ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
-  SharedArray<double> channel_biases{};  ///< further bias by number of the channel, as in `Emitter`; 0 for channels beyond [m]
+  SharedArray<double>
+      channel_biases{};  ///< further bias by number of the channel, as in `Emitter`; 0 for channels beyond [m]
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
@@ -51,14 +53,16 @@ struct RangeErrors {
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
       require_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
-      if (i > 0) require_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range, "m");
+      if (i > 0)
+        require_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range,
+                         "m");
     }
   }
 
   /// True without errors.
   [[nodiscard]] bool none() const noexcept {
-    return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 && deviations.size() == 0 &&
-           channel_biases.size() == 0;
+    return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 &&
+           deviations.size() == 0 && channel_biases.size() == 0;
   }
 
   /// Standard deviation of the noise at a range, at normal incidence [m].
@@ -93,9 +97,11 @@ namespace detail {
   return echoes.first(kept);
 }
 
-/// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
+/// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are
+/// renumbered in order.
 inline void sort_by_range(std::span<Echo> echoes) noexcept {
-  for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
+  for (std::size_t unsorted = 1; unsorted < echoes.size();
+       ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
     for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
       std::swap(echoes[e - 1], echoes[e]);
       std::swap(echoes[e - 1].number, echoes[e].number);
@@ -112,16 +118,16 @@ struct OverlapAtRange {
 
 /// Receiver of an instrument, and the atmosphere before it.
 struct Receiver {
-  double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
-  double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
-  double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite without aerosols [m]
+  double diameter = 0.15;    ///< aperture, from 0.1 mm to 1 km [m]
+  double efficiency = 0.99;  ///< transmission of the optics, both ways, in [0, 1]
+  double visibility = 23e3;  ///< meteorological visibility, at least 1 m; infinite without aerosols [m]
   AerosolModel aerosols = AerosolModel::kim;                   ///< extinction by wavelength in haze and fog
   double absorption = 0;                                       ///< absorption by molecules of the air [1/m]
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
-  /// Share of the light that the receiver sees by range, all if empty, as by `aperture_overlap`: linear between rows, constant beyond them;
-  /// ranges ascend.
+  /// Share of the light that the receiver sees by range, all if empty, as by `aperture_overlap`: linear between rows,
+  /// constant beyond them; ranges ascend.
   SharedArray<OverlapAtRange> overlap{};
 
   void validate() const {
@@ -134,7 +140,8 @@ struct Receiver {
     for (std::size_t i = 0; i < overlap.size(); ++i) {
       require_finite("Receiver::overlap (range)", overlap[i].range, "m");
       require_within("Receiver::overlap (share)", overlap[i].share, 0, 1, "");
-      if (i > 0) require_positive("Receiver::overlap (from range to range)", overlap[i].range - overlap[i - 1].range, "m");
+      if (i > 0)
+        require_positive("Receiver::overlap (from range to range)", overlap[i].range - overlap[i - 1].range, "m");
     }
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
@@ -144,8 +151,9 @@ struct Receiver {
 };
 
 /// Link budget: received power of a subray from the power of a pulse.
-/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close range, an aperture
-/// on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
+/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close
+/// range, an aperture on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 +
+/// D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
   /// Budget of no power.
@@ -159,11 +167,12 @@ class LinkBudget {
 
   /// True for budgets of the same numbers, and the same table of overlap.
   [[nodiscard]] friend bool operator==(const LinkBudget& a, const LinkBudget& b) noexcept {
-    return a.gain_ == b.gain_ && a.near_ == b.near_ && a.both_ways_ == b.both_ways_ && a.overlap_.data() == b.overlap_.data();
+    return a.gain_ == b.gain_ && a.near_ == b.near_ && a.both_ways_ == b.both_ways_ &&
+           a.overlap_.data() == b.overlap_.data();
   }
 
-  /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
-  /// At range 0 all the scattered power is received.
+  /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in
+  /// `Hit`) at a range [m]. At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
     const double all = of(share, backscatter, range);
     return sees_all() ? all : all * overlap_at(range);
@@ -180,7 +189,8 @@ class LinkBudget {
     const double power_in_air = power(share, backscatter, range);
     return air == range ? power_in_air : power_in_air * std::exp(both_ways_ * (air - range));
   }
-  /// Received power [W] of a subray with this share of the pulse's energy that comes back into the aperture itself, after so much air [m].
+  /// Received power [W] of a subray with this share of the pulse's energy that comes back into the aperture itself,
+  /// after so much air [m].
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }
@@ -208,8 +218,8 @@ class LinkBudget {
   SharedArray<OverlapAtRange> overlap_{};
 };
 
-/// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo of a single ray has
-/// the range of its hit.
+/// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo
+/// of a single ray has the range of its hit.
 class WhiteTarget {
  public:
   /// Power received from a range [m] by the link budget, always the same one [W].

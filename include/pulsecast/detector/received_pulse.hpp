@@ -16,9 +16,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse behind a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any phase are interpolated: to 1e-6 of
-/// the peak, with the same weights for all samples of a pulse: sums of rows, one for each phase, so that the pulses of many reflections
-/// between two samples cost one sum.
+/// Pulse behind a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any phase are
+/// interpolated: to 1e-6 of the peak, with the same weights for all samples of a pulse: sums of rows, one for each
+/// phase, so that the pulses of many reflections between two samples cost one sum.
 class ReceivedPulse {
  public:
   /// For pulses of a full width at half maximum of `length` [s], and samples every `interval` [s].
@@ -29,15 +29,18 @@ class ReceivedPulse {
     step_ = interval / static_cast<double>(phases_);
     auto size = static_cast<std::size_t>(std::ceil((end - start) / step_));
     std::vector<double> values(size);
-    for (std::size_t i = 0; i < size; ++i) values[i] = filtered(form, length, filter, start + static_cast<double>(i) * step_);
+    for (std::size_t i = 0; i < size; ++i)
+      values[i] = filtered(form, length, filter, start + static_cast<double>(i) * step_);
     const auto top = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
     const auto value = [&](std::size_t i) { return i < values.size() ? values[i] : 0; };
-    const double slope = 0.5 * (value(top + 1) - value(top - 1)), bend = value(top - 1) - 2 * value(top) + value(top + 1);
+    const double slope = 0.5 * (value(top + 1) - value(top - 1)),
+                 bend = value(top - 1) - 2 * value(top) + value(top + 1);
     const double beyond = bend < 0 ? -slope / bend : 0;
     gain_ = value(top) + 0.5 * slope * beyond;
     peak_ = start + (static_cast<double>(top) + beyond) * step_;
     concave_ = concave_about(values, top) * step_;
-    width_ = step_ * static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v >= 0.5 * gain_; }));
+    width_ = step_ * static_cast<double>(
+                         std::count_if(values.begin(), values.end(), [&](double v) { return v >= 0.5 * gain_; }));
     begin_ = start;
     while (size > top && values[size - 1] < negligible * gain_) --size;
     values.resize(size);
@@ -58,8 +61,9 @@ class ReceivedPulse {
   [[nodiscard]] double end() const noexcept { return begin_ + static_cast<double>(count_ * phases_) * step_; }
   /// Time of the maximum behind the low-pass since the peak before it [s].
   [[nodiscard]] double peak() const noexcept { return peak_; }
-  /// Time on either side of the maximum, within which the pulse is concave, less a sample of the table; 0 for a pulse with another maximum.
-  /// Pulses no further apart than this have a sum with a single maximum: it falls, bends down and rises where all of them do [s].
+  /// Time on either side of the maximum, within which the pulse is concave, less a sample of the table; 0 for a pulse
+  /// with another maximum. Pulses no further apart than this have a sum with a single maximum: it falls, bends down and
+  /// rises where all of them do [s].
   [[nodiscard]] double concave() const noexcept { return concave_; }
   /// Full width at half maximum [s].
   [[nodiscard]] double width() const noexcept { return width_; }
@@ -102,7 +106,8 @@ class ReceivedPulse {
     const double place = (first_sample(arrival) * interval_ - arrival - begin_) / step_;
     const double whole = std::min(std::floor(place), static_cast<double>(phases_ - 1)), x = place - whole;
     return {static_cast<std::size_t>(whole),
-            {-x * (x - 1) * (x - 2) / 6, (x + 1) * (x - 1) * (x - 2) / 2, -(x + 1) * x * (x - 2) / 2, (x + 1) * x * (x - 1) / 6}};
+            {-x * (x - 1) * (x - 2) / 6, (x + 1) * (x - 1) * (x - 2) / 2, -(x + 1) * x * (x - 2) / 2,
+             (x + 1) * x * (x - 1) / 6}};
   }
 
  private:
@@ -119,7 +124,8 @@ class ReceivedPulse {
       if (i <= top ? values[i] < values[i - 1] : values[i] > values[i - 1]) return 0;
     std::size_t reach = 0;
     const auto bends_down = [&](std::size_t i) { return values[i - 1] - 2 * values[i] + values[i + 1] < 0; };
-    while (top > reach + 1 && top + reach + 2 < values.size() && bends_down(top - reach) && bends_down(top + reach)) ++reach;
+    while (top > reach + 1 && top + reach + 2 < values.size() && bends_down(top - reach) && bends_down(top + reach))
+      ++reach;
     return reach < 2 ? 0 : static_cast<double>(reach - 2);
   }
 
@@ -150,7 +156,8 @@ class ReceivedPulse {
     double value = 0;
   };
   std::vector<Point> points_;
-  std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases, and of later rows
+  std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases,
+                              ///< and of later rows
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -13,9 +13,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Avalanche photodiode or PIN diode with its amplifier and digitiser. Powers are optical powers at the diode. Signal and noise pass the
-/// same low-pass; its gain is calibrated so that a flat target at normal incidence has the height of its received power. Sources: Richmond
-/// & Cain 2010, ch. 1 and 4 (noise of direct detection); McIntyre 1966 (excess noise).
+/// Avalanche photodiode or PIN diode with its amplifier and digitiser. Powers are optical powers at the diode. Signal
+/// and noise pass the same low-pass; its gain is calibrated so that a flat target at normal incidence has the height of
+/// its received power. Sources: Richmond & Cain 2010, ch. 1 and 4 (noise of direct detection); McIntyre 1966 (excess
+/// noise).
 struct ReceiverChain {
   double bandwidth = 0;             ///< 3 dB electrical bandwidth; 0 for that of the pulse, see `filter` [Hz]
   double noise_power = 0;           ///< noise-equivalent power of the amplifier, one-sided [W/sqrt(Hz)]
@@ -48,22 +49,25 @@ struct ReceiverChain {
   }
 
   /// True if there is noise also without a signal.
-  [[nodiscard]] bool noisy() const noexcept { return noise_power > 0 || (shot_noise && (background > 0 || dark_current > 0)); }
+  [[nodiscard]] bool noisy() const noexcept {
+    return noise_power > 0 || (shot_noise && (background > 0 || dark_current > 0));
+  }
 
-  /// Low-pass for a pulse of a full width at half maximum of `pulse_length` [s]. Without a bandwidth, its response is as wide as the pulse:
-  /// that of a Gaussian pulse itself, a matched filter.
+  /// Low-pass for a pulse of a full width at half maximum of `pulse_length` [s]. Without a bandwidth, its response is
+  /// as wide as the pulse: that of a Gaussian pulse itself, a matched filter.
   [[nodiscard]] LowPass filter(double pulse_length) const noexcept {
     return bandwidth > 0 ? LowPass::of_bandwidth(bandwidth) : LowPass{pulse_length / std::sqrt(8 * std::numbers::ln2)};
   }
 
-  /// One-sided density of the noise before the low-pass, at a signal of so much power [W^2/Hz]: of the amplifier, and shot noise of signal,
-  /// background and dark current.
+  /// One-sided density of the noise before the low-pass, at a signal of so much power [W^2/Hz]: of the amplifier, and
+  /// shot noise of signal, background and dark current.
   [[nodiscard]] double density(double signal, double wavelength) const noexcept {
     constexpr double charge = 1.602176634e-19;  // [C]. Source: SI, exact (26th CGPM, 2018)
     if (!shot_noise) return noise_power * noise_power;
     const double energy_per_electron = planck_constant * speed_of_light / (wavelength * quantum_efficiency);
     const double dark = dark_current * energy_per_electron / charge;
-    return noise_power * noise_power + 2 * excess_noise * energy_per_electron * (std::max(signal, 0.0) + background + dark);
+    return noise_power * noise_power +
+           2 * excess_noise * energy_per_electron * (std::max(signal, 0.0) + background + dark);
   }
 
   /// Code of the digitiser for a power, as the power that it stands for [W].

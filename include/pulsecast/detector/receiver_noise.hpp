@@ -14,7 +14,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of infinite bandwidth, with noise and background light; none by default. Samples are independent. A policy of `FullWaveform`.
+/// Receiver of infinite bandwidth, with noise and background light; none by default. Samples are independent. A policy
+/// of `FullWaveform`.
 struct ReceiverNoise {
   double deviation = 0;           ///< standard deviation of the electronic noise per sample, from 0 to 1e20 [W]
   double background = 0;          ///< received sunlight power, from 0 to 1e20 [W]
@@ -30,9 +31,9 @@ struct ReceiverNoise {
   /// True without noise.
   [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
 
-  /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The photon count is Poisson-distributed, with
-  /// a variance equal to its mean. It is large per interval, so a normal distribution approximates it. Source: Liu et al. 2006, Applied
-  /// Optics 45.
+  /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The photon count is
+  /// Poisson-distributed, with a variance equal to its mean. It is large per interval, so a normal distribution
+  /// approximates it. Source: Liu et al. 2006, Applied Optics 45.
   [[nodiscard]] double deviation_of_sample(double wavelength, double interval) const noexcept {
     const double photon = planck_constant * speed_of_light / wavelength;
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
@@ -50,8 +51,9 @@ struct ReceiverNoise {
   /// As the concept WaveformReceiver requires: a maximum is that of the samples about it.
   [[nodiscard]] double timing_reach(const Laser&) const noexcept { return 0; }
   /// As the concept WaveformReceiver requires.
-  [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
-                                     double width_tail, Workspace&) const noexcept {
+  [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const Heard& heard,
+                                     std::span<const Reflection> reflections, double width_tail,
+                                     Workspace&) const noexcept {
     const double of_sample = none() ? 0 : deviation_of_sample(heard.emitter.laser.wavelength, s.sample_interval);
     return {of_sample, background, s, heard, reflections, width_tail};
   }

@@ -27,8 +27,8 @@ enum class ReturnMode : std::uint8_t {
   n_strongest,         ///< the strongest so many, in order of range
 };
 
-/// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`. Kept echoes are numbered
-/// anew.
+/// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`. Kept
+/// echoes are numbered anew.
 template <Detector Inner>
 class SelectedReturns : public DetectorAdaptor<Inner> {
  public:
@@ -73,7 +73,8 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   }
 
  private:
-  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has few echoes.
+  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has
+  /// few echoes.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -103,13 +104,13 @@ enum class RangeAmbiguity : std::uint8_t {
   resolved,  ///< knows their pulse; those that arrive while another leaves are lost nevertheless
 };
 
-/// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse leaves are lost: blind zones about the
-/// multiples of c / 2f.
+/// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse leaves are lost: blind
+/// zones about the multiples of c / 2f.
 template <Detector Inner>
 class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the pulse rate [Hz], the detector inside, the range behind the exit that is blind [m], and what becomes of ranges. @throws
-  /// SettingError
+  /// Takes the pulse rate [Hz], the detector inside, the range behind the exit that is blind [m], and what becomes of
+  /// ranges. @throws SettingError
   MultiplePulsesInAir(double pulse_rate, Inner inside, double blind = 0, RangeAmbiguity in_air = RangeAmbiguity::folded)
       : DetectorAdaptor<Inner>{validated(std::move(inside))},
         ambiguity_(0.5 * speed_of_light / pulse_rate),
@@ -126,8 +127,8 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   template <class Workspace>
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     Detection d = this->inner.detect(heard, w);
-    const auto lost =
-        std::remove_if(d.echoes.begin(), d.echoes.end(), [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
+    const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(),
+                                     [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
     d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));
     if (in_air_ == RangeAmbiguity::folded)
       for (Echo& echo : d.echoes) echo.range = std::fmod(echo.range, ambiguity_);

@@ -28,8 +28,9 @@ class SampleWindow {
     const Width& width;                ///< measure of widths
     double min_separation = 0;         ///< closer peaks merge [s]
     double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
-    bool by_sample = false;            ///< true if the highest sample must reach the threshold, rather than the maximum between samples
-    double reach = 0;                  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
+    bool by_sample =
+        false;         ///< true if the highest sample must reach the threshold, rather than the maximum between samples
+    double reach = 0;  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
   };
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
@@ -42,7 +43,8 @@ class SampleWindow {
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
 
-  /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to `peaks` when more are to come.
+  /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to `peaks` when more are to
+  /// come.
   void take(double number, double power, bool more, const Search& search, std::vector<Peak>& peaks) noexcept {
     samples_.push_back(power);
     if (more && samples_.size() == capacity) {
@@ -68,7 +70,8 @@ class SampleWindow {
     return i;
   }
 
-  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, as of a saturated or coarse digitiser.
+  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, as of a saturated or
+  /// coarse digitiser.
   [[nodiscard]] Vertex top_of(std::size_t first, std::size_t last) const noexcept {
     if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
     return vertex(&samples_[first]);
@@ -79,7 +82,9 @@ class SampleWindow {
     const WaveformSettings& s = search.settings;
     const std::vector<double>& y = samples_;
     const double start = last - static_cast<double>(y.size() - 1);
-    const auto time = [&](std::size_t i) { return (start + static_cast<double>(i)) * s.sample_interval - search.delay; };
+    const auto time = [&](std::size_t i) {
+      return (start + static_cast<double>(i)) * s.sample_interval - search.delay;
+    };
     const auto valley = [&](std::size_t i) {
       const bool turns = i >= 2 && i + 2 < y.size() && y[i] < y[i - 1] && y[i] <= y[i + 1];
       if (!turns) return time(i);
@@ -96,12 +101,16 @@ class SampleWindow {
       std::size_t from = i, to = plateau_end > i + 1 ? plateau_end : i;
       while (from > 0 && y[from - 1] < y[from]) --from;
       while (to + 1 < y.size() && y[to + 1] < y[to]) ++to;
-      Peak peak{.time = time(i) + top.offset * s.sample_interval, .height = top.height, .begin = valley(from), .end = valley(to)};
+      Peak peak{.time = time(i) + top.offset * s.sample_interval,
+                .height = top.height,
+                .begin = valley(from),
+                .end = valley(to)};
       peak.before = y[from];
       peak.after = y[to];
       peak.mark = peak.time;
       if (s.timing > EchoTiming::peak)
-        peak.mark = (start + echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval - search.delay;
+        peak.mark =
+            (start + echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval - search.delay;
       merge_or_append(peak, search.min_separation, s.prominence, peaks);
     }
     const auto place = [&](double t) { return (t + search.delay) / s.sample_interval - start; };

@@ -19,10 +19,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Waveform detector that also tells how far each echo's shape is from that of a flat target: `Echo::shape_deviation`, in thousandths of
-/// the echo's maximum, the mean over the samples within a pulse length of the echo. 0 is a flat target; slopes, edges and leaves have more.
-/// The detector inside keeps waveforms: its `record_length` is greater than 0, and echoes beyond the record have none.
-/// Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
+/// Waveform detector that also tells how far each echo's shape is from that of a flat target: `Echo::shape_deviation`,
+/// in thousandths of the echo's maximum, the mean over the samples within a pulse length of the echo. 0 is a flat
+/// target; slopes, edges and leaves have more. The detector inside keeps waveforms: its `record_length` is greater than
+/// 0, and echoes beyond the record have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
 template <class Inner>
 class ShapeDeviation : public DetectorAdaptor<Inner> {
  public:
@@ -42,7 +42,8 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const Detection d = this->inner.detect(heard, w);
     if (const std::vector<double>* shape = shapes_.find(heard.emitter.laser))
-      for (Echo& echo : d.echoes) echo.shape_deviation = static_cast<float>(deviation(d, echo, heard.emitter.laser.pulse_length, *shape));
+      for (Echo& echo : d.echoes)
+        echo.shape_deviation = static_cast<float>(deviation(d, echo, heard.emitter.laser.pulse_length, *shape));
     return d;
   }
 
@@ -69,13 +70,15 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
   }
 
   [[nodiscard]] static double at(std::span<const float> samples, long i) noexcept {
-    return i >= 0 && i < static_cast<long>(samples.size()) ? static_cast<double>(samples[static_cast<std::size_t>(i)]) : 0;
+    return i >= 0 && i < static_cast<long>(samples.size()) ? static_cast<double>(samples[static_cast<std::size_t>(i)])
+                                                           : 0;
   }
 
   [[nodiscard]] double deviation(const Detection& d, const Echo& echo, double pulse_length,
                                  const std::vector<double>& shape) const noexcept {
     const double reach = 0.5 * static_cast<double>(shape.size() - 1) / places;  // [samples]
-    const double centre = (2 * echo.range / speed_of_light - d.waveform_start) / interval(), half = pulse_length / interval();
+    const double centre = (2 * echo.range / speed_of_light - d.waveform_start) / interval(),
+                 half = pulse_length / interval();
     if (!(centre + half < static_cast<double>(d.waveform.size()))) return std::numeric_limits<double>::quiet_NaN();
     double sum = 0, samples = 0;
     for (double i = std::ceil(centre - half); i <= centre + half; ++i, ++samples) {

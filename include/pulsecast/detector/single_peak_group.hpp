@@ -21,24 +21,28 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Sum of the pulse shapes of reflections within 2 tau: the last leading edge arrives before the first pulse has peaked. All pulses rise
-/// until then, so the sum has a single peak. Reflections are in any order.
+/// Sum of the pulse shapes of reflections within 2 tau: the last leading edge arrives before the first pulse has
+/// peaked. All pulses rise until then, so the sum has a single peak. Reflections are in any order.
 ///
-/// An edge that passed an age u [tau] before the last one contributes P (u + x)^2 e^-(u + x) a time x after it. Weight each by P e^-u; let
-/// M0, M1 and M2 be the sums of the weights times u^0, u and u^2. The sum of pulses is e^-x (M2 + 2 M1 x + M0 x^2). Its slope is zero at x
-/// = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
+/// An edge that passed an age u [tau] before the last one contributes P (u + x)^2 e^-(u + x) a time x after it. Weight
+/// each by P e^-u; let M0, M1 and M2 be the sums of the weights times u^0, u and u^2. The sum of pulses is e^-x (M2 + 2
+/// M1 x + M0 x^2). Its slope is zero at x = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0
+/// - m^2 of the ages. Derived from `PulseShape`.
 class SinglePeakGroup {
  public:
   /// Ages and weights, one per reflection, padded to whole SIMD vectors.
   struct Workspace {
     std::vector<double> ages, weights;  ///< one per reflection: age [tau], weight [W]
     /// Allocates memory for `reflections` reflections, at most 2048: more are rarely within 2 tau.
-    explicit Workspace(std::size_t reflections) : ages(std::min<std::size_t>(reflections, 2048) + simd::lane_count), weights(ages) {}
+    explicit Workspace(std::size_t reflections)
+        : ages(std::min<std::size_t>(reflections, 2048) + simd::lane_count), weights(ages) {}
   };
 
-  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are none, too far apart,
-  /// more than the workspace holds, without power, or too far away. Nothing else may be called then.
-  SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
+  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are
+  /// none, too far apart, more than the workspace holds, without power, or too far away. Nothing else may be called
+  /// then.
+  SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval,
+                  Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + simd::lane_count > w.ages.size()) return;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -87,8 +91,12 @@ class SinglePeakGroup {
 
   /// True if the reflections form such a group.
   [[nodiscard]] bool one() const noexcept { return one_; }
-  [[nodiscard]] double last_edge() const noexcept { return last_edge_; }    ///< two-way travel time, origin of the times below [s]
-  [[nodiscard]] double mean_range() const noexcept { return mean_range_; }  ///< power-weighted mean of the reflections [m]
+  [[nodiscard]] double last_edge() const noexcept {
+    return last_edge_;
+  }  ///< two-way travel time, origin of the times below [s]
+  [[nodiscard]] double mean_range() const noexcept {
+    return mean_range_;
+  }  ///< power-weighted mean of the reflections [m]
 
   /// Time of the sum's peak since the last edge [tau].
   [[nodiscard]] double peak() const noexcept {
@@ -120,7 +128,8 @@ class SinglePeakGroup {
     simd::Doubles most{}, number{}, best{};
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);
     for (std::size_t j = 0; j < reflections_.size(); j += simd::lane_count) {
-      const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x, power = simd::load<simd::Doubles>(weights_[j]) * u * u;
+      const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x,
+                          power = simd::load<simd::Doubles>(weights_[j]) * u * u;
       best = power > most ? number : best;
       most = simd::max(power, most);
       number += simd::lane_count;

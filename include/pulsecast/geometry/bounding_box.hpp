@@ -95,7 +95,8 @@ struct QuantizedBox8 {
   void begin(const BoundingBox<Real>& around) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
-      // exponent of a power of two above the ratio, as of std::frexp, but without a call; that of a subnormal ratio is less than the least
+      // exponent of a power of two above the ratio, as of std::frexp, but without a call; that of a subnormal ratio is
+      // less than the least
       const int e = static_cast<int>(std::bit_cast<std::uint64_t>(extent / (steps - 1)) >> 52U) - 1022;
       origin[k] = around.min[k];
       exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
@@ -108,7 +109,8 @@ struct QuantizedBox8 {
   void add(const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
-      const double low = (static_cast<double>(box.min[k]) - start) * per_step, high = (static_cast<double>(box.max[k]) - start) * per_step;
+      const double low = (static_cast<double>(box.min[k]) - start) * per_step,
+                   high = (static_cast<double>(box.max[k]) - start) * per_step;
       const auto down = static_cast<std::uint32_t>(low), truncated = static_cast<std::uint32_t>(high);
       walls[k][0][count] = static_cast<std::uint16_t>(down);
       walls[k][1][count] = static_cast<std::uint16_t>(truncated + (truncated < high ? 1U : 0U));

@@ -12,7 +12,8 @@ namespace PULSECAST_NAMESPACE {
 /// Axis-aligned box between two corners [m]; empty by default, so that the first extension sets it.
 struct Box {
   /// Lower corner [m].
-  Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+           std::numeric_limits<double>::infinity()};
   /// Upper corner [m].
   Vec3 max = -min;
 

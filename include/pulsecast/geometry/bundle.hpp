@@ -37,7 +37,8 @@ struct BundleOrigin {
 
 /// Rays from one origin into a narrow cone: the subrays of a pulse, or some of them. A single ray is a bundle of one.
 /// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops.
-/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
+/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the
+/// world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;             ///< greatest number of rays
   static constexpr std::size_t lanes = simd::lane_count;  ///< divisor of `padded_size()`
@@ -45,13 +46,16 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;  ///< one number per ray
 
   alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
-  Vec3 least, most;            ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 least,
+      most;  ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
 
   RayBundle() noexcept {}  // leaves the directions unset
   /// Takes the common properties, and leaves the directions unset.
   explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
   /// Copies the directions in use only.
-  RayBundle(const RayBundle& other) noexcept : RayBundle(static_cast<const BundleOrigin&>(other)) { copy_directions(other); }
+  RayBundle(const RayBundle& other) noexcept : RayBundle(static_cast<const BundleOrigin&>(other)) {
+    copy_directions(other);
+  }
   /// Copies the directions in use only.
   RayBundle& operator=(const RayBundle& other) noexcept {
     static_cast<BundleOrigin&>(*this) = other;
@@ -79,8 +83,8 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
-  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and `most`. To be
-  /// called once the directions are set.
+  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and
+  /// `most`. To be called once the directions are set.
   void pad() noexcept {
     PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
@@ -116,8 +120,8 @@ struct RayBundle : BundleOrigin {
   }
 };
 
-/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less. Triangles heed the
-/// ranges; other shapes may meet a ray before it begins.
+/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less.
+/// Triangles heed the ranges; other shapes may meet a ray before it begins.
 struct StaggeredBundle : RayBundle {
   alignas(64) Column begin;  ///< ray j meets nothing up to this range; set for `padded_size()` rays [m]
 
@@ -148,10 +152,10 @@ struct StaggeredBundle : RayBundle {
 struct ClosestHits {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
 
-  alignas(64) std::array<double, RayBundle::capacity> range;  ///< range of the hit [m]; `far` without a hit
-  alignas(
-      64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
-  std::uint64_t part = 0;                                     ///< part under test, in the upper half
+  alignas(64) std::array<double, RayBundle::capacity> range;      ///< range of the hit [m]; `far` without a hit
+  alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower;
+                                                                  ///< `none` if nothing was met
+  std::uint64_t part = 0;                                         ///< part under test, in the upper half
 
   /// No hits so far of a bundle's rays.
   explicit ClosestHits(const RayBundle& rays) noexcept {
@@ -184,15 +188,17 @@ struct ClosestHits {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;
     simd::Doubles last = simd::Doubles{} - infinity;
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+    for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
+      last = simd::max(simd::load<simd::Doubles>(range[j]), last);
     return simd::max(last);
   }
 };
 
-/// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still takes any [m],
-/// `limit(rays)` that of all rays; `part` is the part under test, in the upper half.
+/// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still
+/// takes any [m], `limit(rays)` that of all rays; `part` is the part under test, in the upper half.
 template <class H, class Rays>
-concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, PrimitiveIndex primitive, std::uint64_t part) {
+concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, PrimitiveIndex primitive,
+                          std::uint64_t part) {
   hits.part = part;
   hits.offer(j, at, primitive);
   { hits.limit_of(j) } -> std::same_as<double>;

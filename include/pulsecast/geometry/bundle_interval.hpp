@@ -21,9 +21,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive in double precision,
-/// the bundle meets every box around that primitive, and the range is inside the box's span.
-/// NaN rays are left out; if none is left, every span is empty.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive
+/// in double precision, the bundle meets every box around that primitive, and the range is inside the box's span. NaN
+/// rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
@@ -35,7 +35,8 @@ class BundleInterval {
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
   template <class Rays>
-  BundleInterval(const Rays& rays, const Box& bounds, const Vec3& centre) noexcept : near_(round_down<Real>(rays.near)) {
+  BundleInterval(const Rays& rays, const Box& bounds, const Vec3& centre) noexcept
+      : near_(round_down<Real>(rays.near)) {
     // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
@@ -46,7 +47,8 @@ class BundleInterval {
       const double o = rays.origin[k] - centre[k];
       // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
-      const double margin = slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
+      const double margin =
+          slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
       const Real origin_low = static_cast<Real>(o - margin), origin_high = static_cast<Real>(o + margin);
       if (low > 0)
         axes_[k] = {origin_low, origin_high, slowness(high, 1 - tolerance), slowness(low, 1 + tolerance), 1};
@@ -83,7 +85,8 @@ class BundleInterval {
     });
   }
   /// Bit mask and entry ranges, as above.
-  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit,
+                                std::array<Real, 8>& entries) const noexcept {
     // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -111,10 +114,10 @@ class BundleInterval {
   }
 
  private:
-  /// Direction of the bundle along an axis: `sense` is +1 or -1 if all rays go that way, else 0. The factors turn the distance from the
-  /// origin to a plane into range: `per_min` for an inside above the plane, `per_max` for one below it. If all rays go one way, one factor
-  /// is the fastest ray's to enter, the other the slowest ray's to leave. Otherwise both bound the entry, by the fastest ray each way; the
-  /// exit is unbounded, as a ray may stay inside.
+  /// Direction of the bundle along an axis: `sense` is +1 or -1 if all rays go that way, else 0. The factors turn the
+  /// distance from the origin to a plane into range: `per_min` for an inside above the plane, `per_max` for one below
+  /// it. If all rays go one way, one factor is the fastest ray's to enter, the other the slowest ray's to leave.
+  /// Otherwise both bound the entry, by the fastest ray each way; the exit is unbounded, as a ray may stay inside.
   struct Axis {
     Real origin_low, origin_high, per_min, per_max;
     int sense;
@@ -156,8 +159,8 @@ class BundleInterval {
     return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
   }
 
-  // A plane behind the origin gives a negative range: as entry it has no effect, as exit it puts the box behind. Zero times infinity is NaN
-  // and fails every comparison.
+  // A plane behind the origin gives a negative range: as entry it has no effect, as exit it puts the box behind. Zero
+  // times infinity is NaN and fails every comparison.
   static void keep_above(Span& span, const Axis& a, Real low) noexcept {
     const Real range = (low - a.origin_high) * a.per_min;
     if (a.sense >= 0)
@@ -178,9 +181,9 @@ class BundleInterval {
   Axis axes_[3];
 };
 
-/// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`: the entry wall on each axis is known, and
-/// the ranges to the walls of an axis share one factor.
-/// A box that is met has a `Key`: its entry range as an integer, which orders as the range does, with three zero bits for a tag.
+/// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`: the entry wall on
+/// each axis is known, and the ranges to the walls of an axis share one factor. A box that is met has a `Key`: its
+/// entry range as an integer, which orders as the range does, with three zero bits for a tag.
 template <std::floating_point Real>
 class RayInterval {
  public:
@@ -195,21 +198,27 @@ class RayInterval {
   RayInterval(const Rays& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
-    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min), high = axes(bounds.max);
+    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min),
+               high = axes(bounds.max);
     const Axes o = origin - axes(centre);
     // margin as for a bundle, for the same reasons
     const Axes farthest = simd::max(simd::max(magnitude(low), magnitude(high)), magnitude(origin));
-    const double slack = 64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
-    const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) * Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
+    const double slack =
+        64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
+    const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) *
+                                          Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
     const Axes outwards = margin * sense(direction);
     const Axes slowness = sense(direction) / simd::max(magnitude(direction), Axes(min_speed * ray.direction_length));
     per_ = (slowness * Axes(1 - tolerance)).template as<Real>();
     start_[0] = (Axes(0) - (o + outwards)).template as<Real>() * per_;
     start_[1] = (outwards - o).template as<Real>() * per_;
-    for (std::size_t k = 0; k < 3; ++k) entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
+    for (std::size_t k = 0; k < 3; ++k)
+      entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
     const Axes both = o + direction;
-    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
-    near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0} : std::numeric_limits<Real>::infinity();  // no -0
+    const bool is_valid =
+        std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
+    near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
+                     : std::numeric_limits<Real>::infinity();  // no -0
   }
 
   /// Largest range at which the ray can still find a closer hit.
@@ -220,7 +229,8 @@ class RayInterval {
 
   /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their keys.
   // always inlined into the traversal, which saves 20 instructions a node
-  [[nodiscard, gnu::always_inline]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, Keys& keys) const noexcept {
+  [[nodiscard, gnu::always_inline]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit,
+                                                    Keys& keys) const noexcept {
     const Maps maps = wall_maps(boxes);
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += lanes) {
@@ -244,8 +254,8 @@ class RayInterval {
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not met.
   static constexpr double max_limit = static_cast<double>(std::numeric_limits<Real>::max()) * (1 - 4 * tolerance);
-  /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast: from the margin on, they leave a box so
-  /// late that no hit lies beyond.
+  /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast: from the margin on,
+  /// they leave a box so late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
   static constexpr std::size_t wall_bytes = sizeof(boxes_type::walls[0][0]);
 
@@ -254,8 +264,8 @@ class RayInterval {
     alignas(4 * sizeof(Real)) Real scale[4], start[2][4];
   };
 
-  /// The wall's position errs by two roundings of the distance to the origin, plus four and a half of half the bounds; the range, by two of
-  /// its own. `per_` is too small, so that the entry is not late.
+  /// The wall's position errs by two roundings of the distance to the origin, plus four and a half of half the bounds;
+  /// the range, by two of its own. `per_` is too small, so that the entry is not late.
   [[nodiscard, gnu::always_inline]] Maps wall_maps(const QuantizedBox8<Real>& boxes) const noexcept {
     using Axes = simd::Vec4<Real>;
     Maps maps;
@@ -268,8 +278,8 @@ class RayInterval {
   }
 
   /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k.
-  [[gnu::always_inline]] void clip(std::size_t k, const QuantizedBox8<Real>& boxes, std::size_t first, const Maps& maps, Packet& entry,
-                                   Packet& exit) const noexcept {
+  [[gnu::always_inline]] void clip(std::size_t k, const QuantizedBox8<Real>& boxes, std::size_t first, const Maps& maps,
+                                   Packet& entry, Packet& exit) const noexcept {
     const char* const walls = reinterpret_cast<const char*>(&boxes.walls[0][0][first]);
     const auto numbers = [&](std::size_t byte) noexcept {
       return simd::packet_from<Real>(*reinterpret_cast<const std::uint16_t*>(walls + byte));
@@ -281,7 +291,8 @@ class RayInterval {
   /// Linear map from a wall's coordinate along each axis to range; the margin makes two of it, for entry and for exit.
   simd::Vec4<Real> per_, start_[2];
   Real near_;
-  std::size_t entry_wall_[3];  ///< byte in the boxes of the walls where they are entered; the opposite ones are `wall_bytes` apart
+  std::size_t entry_wall_[3];  ///< byte in the boxes of the walls where they are entered; the opposite ones are
+                               ///< `wall_bytes` apart
 };
 
 }  // namespace PULSECAST_NAMESPACE

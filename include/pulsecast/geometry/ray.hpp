@@ -18,9 +18,9 @@ struct Ray {
   double near = 0;                                       ///< only hits beyond this distance count [m]
   double far = std::numeric_limits<double>::infinity();  ///< only hits up to this distance count [m]
   Tick tick{};                                           ///< time, for parts that move
-  std::uint64_t seed = 0;                                ///< key, with the next two, of every random number that tracing may draw
-  PulseIndex pulse = 0;                                  ///< index of its pulse
-  std::uint32_t subray = 0;                              ///< number among the subrays of its pulse
+  std::uint64_t seed = 0;    ///< key, with the next two, of every random number that tracing may draw
+  PulseIndex pulse = 0;      ///< index of its pulse
+  std::uint32_t subray = 0;  ///< number among the subrays of its pulse
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -20,24 +20,30 @@ struct RayCone {
   double spread = 0;               ///< bound of the distance from `direction` to any ray's unit direction
   Tick tick{};                     ///< time, for parts that move
 
-  static constexpr double near = 0;                                                         ///< as in `BundleOrigin` [m]
-  [[nodiscard]] double least_along(int k) const noexcept { return direction[k] - spread; }  ///< minimum of component k of the directions
-  [[nodiscard]] double most_along(int k) const noexcept { return direction[k] + spread; }   ///< maximum of component k of the directions
+  static constexpr double near = 0;  ///< as in `BundleOrigin` [m]
+  [[nodiscard]] double least_along(int k) const noexcept {
+    return direction[k] - spread;
+  }  ///< minimum of component k of the directions
+  [[nodiscard]] double most_along(int k) const noexcept {
+    return direction[k] + spread;
+  }  ///< maximum of component k of the directions
 
-  /// True only if no ray comes near a box: nearer than a millionth of its distance and size, which covers the rounding of primitive tests.
-  /// False if anything is NaN, and for infinite boxes. Separating axes, with the directions as an interval about the axis.
-  /// Source: Gottschalk, Lin & Manocha 1996, sec. 5.
+  /// True only if no ray comes near a box: nearer than a millionth of its distance and size, which covers the rounding
+  /// of primitive tests. False if anything is NaN, and for infinite boxes. Separating axes, with the directions as an
+  /// interval about the axis. Source: Gottschalk, Lin & Manocha 1996, sec. 5.
   [[nodiscard]] bool passes(const Box& box) const noexcept {
     constexpr double rounding = 128 * std::numeric_limits<double>::epsilon();
     const Vec3 half = 0.5 * box.size(), from = origin - box.centre();
     const double scale = std::max(max_norm(origin), std::max(max_norm(box.min), max_norm(box.max)));
     const double margin = 1e-6 * (max_norm(from) + max_norm(half)) + rounding * scale, aside = spread + rounding;
-    double reach[3], away[3], fastest[3];  // half sides of the box, distance from its centre, and speed, along each axis
+    double reach[3], away[3],
+        fastest[3];  // half sides of the box, distance from its centre, and speed, along each axis
     for (int k = 0; k < 3; ++k) {
       reach[k] = half[k] + margin;
       away[k] = std::fabs(from[k]);
       fastest[k] = std::fabs(direction[k]) + aside;
-      if (away[k] > reach[k] && (from[k] > 0 ? direction[k] : -direction[k]) > aside) return true;  // beside the box, and leaves it
+      if (away[k] > reach[k] && (from[k] > 0 ? direction[k] : -direction[k]) > aside)
+        return true;  // beside the box, and leaves it
     }
     for (int k = 0; k < 3; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;

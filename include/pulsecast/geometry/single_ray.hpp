@@ -15,11 +15,12 @@
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
-/// A single ray in flight, and what it may look for: its closest hit, any hit, all hits. Accelerators and shapes take them through the same
-/// templates as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
+/// A single ray in flight, and what it may look for: its closest hit, any hit, all hits. Accelerators and shapes take
+/// them through the same templates as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
 namespace PULSECAST_NAMESPACE {
 
-/// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the far end; there is no wavelength.
+/// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the far end; there is no
+/// wavelength.
 struct BundleOfOne {
   static constexpr std::size_t capacity = 1, size = 1;  ///< as in `RayBundle`
 
@@ -57,7 +58,8 @@ struct BundleOfOne {
 
 /// Bundle of a single ray up to a range [m], for shapes that take nothing else.
 [[nodiscard]] inline RayBundle bundle_of(const BundleOfOne& ray, double far) noexcept {
-  RayBundle rays = bundle_of(Ray{ray.origin, ray.toward, ray.near, far, ray.tick, ray.seed, ray.pulse, ray.first_subray});
+  RayBundle rays =
+      bundle_of(Ray{ray.origin, ray.toward, ray.near, far, ray.tick, ray.seed, ray.pulse, ray.first_subray});
   rays.direction_length = ray.direction_length;
   return rays;
 }
@@ -120,8 +122,8 @@ struct AnyHit {
   }
 };
 
-/// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts once. Once it is full,
-/// `continue_after` makes room for those that come next. In 600 bytes; allocates nothing.
+/// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts
+/// once. Once it is full, `continue_after` makes room for those that come next. In 600 bytes; allocates nothing.
 class HitBuffer {
  public:
   static constexpr std::size_t capacity = 32;  ///< greatest number of hits held
@@ -133,7 +135,9 @@ class HitBuffer {
 
     friend bool operator==(const Entry&, const Entry&) = default;
     /// True if `a` comes first.
-    friend bool operator<(const Entry& a, const Entry& b) noexcept { return a.range < b.range || (a.range == b.range && a.id < b.id); }
+    friend bool operator<(const Entry& a, const Entry& b) noexcept {
+      return a.range < b.range || (a.range == b.range && a.id < b.id);
+    }
   };
 
   std::uint64_t part = 0;  ///< part under test, in the upper half
@@ -162,7 +166,8 @@ class HitBuffer {
     while (place > 0 && hit < hits_[place - 1]) --place;
     if ((place > 0 && hits_[place - 1] == hit) || place == capacity) return;
     if (size_ < capacity) ++size_;
-    std::copy_backward(hits_.begin() + static_cast<std::ptrdiff_t>(place), hits_.begin() + static_cast<std::ptrdiff_t>(size_ - 1),
+    std::copy_backward(hits_.begin() + static_cast<std::ptrdiff_t>(place),
+                       hits_.begin() + static_cast<std::ptrdiff_t>(size_ - 1),
                        hits_.begin() + static_cast<std::ptrdiff_t>(size_));
     hits_[place] = hit;
     if (full()) limit_ = hits_[capacity - 1].range;

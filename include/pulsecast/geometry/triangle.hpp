@@ -36,7 +36,8 @@ struct Triangle {
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 
-  /// Barycentric weights of a, b and c at the point that a ray meets, none negative; they sum to one. A third each without area.
+  /// Barycentric weights of a, b and c at the point that a ray meets, none negative; they sum to one. A third each
+  /// without area.
   [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
     const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
     const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),
@@ -89,36 +90,37 @@ struct SolidEverywhere {
   bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
 };
 
-/// Intersects the triangles of these primitives with every ray of a bundle, or with a `BundleOfOne`: the deciding test, always in double
-/// precision.
+/// Intersects the triangles of these primitives with every ray of a bundle, or with a `BundleOfOne`: the deciding test,
+/// always in double precision.
 ///
-/// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on the bundle alone, so
-/// a ray costs three dot products, and none where the whole bundle passes a plane on one side.
-/// If rounding leaves it in doubt, a ray counts as inside, so none slips between two triangles that share an edge or a corner.
-/// A hit lies in the triangle's own box, widened by a few roundings, so that no box of an accelerator hides it. Beside an edge it lies by
-/// at most 32 roundings of the distance, divided by the sine of the angle between ray and plane. Its range errs by that much, times one
-/// more than the triangle's aspect.
-/// A ray within 1e-12 rad of the triangle's plane misses. So does every ray if two edges are parallel to within 8 roundings (no area).
-/// Of the hits it takes those with `solid(j, primitive)`, of ray j, as outside the holes of a mask.
-/// Never inlined, so that every accelerator gets the same bits.
-/// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; interval inside the box:
-/// Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
+/// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on
+/// the bundle alone, so a ray costs three dot products, and none where the whole bundle passes a plane on one side. If
+/// rounding leaves it in doubt, a ray counts as inside, so none slips between two triangles that share an edge or a
+/// corner. A hit lies in the triangle's own box, widened by a few roundings, so that no box of an accelerator hides it.
+/// Beside an edge it lies by at most 32 roundings of the distance, divided by the sine of the angle between ray and
+/// plane. Its range errs by that much, times one more than the triangle's aspect. A ray within 1e-12 rad of the
+/// triangle's plane misses. So does every ray if two edges are parallel to within 8 roundings (no area). Of the hits it
+/// takes those with `solid(j, primitive)`, of ray j, as outside the holes of a mask. Never inlined, so that every
+/// accelerator gets the same bits. Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of
+/// Shevtsov, Soupikov & Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 template <class Rays, class Hits, class Solid = SolidEverywhere>
-[[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives, const Rays& rays,
-                                 Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
+[[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives,
+                                 const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
   constexpr bool with_holes = !std::is_same_v<Solid, SolidEverywhere>;
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
-  const auto magnitude = [](const simd::Doubles& v) noexcept { return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF); };
+  const auto magnitude = [](const simd::Doubles& v) noexcept {
+    return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF);
+  };
   const auto from_origin = [&](const Corner& p) noexcept -> Corner {
     return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in the 1-norm bounds each sum of products,
-  // which is at most seven roundings from the true one.
+  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in the 1-norm bounds
+  // each sum of products, which is at most seven roundings from the true one.
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -126,19 +128,23 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
   const auto planes = [&](const Corner& from, const Corner& to) noexcept -> Planes {
     const simd::Doubles ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
     const simd::Doubles sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
-    return {ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
-            (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
+    return {
+        ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
+        (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
   };
   const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
-  // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once more
+  // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once
+  // more
   simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
-    return simd::max(p.x * rays.least_along(0), p.x * rays.most_along(0)) + simd::max(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
+    return simd::max(p.x * rays.least_along(0), p.x * rays.most_along(0)) +
+           simd::max(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
            simd::max(p.z * rays.least_along(2), p.z * rays.most_along(2));
   };
   const auto least = [&](const Planes& p) noexcept {
-    return simd::min(p.x * rays.least_along(0), p.x * rays.most_along(0)) + simd::min(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
+    return simd::min(p.x * rays.least_along(0), p.x * rays.most_along(0)) +
+           simd::min(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
            simd::min(p.z * rays.least_along(2), p.z * rays.most_along(2));
   };
   [[maybe_unused]] simd::Mask between_edges;  // of the only ray
@@ -146,11 +152,13 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
     const Vec3 d = rays.direction(0);
     const auto side = [&](const Planes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
     const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
-    between_edges = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) | ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
+    between_edges = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
+                    ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
     may_meet = between_edges;
   } else if (rays.size == 1) {
     const auto side = [&](const Planes& p) noexcept { return p.x * rays.x[0] + p.y * rays.y[0] + p.z * rays.z[0]; };
-    const simd::Doubles u = side(ab), v = side(bc), w = side(ca), doubt = 4 * simd::max(ab.doubt, simd::max(bc.doubt, ca.doubt));
+    const simd::Doubles u = side(ab), v = side(bc), w = side(ca),
+                        doubt = 4 * simd::max(ab.doubt, simd::max(bc.doubt, ca.doubt));
     may_meet = (simd::min(u, simd::min(v, w)) >= -doubt) | (simd::max(u, simd::max(v, w)) <= doubt);
   } else {
     may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
@@ -163,19 +171,24 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
   const auto cross_of = [](const Corner& u, const Corner& v) noexcept -> Corner {
     return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
   };
-  const auto minus = [](const Corner& u, const Corner& v) noexcept -> Corner { return {u.x - v.x, u.y - v.y, u.z - v.z}; };
+  const auto minus = [](const Corner& u, const Corner& v) noexcept -> Corner {
+    return {u.x - v.x, u.y - v.y, u.z - v.z};
+  };
   const auto square = [](const Corner& v) noexcept { return v.x * v.x + v.y * v.y + v.z * v.z; };
-  const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
+  const Corner from_a = minus(triangles.b, triangles.a),
+               to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
   const Corner normals = cross_of(from_a, to_a);
   const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
   const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // zero angle up to rounding
   const simd::Doubles grazing = flat ? simd::Doubles{} + std::numeric_limits<double>::infinity()
                                      : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
-  const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)), simd::min(a.z, simd::min(b.z, c.z))};
-  const Corner highest{simd::max(a.x, simd::max(b.x, c.x)), simd::max(a.y, simd::max(b.y, c.y)), simd::max(a.z, simd::max(b.z, c.z))};
-  const simd::Doubles extent =
-      simd::max(simd::max(simd::max(magnitude(lowest.x), magnitude(highest.x)), simd::max(magnitude(lowest.y), magnitude(highest.y))),
-                simd::max(magnitude(lowest.z), magnitude(highest.z)));
+  const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)),
+                      simd::min(a.z, simd::min(b.z, c.z))};
+  const Corner highest{simd::max(a.x, simd::max(b.x, c.x)), simd::max(a.y, simd::max(b.y, c.y)),
+                       simd::max(a.z, simd::max(b.z, c.z))};
+  const simd::Doubles extent = simd::max(simd::max(simd::max(magnitude(lowest.x), magnitude(highest.x)),
+                                                   simd::max(magnitude(lowest.y), magnitude(highest.y))),
+                                         simd::max(magnitude(lowest.z), magnitude(highest.z)));
   const simd::Doubles margin = 8 * unit * extent;
 
   // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
@@ -184,12 +197,14 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
     const auto tiny = std::remove_cvref_t<decltype(direction)>{} + 1e-300;
     return 1 / (direction * direction > 0 ? direction : tiny);
   };
-  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& per, const auto& low, const auto& high) noexcept {
+  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& per, const auto& low,
+                                const auto& high) noexcept {
     const simd::Doubles to_low = low * per, to_high = high * per;
     entry = simd::max(simd::min(to_low, to_high), entry);
     exit = simd::min(simd::max(to_low, to_high), exit);
   };
-  const auto clamped = [](const simd::Doubles& crossing, const simd::Doubles& entry, const simd::Doubles& exit) noexcept {
+  const auto clamped = [](const simd::Doubles& crossing, const simd::Doubles& entry,
+                          const simd::Doubles& exit) noexcept {
     const simd::Doubles after_entry = crossing < entry ? entry : crossing;
     return simd::Doubles(after_entry > exit ? exit : after_entry);
   };
@@ -234,12 +249,14 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
         const simd::Doubles at = clamped(offsets[t] / slope, entry, exit);
 
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
-        const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
+        const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]),
+                        own_id = simd::Ids{} + (nearest.part | primitive);
         const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
         simd::Mask hit = inside & (entry <= exit) & (at > rays.near_of(j)) & nearer;
         if constexpr (with_holes)
           for (unsigned lanes = simd::bits(hit); lanes != 0; lanes &= lanes - 1)
-            if (const auto lane = static_cast<std::size_t>(std::countr_zero(lanes)); !solid(j + lane, primitive)) hit[lane] = 0;
+            if (const auto lane = static_cast<std::size_t>(std::countr_zero(lanes)); !solid(j + lane, primitive))
+              hit[lane] = 0;
         simd::store(hit ? at : best, nearest.range[j]);
         simd::store(hit ? own_id : best_id, nearest.id[j]);
       }
@@ -256,8 +273,8 @@ concept EndsEarly = requires(const Hits& hits) {
 
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
 template <class TriangleOf, class Rays, class Hits, class Solid = SolidEverywhere>
-void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest,
-               const Solid& solid = {}) noexcept {
+void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays,
+               Hits& nearest, const Solid& solid = {}) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
     const TrianglePacket triangles(count, [&](std::size_t n) noexcept { return triangle_of(first + n); });

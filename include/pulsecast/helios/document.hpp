@@ -14,8 +14,9 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path> assets{};  ///< search folders; the first match wins. The folders of survey and document follow
-  bool channel_files = false;                   ///< each channel gets a file named by its id: ambiguous ids are refused
+  std::vector<std::filesystem::path>
+      assets{};                ///< search folders; the first match wins. The folders of survey and document follow
+  bool channel_files = false;  ///< each channel gets a file named by its id: ambiguous ids are refused
 };
 
 /// Content of a survey document.
@@ -34,13 +35,13 @@ struct AssetDocument {
   std::vector<std::string> warnings{};        ///< as in `SurveyDocument`
 };
 
-/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. The settings are resolved: overrides
-/// of the survey are in scanner and platform, for every channel. Throws `XmlFaults` with all faults, or another `FileError` if the file
-/// cannot be read.
+/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. The settings are
+/// resolved: overrides of the survey are in scanner and platform, for every channel. Throws `XmlFaults` with all
+/// faults, or another `FileError` if the file cannot be read.
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
-/// Writes a survey with its scanner, platform and scene as one document. Reading it gives equal settings. Exception: values from a program
-/// may differ in the last digit where the document's unit is not SI.
+/// Writes a survey with its scanner, platform and scene as one document. Reading it gives equal settings. Exception:
+/// values from a program may differ in the last digit where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
 [[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< text of that document
 

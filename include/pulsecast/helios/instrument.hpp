@@ -28,20 +28,25 @@ struct InstrumentOptions {
   double optic_time = 0;             ///< running time of the optic before, for a scan that continues another [s]
 };
 
-/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: all of its channels, which fire together, with their
-/// optics, head and error formulas. Put it on any trajectory: `Platform{trajectory, mount, Instrument{scanner, settings, 60}}`. XML surveys
-/// consist of it, too. `settings.active` is for `Leg::active`; without it, only size, duration and emitters have a meaning.
+/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: all of its channels, which fire
+/// together, with their optics, head and error formulas. Put it on any trajectory: `Platform{trajectory, mount,
+/// Instrument{scanner, settings, 60}}`. XML surveys consist of it, too. `settings.active` is for `Leg::active`; without
+/// it, only size, duration and emitters have a meaning.
 class Instrument {
  public:
-  /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at fault
-  Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration, const InstrumentOptions& options = {});
+  /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at
+  /// fault
+  Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,
+             const InstrumentOptions& options = {});
 
   [[nodiscard]] PulseIndex size() const noexcept { return channels_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return channels_.duration(); }
   /// Emitter of each channel. Its receiver is an index into `receivers_of` the same scanner.
   [[nodiscard]] std::vector<Emitter> emitters() const { return channels_.emitters(); }
 
-  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return channels_.pulse(i); }
+  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
+    return channels_.pulse(i);
+  }
 
   /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
@@ -51,7 +56,8 @@ class Instrument {
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty without such errors.
+  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty
+  /// without such errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
@@ -73,11 +79,12 @@ struct ReceiverOptions {
   bool noise = false;        ///< adds noise: a quarter of the least power of an echo, as its standard deviation
 };
 
-/// Receivers of a scanner for `Survey`, each distinct one of its channels once: footprint, aperture and detector. All sample waveforms by
-/// the smallest bins of the channels. Throws a `SettingError`, or a `std::invalid_argument` if a noise formula is invalid.
+/// Receivers of a scanner for `Survey`, each distinct one of its channels once: footprint, aperture and detector. All
+/// sample waveforms by the smallest bins of the channels. Throws a `SettingError`, or a `std::invalid_argument` if a
+/// noise formula is invalid.
 template <EchoWidth Width = NoWidth>
-[[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(const ScannerSettings& scanner,
-                                                                                         const ReceiverOptions& options = {}) {
+[[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(
+    const ScannerSettings& scanner, const ReceiverOptions& options = {}) {
   const double bin = finest_bin(scanner);
   return ReceiverGroups(scanner).units(scanner, [&](const ChannelSettings& channel) {
     WaveformSettings waveform = survey_waveform(channel, options.record_length);

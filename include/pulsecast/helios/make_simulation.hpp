@@ -14,7 +14,8 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
-/// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it in one source file of a program.
+/// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it in one source file of a
+/// program.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Parts of a scene and the warnings from building it.
@@ -27,9 +28,10 @@ struct BuiltParts {
 /// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.
 using PartProvider = std::function<BuiltParts(int run, const std::function<BuiltParts()>& build)>;
 
-/// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` with leg or part and attribute, or a
-/// `FileError`.
-[[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey, const Simulation::Settings& settings = {},
+/// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` with leg or part
+/// and attribute, or a `FileError`.
+[[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
+                                                          const Simulation::Settings& settings = {},
                                                           const PartProvider& provider = {});
 
 }  // namespace PULSECAST_NAMESPACE::helios

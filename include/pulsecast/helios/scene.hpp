@@ -28,10 +28,11 @@
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Part with any shape of the document format.
-using SurveyPart = Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+using SurveyPart =
+    Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
 /// Scene of such parts.
-using SurveyScene =
-    MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+using SurveyScene = MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>,
+                                VoxelGrid<TransmissiveVoxels>>;
 
 /// Options for building a scene.
 struct SceneBuildOptions {
@@ -52,8 +53,8 @@ struct PlacedRaster {
   Similarity placement{};  ///< from there to the world
 };
 
-/// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the same files costs
-/// little.
+/// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the
+/// same files costs little.
 class SceneBuilder {
  public:
   /// Keeps the settings; `parts` reads the files. @throws SettingError for settings out of range

@@ -15,9 +15,9 @@
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds the survey.
-/// Templates, references and inheritance are resolved: each struct is complete. The comment of a member names its attribute or element. A 0
-/// may mean a default or none; `validate` refuses negative values there.
+/// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds
+/// the survey. Templates, references and inheritance are resolved: each struct is complete. The comment of a member
+/// names its attribute or element. A 0 may mean a default or none; `validate` refuses negative values there.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Random offset of the start of legs: `legRandomOffset`.
@@ -28,8 +28,8 @@ struct LegOffsetSettings {
   bool operator==(const LegOffsetSettings&) const = default;
 };
 
-/// `<survey>`. Its overrides of the scanner (`<FWFSettings>`, `<detectorSettings>`) and the platform (`<scannerMount>`, noise) are stored
-/// there.
+/// `<survey>`. Its overrides of the scanner (`<FWFSettings>`, `<detectorSettings>`) and the platform (`<scannerMount>`,
+/// noise) are stored there.
 struct SurveySettings {
   std::string name{};                             ///< default: that of the file; `name`
   std::optional<std::uint64_t> seed{};            ///< `seed`

@@ -40,7 +40,7 @@ struct Receiving {
 /// Consecutive slots of a sample. Slots before `from` are simulated to warm the caches, but do not count.
 struct SampleBlock {
   PulseIndex first = 0, from = 0, end = 0;  ///< first slot, first that counts, one past the last
-  bool empty_shots = true;                  ///< false: shots without echoes are counted, not kept, as in a run whose sinks read none
+  bool empty_shots = true;  ///< false: shots without echoes are counted, not kept, as in a run whose sinks read none
 };
 
 /// Results of the counted slots of a block.
@@ -58,7 +58,8 @@ struct SlotCount {
   std::uint8_t echoes = 0;    ///< number of its echoes
 };
 
-/// Survey with its scene loaded and its legs planned. `run`, `sample` and `count` may be called by several threads at once.
+/// Survey with its scene loaded and its legs planned. `run`, `sample` and `count` may be called by several threads at
+/// once.
 class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
@@ -71,16 +72,17 @@ class Simulation {
 
   /// Options of a simulation.
   struct Settings {
-    std::uint64_t seed = 0;                       ///< seed of all random numbers
-    bool echo_width = false;                      ///< fit echo widths
-    bool waveforms = false;                       ///< keep the waveforms of echoes
-    bool las_waveforms = false;                   ///< cut and sample waveforms to the limits of LAS
-    bool waveform_noise = false;                  ///< add receiver noise
-    bool fixed_incidence = false;                 ///< perpendicular incidence on all surfaces, for scattering
-    bool library_physics = false;                 ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
-    bool light_paths = false;                     ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
-    bool platform_noise = true;                   ///< true: as in the survey; false: none
-    bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
+    std::uint64_t seed = 0;        ///< seed of all random numbers
+    bool echo_width = false;       ///< fit echo widths
+    bool waveforms = false;        ///< keep the waveforms of echoes
+    bool las_waveforms = false;    ///< cut and sample waveforms to the limits of LAS
+    bool waveform_noise = false;   ///< add receiver noise
+    bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
+    bool library_physics =
+        false;                   ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
+    bool light_paths = false;    ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
+    bool platform_noise = true;  ///< true: as in the survey; false: none
+    bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
     std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
@@ -94,11 +96,14 @@ class Simulation {
    public:
     /// Hands on what the sink says about empty shots, if it `ChoosesShots`.
     template <EchoSink Any>
-    requires(!std::same_as<std::remove_cvref_t<Any>, Sink>) Sink(Any&& sink)  // NOLINT(google-explicit-constructor): implicit by purpose
+    requires(!std::same_as<std::remove_cvref_t<Any>, Sink>)
+        Sink(Any&& sink)  // NOLINT(google-explicit-constructor): implicit by purpose
         : empty_shots_(pulsecast::detail::reads_empty_shots(sink)), take_(held(std::forward<Any>(sink))) {}
 
     void operator()(const EchoBatch& batch) const { take_(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
+    [[nodiscard]] bool reads_empty_shots() const noexcept {
+      return empty_shots_;
+    }  ///< as the concept ChoosesShots describes
 
    private:
     template <class Any>
@@ -135,11 +140,13 @@ class Simulation {
   [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
   /// Size of the current scene.
   [[nodiscard]] virtual Scene scene() const = 0;
-  /// Named numbers of the objects of the current scene. @throws SettingError if two parts of one object have different ones
+  /// Named numbers of the objects of the current scene. @throws SettingError if two parts of one object have different
+  /// ones
   [[nodiscard]] virtual ObjectAttributes attributes() const = 0;
   /// Colours of points of the current scene, by one more ray a point; valid until `begin`.
   [[nodiscard]] virtual PointColours colours() const = 0;
-  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< warnings of scene, legs and receivers, each once
+  [[nodiscard]] virtual const std::vector<std::string>& warnings()
+      const = 0;  ///< warnings of scene, legs and receivers, each once
 
   /// Simulates the pulses as `pulsecast::run` does. The sink gets the echoes in the order of their pulses.
   virtual RunSummary run(const RunOptions& options, const Sink& sink) const = 0;
@@ -153,7 +160,8 @@ class Simulation {
 };
 
 /// Checks legs and scanner, without loading the scene. Throws a `SettingError` or `FileError`; returns warnings.
-[[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places = {});
+[[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey,
+                                                           const std::vector<std::string>& leg_places = {});
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -29,14 +29,15 @@ struct CompiledSurvey {
     double trajectory_interval = 0;      ///< interval of trajectory records; 0: none [s]
     double pulse_rate = 0;               ///< pulse rate [Hz]
   };
-  Legs<SurveyLeg> source;               ///< source of all pulses; each distinct receiver of the scanner's channels has an index
-  std::vector<Leg> legs;                ///< legs, in order of the document
-  std::optional<double> clock_start{};  ///< start time of the survey, that of its earliest leg, if a trajectory gives it [s]
+  Legs<SurveyLeg> source;  ///< source of all pulses; each distinct receiver of the scanner's channels has an index
+  std::vector<Leg> legs;   ///< legs, in order of the document
+  std::optional<double>
+      clock_start{};  ///< start time of the survey, that of its earliest leg, if a trajectory gives it [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
-/// Pulses of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
-/// `FileError` of a trajectory.
+/// Pulses of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and
+/// attribute, or a `FileError` of a trajectory.
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                             const SurveyBuildOptions& options = {});
 

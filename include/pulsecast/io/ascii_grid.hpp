@@ -17,8 +17,9 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for Esri ASCII grids.
 struct AsciiGridSettings {
-  double vertical_scale = 1;        ///< metres per unit of height [m]
-  std::optional<double> missing{};  ///< value of missing heights, in the file's unit; by default from the file (NODATA_value), or -9999
+  double vertical_scale = 1;  ///< metres per unit of height [m]
+  std::optional<double>
+      missing{};  ///< value of missing heights, in the file's unit; by default from the file (NODATA_value), or -9999
 
   void validate() const { require_positive("AsciiGridSettings::vertical_scale", vertical_scale, "m"); }
 };
@@ -29,18 +30,21 @@ struct AsciiGrid {
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
-/// Reads an Esri ASCII grid, a raster of heights as text, whose coordinates are in metres; the file does not tell its reference system.
-/// Keywords of any case and order come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` or `dx`
-/// and `dy`, and perhaps `NODATA_value`. Heights follow row by row from the north; line ends count as blanks. NaN, values not within
-/// 1e15 m, and the value for missing ones become NaN.
+/// Reads an Esri ASCII grid, a raster of heights as text, whose coordinates are in metres; the file does not tell its
+/// reference system. Keywords of any case and order come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`,
+/// `yllcorner` or `yllcenter`, `cellsize` or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from
+/// the north; line ends count as blanks. NaN, values not within 1e15 m, and the value for missing ones become NaN.
 /// Memory is the raster, whose size the size of the file bounds.
 /// @throws SettingError for settings out of range
-/// @throws FileError with the line if known, for a keyword that is unknown, repeated or missing, and for too few, too many or no heights
-/// Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; for `dx` and `dy`, the GDAL manual, AAIGrid driver.
+/// @throws FileError with the line if known, for a keyword that is unknown, repeated or missing, and for too few, too
+/// many or no heights Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; for `dx` and `dy`, the GDAL
+/// manual, AAIGrid driver.
 [[nodiscard]] AsciiGrid read_ascii_grid(const std::filesystem::path& path, const AsciiGridSettings& settings = {});
 
 /// True for the extension `.asc`, in any case.
-[[nodiscard]] inline bool is_ascii_grid(const std::filesystem::path& path) { return text::is_same_word(path.extension().string(), ".asc"); }
+[[nodiscard]] inline bool is_ascii_grid(const std::filesystem::path& path) {
+  return text::is_same_word(path.extension().string(), ".asc");
+}
 
 }  // namespace PULSECAST_NAMESPACE::io
 

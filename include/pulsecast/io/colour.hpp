@@ -53,7 +53,8 @@ using Srgb = std::array<std::uint8_t, 3>;
   return from_srgb(scale[i]) * (1 - part) + from_srgb(scale[i + 1]) * part;
 }
 
-/// Perceptually uniform scale from dark violet to yellow. Source: viridis of Smith & van der Walt 2015 (CC0), every 32nd entry.
+/// Perceptually uniform scale from dark violet to yellow. Source: viridis of Smith & van der Walt 2015 (CC0), every
+/// 32nd entry.
 inline constexpr std::array<Srgb, 9> viridis{{{68, 1, 84},
                                               {71, 44, 122},
                                               {59, 81, 139},
@@ -78,22 +79,28 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
   const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
   const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
   const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+          -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// Colour of a point class, about as on maps. Source of the numbers: ASPRS LAS 1.4 R15, table 17; those from 64 on are user-defined.
+/// Colour of a point class, about as on maps. Source of the numbers: ASPRS LAS 1.4 R15, table 17; those from 64 on are
+/// user-defined.
 [[nodiscard]] inline Srgb of_class(std::uint16_t classification) noexcept {
-  constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62}, high_vegetation{58, 136, 66},
-      building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132}, other{176, 176, 176};
-  constexpr std::array<Srgb, 12> standard{other, other, ground, low_vegetation, medium_vegetation, high_vegetation, building, other, other,
-                                          water, other, road};
-  constexpr std::array<Srgb, 6> own{{{158, 108, 72}, {216, 196, 156}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}, {0, 158, 115}}};
+  constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62},
+      high_vegetation{58, 136, 66}, building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132},
+      other{176, 176, 176};
+  constexpr std::array<Srgb, 12> standard{other,           other,    ground, low_vegetation, medium_vegetation,
+                                          high_vegetation, building, other,  other,          water,
+                                          other,           road};
+  constexpr std::array<Srgb, 6> own{
+      {{158, 108, 72}, {216, 196, 156}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}, {0, 158, 115}}};
   if (classification >= 64) return own[(classification - 64u) % own.size()];
   return classification < standard.size() ? standard[classification] : other;
 }
 
-/// Colours of the ways of returned light, by the number of `ReflectionKind`; distinct for every colour vision. Source: Okabe & Ito 2008.
+/// Colours of the ways of returned light, by the number of `ReflectionKind`; distinct for every colour vision. Source:
+/// Okabe & Ito 2008.
 inline constexpr std::array<Srgb, reflection_kind_count> kind_colours{
     {{184, 184, 184}, {86, 180, 233}, {0, 114, 178}, {213, 94, 0}, {204, 121, 167}, {240, 228, 66}}};
 

@@ -34,15 +34,18 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Point records of a COPC file. They wait in a temporary file, and `finish` builds the octree. Source of the records: https://copc.io,
-/// COPC 1.0, info VLR and hierarchy VLR.
+/// Point records of a COPC file. They wait in a temporary file, and `finish` builds the octree. Source of the records:
+/// https://copc.io, COPC 1.0, info VLR and hierarchy VLR.
 class CopcRecords {
  public:
-  explicit CopcRecords(unsigned threads, CopcSizes sizes = {}) : threads_(std::min(thread_count(threads), 12U)), sizes_(sizes) {}
+  explicit CopcRecords(unsigned threads, CopcSizes sizes = {})
+      : threads_(std::min(thread_count(threads), 12U)), sizes_(sizes) {}
 
   static constexpr std::uint8_t format_bits = 128;
   static constexpr std::uint32_t first_descriptor_count = 1, descriptor_count = 1;
-  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return std::vector<std::byte>(las_vlr_header_size + info_size); }
+  [[nodiscard]] static std::vector<std::byte> first_descriptors() {
+    return std::vector<std::byte>(las_vlr_header_size + info_size);
+  }
   [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& layout) {
     return laz_descriptor(layout, std::numeric_limits<std::uint32_t>::max());  // chunks of any number of points
   }
@@ -89,9 +92,11 @@ class CopcRecords {
   [[nodiscard]] LasExtendedRecords extended() const noexcept { return extended_; }
 
  private:
-  static constexpr std::size_t info_size = 160, info_at = 375, extended_header_size = 60;  // [byte]; info_at: behind the header
+  static constexpr std::size_t info_size = 160, info_at = 375,
+                               extended_header_size = 60;  // [byte]; info_at: behind the header
 
-  void write_hierarchy(OutputFile& file, const LasEncoder& encoder, const CopcRoot& root, std::vector<CopcEntry> entries) {
+  void write_hierarchy(OutputFile& file, const LasEncoder& encoder, const CopcRoot& root,
+                       std::vector<CopcEntry> entries) {
     extended_ = {file.position(), 1};
     const CopcHierarchy hierarchy(std::move(entries), sizes_.page_nodes);
     const std::uint64_t begin = file.position() + extended_header_size;
@@ -133,14 +138,16 @@ class CopcRecords {
 
 }  // namespace detail
 
-/// Writes points as COPC 1.0, a LAZ file with an octree for maps and viewers that read a part of it: as `LazWriter`, but for the order of
-/// the points. A node with children has at most one point in each of its 128^3 cells, that nearest to the centre, so all points down to
-/// some level are an even sample of the cloud. Another node has at most 50,000, or one in each cell, unless its side is 128 steps of the
-/// coordinates. The bytes of the file are the same for any number of threads.
+/// Writes points as COPC 1.0, a LAZ file with an octree for maps and viewers that read a part of it: as `LazWriter`,
+/// but for the order of the points. A node with children has at most one point in each of its 128^3 cells, that nearest
+/// to the centre, so all points down to some level are an even sample of the cloud. Another node has at most 50,000, or
+/// one in each cell, unless its side is 128 steps of the coordinates. The bytes of the file are the same for any number
+/// of threads.
 ///
-/// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed. The disk must have room for them and the
-/// file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each thread, of which at most 12 are used, so that
-/// it stays below 1 GB. But points within a cube of 2048 steps are held at once. `docs/performance.md` has the figures.
+/// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed. The disk must have
+/// room for them and the file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each
+/// thread, of which at most 12 are used, so that it stays below 1 GB. But points within a cube of 2048 steps are held
+/// at once. `docs/performance.md` has the figures.
 class CopcWriter : public detail::LasFileWriter<detail::CopcRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ cannot meet

@@ -24,7 +24,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a GeoJSON file.
 struct GeoJsonSettings {
-  int epsg = 0;                    ///< EPSG code of a projected system in metres, from 1 to 32766; 0 if unknown, and none is written
+  int epsg = 0;  ///< EPSG code of a projected system in metres, from 1 to 32766; 0 if unknown, and none is written
   double interval = 1;             ///< time between two points of a trajectory [s]
   double footprint_interval = 10;  ///< time that one polygon of a footprint covers [s]
 
@@ -38,9 +38,11 @@ struct GeoJsonSettings {
 namespace detail {
 
 /// Convex hull of points in the plane, anticlockwise from the lowest x, without points on its edges.
-/// Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions. Exact if the products of differences are.
+/// Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions. Exact if the products of
+/// differences are.
 [[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::sort(points.begin(), points.end(),
+            [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Vec2> hull;
@@ -82,18 +84,20 @@ class HullOfStream {
 }  // namespace detail
 
 /// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for a look in QGIS:
-/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points. It is a Point for a leg
+/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points. It is
+/// a Point for a leg
 ///   that does not move. Properties: kind, leg, pulses, points (all echoes of the leg), start and end [s];
-/// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one `footprint_interval`, counted from the start of
-///   the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points, area [m^2]. Points on a line have none.
+/// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one `footprint_interval`, counted
+/// from the start of
+///   the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points, area [m^2]. Points
+///   on a line have none.
 ///
-/// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and GDAL read that
-/// member; RFC 7946 knows longitude and latitude of WGS 84 only, so that readers bound to it misplace coordinates in metres.
-/// Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another begins; one that comes back has new
-/// features.
-/// Footprints are written as their time ends, a trajectory with its leg: memory grows with the
-/// points of one leg's trajectory, and the corners of one footprint.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and
+/// GDAL read that member; RFC 7946 knows longitude and latitude of WGS 84 only, so that readers bound to it misplace
+/// coordinates in metres. Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another
+/// begins; one that comes back has new features. Footprints are written as their time ends, a trajectory with its leg:
+/// memory grows with the points of one leg's trajectory, and the corners of one footprint. Only `close()` completes the
+/// file: see `OutputFile`. Throws a `FileError`.
 class GeoJsonWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -101,8 +105,8 @@ class GeoJsonWriter {
       : settings_(validated(settings)), file_(std::move(path)) {
     file_.write(std::string_view("{\"type\":\"FeatureCollection\","));
     if (settings_.epsg != 0)
-      file_.write(pulsecast::detail::joined(
-          {R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)", std::to_string(settings_.epsg), "\"}},"}));
+      file_.write(pulsecast::detail::joined({R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)",
+                                             std::to_string(settings_.epsg), "\"}},"}));
     file_.write(std::string_view("\"features\":["));
   }
 
@@ -156,7 +160,8 @@ class GeoJsonWriter {
     std::uint64_t points = 0;
   };
 
-  /// Point in whole millimetres, so that hulls are exact up to some 90 km and remain convex as written; empty if not finite.
+  /// Point in whole millimetres, so that hulls are exact up to some 90 km and remain convex as written; empty if not
+  /// finite.
   [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
     const Vec3 scaled = point * per_metre;
     if (!finite(scaled)) return std::nullopt;
@@ -211,8 +216,10 @@ class GeoJsonWriter {
     }
     if (!std::isfinite(twice)) return;
     const std::string area = pulsecast::detail::to_text(twice / (2 * per_metre * per_metre));
-    feature("footprint", done.time, pulsecast::detail::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
-            pulsecast::detail::joined({R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
+    feature("footprint", done.time,
+            pulsecast::detail::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
+            pulsecast::detail::joined(
+                {R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
   }
 
   void end_leg() {
@@ -220,11 +227,13 @@ class GeoJsonWriter {
     end_footprint();
     if (leg_->last) leg_->add(*leg_->last);
     const bool moves = leg_->line_points > 1;
-    const std::string geometry = pulsecast::detail::joined(
-        {R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)", moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
+    const std::string geometry =
+        pulsecast::detail::joined({R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)",
+                                   moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
     if (leg_->last)
       feature("trajectory", leg_->time,
-              pulsecast::detail::joined({R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
+              pulsecast::detail::joined(
+                  {R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
               geometry);
     leg_.reset();
   }
@@ -232,9 +241,10 @@ class GeoJsonWriter {
   /// Writes a feature of the present leg.
   void feature(std::string_view kind, const Times& time, std::string_view counts, std::string_view geometry) {
     using pulsecast::detail::to_text;
-    file_.write(pulsecast::detail::joined({std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind,
-                                           R"(","leg":)", std::to_string(leg_->number), R"(,"start":)", to_text(time.start), R"(,"end":)",
-                                           to_text(time.end), ",", counts, R"(},"geometry":)", geometry, "}"}));
+    file_.write(pulsecast::detail::joined(
+        {std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind, R"(","leg":)",
+         std::to_string(leg_->number), R"(,"start":)", to_text(time.start), R"(,"end":)", to_text(time.end), ",",
+         counts, R"(},"geometry":)", geometry, "}"}));
   }
 
   GeoJsonSettings settings_;

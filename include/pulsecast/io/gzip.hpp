@@ -33,7 +33,8 @@ class GzipEncoder final : public OutputEncoder {
   explicit GzipEncoder(int level) {
     constexpr int window_bits = 15 + 16;  // 32 kB; plus 16 selects the gzip format of zlib
     constexpr int memory_level = 9;       // maximum, 256 kB, for speed
-    if (deflateInit2(&stream_, level, Z_DEFLATED, window_bits, memory_level, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+    if (deflateInit2(&stream_, level, Z_DEFLATED, window_bits, memory_level, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw std::bad_alloc();
   }
   GzipEncoder(const GzipEncoder&) = delete;
   GzipEncoder& operator=(const GzipEncoder&) = delete;
@@ -70,7 +71,8 @@ class GzipEncoder final : public OutputEncoder {
 ///
 ///     XyzWriter writer(gzip_file("points.xyz.gz"));
 ///
-/// Limits: compression uses one thread. Text takes three times as long at level 1, and twelve times at 6, for a file a tenth smaller.
+/// Limits: compression uses one thread. Text takes three times as long at level 1, and twelve times at 6, for a file a
+/// tenth smaller.
 [[nodiscard]] inline OutputFile gzip_file(std::filesystem::path path, const GzipSettings& settings = {}) {
   return OutputFile(std::move(path), std::make_unique<detail::GzipEncoder>(validated(settings).level));
 }

@@ -32,13 +32,16 @@ namespace PULSECAST_NAMESPACE::io {
 /// File read from beginning to end in blocks, as bytes or as lines; memory is independent of its size.
 class InputFile {
  public:
-  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< upper limit of a line, and of bytes taken at once [byte]
+  static constexpr std::size_t block_size = std::size_t{1}
+                                            << 20;  ///< upper limit of a line, and of bytes taken at once [byte]
 
-  /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it is empty.
+  /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it
+  /// is empty.
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected " + std::string(expected));
-    if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + std::string(expected));
+    if (!std::filesystem::is_regular_file(path, ignored))
+      fail("is a directory or device: expected " + std::string(expected));
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");
     file_.seekg(0, std::ios::end);
@@ -54,8 +57,8 @@ class InputFile {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
-  [[nodiscard]] std::size_t line() const noexcept { return line_; }            ///< number of the line taken last, from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< true for a last line without end
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< number of the line taken last, from 1
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }  ///< true for a last line without end
 
   /// Moves to any byte, and restarts the count of lines there.
   void seek(std::uint64_t byte) {
@@ -71,8 +74,8 @@ class InputFile {
     return advance(std::min(bytes, end_ - begin_));
   }
 
-  /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is taken. Throws a `FileError` for a line
-  /// longer than `block_size`.
+  /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is taken. Throws a
+  /// `FileError` for a line longer than `block_size`.
   [[nodiscard]] std::optional<std::string_view> take_line() {
     std::string_view rest = unread(), line = text::take_line(rest);
     if (rest.empty() && !unread().ends_with('\n')) {
@@ -100,10 +103,14 @@ class InputFile {
   /// Throws a `FileError` about the whole file.
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
   /// Throws a `FileError` about the line taken last.
-  [[noreturn]] void fail_at_line(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  [[noreturn]] void fail_at_line(const std::string& problem) const {
+    throw FileError(path_, "line " + std::to_string(line_), problem);
+  }
   /// `column` is counted from 0 here, from 1 in the message.
   [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {
-    throw FileError(path_, pulsecast::detail::joined({"line ", std::to_string(line_), ", column ", std::to_string(column + 1)}), problem);
+    throw FileError(
+        path_, pulsecast::detail::joined({"line ", std::to_string(line_), ", column ", std::to_string(column + 1)}),
+        problem);
   }
   /// Throws a `FileError` about a byte, from 0.
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
@@ -140,8 +147,8 @@ class InputFile {
   bool line_is_open_ = false;
 };
 
-/// Memory-mapped file, read-only, aligned to a page. Its name may be reused for another file meanwhile; the file itself must not be written
-/// to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
+/// Memory-mapped file, read-only, aligned to a page. Its name may be reused for another file meanwhile; the file itself
+/// must not be written to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
   /// Maps a file. @throws FileError

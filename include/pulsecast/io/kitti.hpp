@@ -29,8 +29,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// Classes of SemanticKITTI by those of echoes. Classes without an entry are 0, unlabeled.
 using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 
-/// Table for the classes of LAS that have a counterpart; classes from 64 on are the user's, and go into further entries.
-/// Source: ASPRS LAS 1.4 R15, table of classes; semantic-kitti-api, config/semantic-kitti.yaml.
+/// Table for the classes of LAS that have a counterpart; classes from 64 on are the user's, and go into further
+/// entries. Source: ASPRS LAS 1.4 R15, table of classes; semantic-kitti-api, config/semantic-kitti.yaml.
 [[nodiscard]] inline KittiClasses kitti_classes() {
   return {{2, 72},    // ground: terrain
           {3, 70},    // low vegetation: vegetation
@@ -48,21 +48,25 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
   KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
-  PointSettings points{};                  ///< pose of the sensor, which is required, and distortion; axes are those of the format
+  PointSettings points{};  ///< pose of the sensor, which is required, and distortion; axes are those of the format
 
   void validate() const {
     require_within("KittiSettings::scan_rate", scan_rate, 1e-3, 1e6, "Hz");
     points.validate();
-    if (!points.sensor) throw SettingError("PointSettings::sensor (poses)", 0, "", "1, for points in the frame of a sensor");
+    if (!points.sensor)
+      throw SettingError("PointSettings::sensor (poses)", 0, "", "1, for points in the frame of a sensor");
   }
 };
 
-/// Writes scans as a sequence folder of SemanticKITTI. Source: Behley et al. 2019, SemanticKITTI; semantic-kitti-api, README and auxiliary
-/// scripts. Scans are those of `ScanSplitter`, numbered from 0:
-/// - velodyne/000000.bin: x forward, y left, z up [m] and reflectance, limited to 0 to 1, in the sensor's frame, as 32-bit floats;
-/// - labels/000000.label: of each point 32 bits, instance in the upper 16 and class in the lower. The instance is the object modulo 65536;
+/// Writes scans as a sequence folder of SemanticKITTI. Source: Behley et al. 2019, SemanticKITTI; semantic-kitti-api,
+/// README and auxiliary scripts. Scans are those of `ScanSplitter`, numbered from 0:
+/// - velodyne/000000.bin: x forward, y left, z up [m] and reflectance, limited to 0 to 1, in the sensor's frame, as
+/// 32-bit floats;
+/// - labels/000000.label: of each point 32 bits, instance in the upper 16 and class in the lower. The instance is the
+/// object modulo 65536;
 /// - times.txt: seconds since the first scan, one line a scan;
-/// - poses.txt: sensor at each scan's start in the frame of the first, both with x forward, y left, z up: rows of a matrix of 3 by 4;
+/// - poses.txt: sensor at each scan's start in the frame of the first, both with x forward, y left, z up: rows of a
+/// matrix of 3 by 4;
 /// - calib.txt: the identity as Tr, from the sensor to the frame of the poses. There are no cameras.
 ///
 /// Files of a scan are complete with the scan; times, poses and calibration with `close()`. Throws a `FileError`.
@@ -113,7 +117,8 @@ class KittiWriter {
       std::error_code error;
       std::filesystem::create_directories(folder, error);
       const bool empty = !error && std::filesystem::is_empty(folder, error);
-      if (error) throw FileError(folder.string(), "", "cannot be created: " + error.message() + "; expected a writable folder");
+      if (error)
+        throw FileError(folder.string(), "", "cannot be created: " + error.message() + "; expected a writable folder");
       if (!empty) throw FileError(folder.string(), "", "holds files already; expected a folder without scans");
     }
     return folder_;
@@ -145,8 +150,11 @@ class KittiWriter {
   void write_pose(const Pose<frame::Instrument, frame::World>& sensor) {
     if (!first_) first_ = sensor.inverse();
     const auto pose = *first_ * sensor;
-    const auto column = [&](const Vec3& axis) { return to_forward_left_up(pose.rotation * from_forward_left_up(axis)); };
-    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1}), at = to_forward_left_up(pose.position);
+    const auto column = [&](const Vec3& axis) {
+      return to_forward_left_up(pose.rotation * from_forward_left_up(axis));
+    };
+    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1}),
+               at = to_forward_left_up(pose.position);
     poses_.reals(12, x.x, y.x, z.x, at.x, x.y, y.y, z.y, at.y, x.z, y.z, z.z, at.z).end_row();
   }
 

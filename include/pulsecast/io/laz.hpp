@@ -31,17 +31,19 @@ namespace detail {
 
 inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
 
-/// Variable-length record, header included, on the compression of points in chunks of `chunk` points. Source: `laszip encoded`
-/// as documented by LASzip, LAStools.
-[[nodiscard]] inline std::vector<std::byte> laz_descriptor(const LasLayout& layout, std::uint32_t chunk = laz_chunk_points) {
+/// Variable-length record, header included, on the compression of points in chunks of `chunk` points. Source: `laszip
+/// encoded` as documented by LASzip, LAStools.
+[[nodiscard]] inline std::vector<std::byte> laz_descriptor(const LasLayout& layout,
+                                                           std::uint32_t chunk = laz_chunk_points) {
   struct Item {
     std::uint16_t type;
     std::size_t size;
   };
   std::vector<Item> items{{10, laz_point_size}};  // POINT14
   if (layout.colour_size > 0)
-    items.push_back({layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});  // RGB14, RGBNIR14
-  items.push_back({14, layout.record() - layout.extras});                                                    // BYTE14
+    items.push_back(
+        {layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});  // RGB14, RGBNIR14
+  items.push_back({14, layout.record() - layout.extras});                                        // BYTE14
   LasBytes<34> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
   d.put(4, std::uint8_t{3});   // version 3.4, revision 3, as of LASzip
@@ -64,8 +66,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   return bytes;
 }
 
-/// Chunk table: sizes of all chunks [byte], for random access, and their numbers of points, unless `points` is empty and all but the last
-/// have as many. Source: Isenburg 2013, LASzip, 3 (chunk table).
+/// Chunk table: sizes of all chunks [byte], for random access, and their numbers of points, unless `points` is empty
+/// and all but the last have as many. Source: Isenburg 2013, LASzip, 3 (chunk table).
 [[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes,
                                                             std::span<const std::uint32_t> points = {}) {
   LasBytes<8> head{};  // version, 0, and number of chunks
@@ -76,7 +78,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   LazIntegers integers(32, 2);  // contexts: numbers of points, sizes
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const auto step = [&](const auto& values, std::size_t context) {
-      integers.encode(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]), static_cast<std::int32_t>(values[i]), context);
+      integers.encode(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]),
+                      static_cast<std::int32_t>(values[i]), context);
     };
     if (!points.empty()) step(points, 0);
     step(sizes, 1);
@@ -86,8 +89,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   return bytes;
 }
 
-/// Point records of a LAZ file. As many chunks as threads, but at most 16, are gathered, compressed in parallel and written in order.
-/// Records to be changed wait uncompressed in a file of their own.
+/// Point records of a LAZ file. As many chunks as threads, but at most 16, are gathered, compressed in parallel and
+/// written in order. Records to be changed wait uncompressed in a file of their own.
 class LazRecords {
  public:
   explicit LazRecords(unsigned threads) : threads_(std::min(thread_count(threads), 16U)) {}
@@ -167,10 +170,10 @@ class LazRecords {
 
 }  // namespace detail
 
-/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as by LASzip. Chunks
-/// of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the file are the same for any number. Throws
-/// a `SettingError` for another format, or for waveforms. With intensities scaled to the greatest amplitude, `close()` compresses all;
-/// until then, points wait in `NAME.points.part`.
+/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as
+/// by LASzip. Chunks of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the
+/// file are the same for any number. Throws a `SettingError` for another format, or for waveforms. With intensities
+/// scaled to the greatest amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ cannot meet
@@ -181,15 +184,18 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
   /// Settings, if LAZ can meet them. Throws a `SettingError` for another format, or for waveforms.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
-      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0 for LAZ: LAS 1.4 with point formats 6 to 8");
-    if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without waveforms");
+      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "",
+                         "0 for LAZ: LAS 1.4 with point formats 6 to 8");
+    if (settings.waveforms)
+      throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without waveforms");
     return settings;
   }
 
   static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points of a chunk, except the last
 
   /// Compresses a chunk of whole records by these settings: at least one, at most `chunk_points`.
-  [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records, const LasSettings& settings) {
+  [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records,
+                                                               const LasSettings& settings) {
     const detail::LasLayout layout(settings);
     return detail::LazChunk(records, layout.record(), layout.colour_size).compressed();
   }

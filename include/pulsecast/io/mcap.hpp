@@ -29,26 +29,31 @@ namespace PULSECAST_NAMESPACE::io {
 struct McapSettings {
   std::string profile = "ros2";  ///< requirements that the channels meet; "ros2": all are of ROS 2; empty: none
   std::size_t chunk_size =
-      std::size_t{1} << 20;  ///< length that messages fill a chunk up to, from 1 to 2^30; a longer one is alone in its chunk [byte]
+      std::size_t{1}
+      << 20;  ///< length that messages fill a chunk up to, from 1 to 2^30; a longer one is alone in its chunk [byte]
 
   /// @throws SettingError for settings out of range
-  void validate() const { require_within("McapSettings::chunk_size", static_cast<double>(chunk_size), 1, 1 << 30, "byte"); }
+  void validate() const {
+    require_within("McapSettings::chunk_size", static_cast<double>(chunk_size), 1, 1 << 30, "byte");
+  }
 };
 
 /// Channel of an MCAP file: messages of one type on one topic. By default those of ROS 2.
 struct McapChannel {
-  std::string topic{};                      ///< topic
-  std::string schema_name{};                ///< type of the messages, as "sensor_msgs/msg/PointCloud2"; empty: there is no schema
+  std::string topic{};        ///< topic
+  std::string schema_name{};  ///< type of the messages, as "sensor_msgs/msg/PointCloud2"; empty: there is no schema
   std::string schema_encoding = "ros2msg";  ///< language of the schema
   std::string schema{};                     ///< definition of the type
   std::string message_encoding = "cdr";     ///< encoding of the messages
-  /// Further texts by their keys. The profile "ros2" asks for the quality of service, in YAML; empty: that of the player
+  /// Further texts by their keys. The profile "ros2" asks for the quality of service, in YAML; empty: that of the
+  /// player
   std::map<std::string, std::string> metadata{{"offered_qos_profiles", ""}};
 };
 
 namespace detail {
 
-static_assert(std::endian::native == std::endian::little, "MCAP files are little-endian, and are written as the numbers lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "MCAP files are little-endian, and are written as the numbers lie in memory");
 
 /// Kind of a record. Source: mcap.dev/spec, Records.
 enum class McapOpcode : std::uint8_t {
@@ -65,9 +70,11 @@ enum class McapOpcode : std::uint8_t {
   data_end = 0x0F
 };
 
-inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length [byte]
-inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< chunk record without its records [byte]
-inline constexpr std::uint32_t mcap_no_crc = 0;  ///< absent checksum, of which the format has several. Source: mcap.dev/spec
+inline constexpr std::size_t mcap_record_head = 1 + 8;  ///< opcode, length [byte]
+inline constexpr std::size_t mcap_chunk_head =
+    mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< chunk record without its records [byte]
+inline constexpr std::uint32_t mcap_no_crc =
+    0;  ///< absent checksum, of which the format has several. Source: mcap.dev/spec
 
 /// Record under construction: opcode, length of the content, content. Source: mcap.dev/spec, Records and Serialization.
 class McapRecord {
@@ -115,9 +122,9 @@ class McapRecord {
 
 }  // namespace detail
 
-/// Writes an MCAP file, which the tools of ROS 2 (rosbag2) and others read: chunks without compression, with an index and statistics.
-/// It takes messages of any encoding, in any order of their times. Checksums are left out, as the format allows. Only `close()`
-/// completes the file: see `OutputFile`. Source of the format: mcap.dev/spec, version 0.
+/// Writes an MCAP file, which the tools of ROS 2 (rosbag2) and others read: chunks without compression, with an index
+/// and statistics. It takes messages of any encoding, in any order of their times. Checksums are left out, as the
+/// format allows. Only `close()` completes the file: see `OutputFile`. Source of the format: mcap.dev/spec, version 0.
 class McapWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -145,10 +152,13 @@ class McapWriter {
 
   /// Appends a message to a channel, with the times when it was recorded and published [ns].
   /// @throws SettingError for a channel that does not exist @throws FileError
-  void write(std::uint16_t channel, std::uint64_t log_time_ns, std::uint64_t publish_time_ns, std::span<const std::byte> data) {
-    if (channel >= channels_.size()) throw SettingError("McapWriter::write (channel)", channel, "", "one that add_channel has returned");
+  void write(std::uint16_t channel, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
+             std::span<const std::byte> data) {
+    if (channel >= channels_.size())
+      throw SettingError("McapWriter::write (channel)", channel, "", "one that add_channel has returned");
     constexpr std::uint64_t message_head = detail::mcap_record_head + 2 + 4 + 8 + 8;
-    if (in_chunk_ && file_.position() - chunks_.back().records() + message_head + data.size() > settings_.chunk_size) end_chunk();
+    if (in_chunk_ && file_.position() - chunks_.back().records() + message_head + data.size() > settings_.chunk_size)
+      end_chunk();
     if (!in_chunk_) begin_chunk();
     Channel& of = channels_[channel];
     Chunk& chunk = chunks_.back();
@@ -189,7 +199,8 @@ class McapWriter {
 
   struct Channel {
     McapChannel settings;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // time and position of each of its messages in the open chunk
+    std::vector<std::pair<std::uint64_t, std::uint64_t>>
+        index;  // time and position of each of its messages in the open chunk
     std::uint64_t messages;
     std::uint16_t schema;  // number of the schema; 0: none
   };
@@ -197,8 +208,9 @@ class McapWriter {
   struct Chunk {
     std::uint64_t start = 0, size = 0;  // position in the file; length of its records [byte]
     Times times{};
-    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes{};  // channel and position of each message index [byte]
-    std::uint64_t indexes_size = 0;                                  // length of these records [byte]
+    std::vector<std::pair<std::uint16_t, std::uint64_t>>
+        indexes{};                   // channel and position of each message index [byte]
+    std::uint64_t indexes_size = 0;  // length of these records [byte]
 
     [[nodiscard]] std::uint64_t records() const noexcept { return start + detail::mcap_chunk_head; }
   };
@@ -222,12 +234,20 @@ class McapWriter {
 
   void put_schema(std::size_t id) {
     const McapChannel& of = channels_[id].settings;
-    put(record_.begin(Opcode::schema).add(channels_[id].schema).add(of.schema_name).add(of.schema_encoding).add(of.schema));
+    put(record_.begin(Opcode::schema)
+            .add(channels_[id].schema)
+            .add(of.schema_name)
+            .add(of.schema_encoding)
+            .add(of.schema));
   }
 
   void put_channel(std::size_t id) {
     const McapChannel& of = channels_[id].settings;
-    record_.begin(Opcode::channel).add(static_cast<std::uint16_t>(id)).add(channels_[id].schema).add(of.topic).add(of.message_encoding);
+    record_.begin(Opcode::channel)
+        .add(static_cast<std::uint16_t>(id))
+        .add(channels_[id].schema)
+        .add(of.topic)
+        .add(of.message_encoding);
     put(record_.add_list([&] {
       for (const auto& [key, value] : of.metadata) record_.add(key).add(value);
     }));
@@ -299,7 +319,8 @@ class McapWriter {
     record_.add(std::uint32_t{0}).add(std::uint32_t{0});  // attachments, metadata records
     record_.add(static_cast<std::uint32_t>(chunks_.size())).add(times.first).add(times.last);
     put(record_.add_list([&] {
-      for (std::size_t id = 0; id < channels_.size(); ++id) record_.add(static_cast<std::uint16_t>(id)).add(channels_[id].messages);
+      for (std::size_t id = 0; id < channels_.size(); ++id)
+        record_.add(static_cast<std::uint16_t>(id)).add(channels_[id].messages);
     }));
   }
 

@@ -25,16 +25,17 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of points for pulses without echoes.
 struct MissSettings {
-  double range = 1000;                ///< distance of the points along the beam [m]
-  std::uint16_t classification = 64;  ///< class of the points. Source of the default: LAS 1.4 R15, table 17, first class of a user
-  ObjectId object = 0;                ///< object number of the points
+  double range = 1000;  ///< distance of the points along the beam [m]
+  std::uint16_t classification =
+      64;               ///< class of the points. Source of the default: LAS 1.4 R15, table 17, first class of a user
+  ObjectId object = 0;  ///< object number of the points
 
   void validate() const { require_within("MissSettings::range", range, 0, 1e9, "m"); }
 };
 
-/// Adds a point to each pulse of a batch that was sent and has no echo: at a set range along the beam, with amplitude and reflectance 0 and
-/// a class of its own, as return 1 of 1. Such a shot keeps its fate, which is not `Fate::returned`; shots with echoes, waveforms and
-/// recorded subrays stay as they are.
+/// Adds a point to each pulse of a batch that was sent and has no echo: at a set range along the beam, with amplitude
+/// and reflectance 0 and a class of its own, as return 1 of 1. Such a shot keeps its fate, which is not
+/// `Fate::returned`; shots with echoes, waveforms and recorded subrays stay as they are.
 class MissPoints {
  public:
   /// @throws SettingError for settings out of range
@@ -49,7 +50,8 @@ class MissPoints {
       shot.first_echo = static_cast<std::uint32_t>(echoes_.size());
       echoes_.insert(echoes_.end(), own.begin(), own.end());
       if (!own.empty()) continue;
-      echoes_.push_back({.range = settings_.range, .object = settings_.object, .classification = settings_.classification});
+      echoes_.push_back(
+          {.range = settings_.range, .object = settings_.object, .classification = settings_.classification});
       shot.echoes = 1;
     }
     EchoBatch all = batch;
@@ -70,13 +72,15 @@ concept ClosableSink = requires(S& sink) {
   sink.close();
 };
 
-/// Sink around another, which gets a point for each pulse without echoes, too: see `MissPoints`. `Sink` may be a reference.
+/// Sink around another, which gets a point for each pulse without echoes, too: see `MissPoints`. `Sink` may be a
+/// reference.
 template <class Sink>
 requires EchoSink<std::remove_reference_t<Sink>>
 class WithMisses {
  public:
   /// @throws SettingError for settings out of range
-  explicit WithMisses(Sink sink, const MissSettings& settings = {}) : sink_(std::forward<Sink>(sink)), points_(settings) {}
+  explicit WithMisses(Sink sink, const MissSettings& settings = {})
+      : sink_(std::forward<Sink>(sink)), points_(settings) {}
 
   void operator()(const EchoBatch& batch) { sink_(points_(batch)); }
 
@@ -100,18 +104,20 @@ WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
 
 /// Name of a fate.
 [[nodiscard]] constexpr std::string_view name_of(Fate fate) noexcept {
-  constexpr std::array<std::string_view, fate_count> names{"returned", "blocked", "missed", "out_of_range", "below_threshold", "absorbed"};
+  constexpr std::array<std::string_view, fate_count> names{"returned",     "blocked",         "missed",
+                                                           "out_of_range", "below_threshold", "absorbed"};
   return names[static_cast<std::size_t>(fate)];
 }
 
-/// Writes the pulses that were sent and gave no echo as text, one a line, in these columns, separated by blanks, without a header line:
+/// Writes the pulses that were sent and gave no echo as text, one a line, in these columns, separated by blanks,
+/// without a header line:
 ///
 ///     pulseIndex time ox oy oz dx dy dz fate leg deviceIndex
 ///
-/// pulseIndex: slot, the fullwaveIndex of points and waveforms; time: departure [s], 9 decimals; ox, oy, oz: origin [m], 4 decimals; dx,
-/// dy, dz: unit direction, 9 decimals; fate: `missed`, `out_of_range`, `below_threshold` or `absorbed`, see `Fate`; leg and deviceIndex
-/// (emitter), from 0. Pulses blocked by the optic were never sent, and have no line.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// pulseIndex: slot, the fullwaveIndex of points and waveforms; time: departure [s], 9 decimals; ox, oy, oz: origin
+/// [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; fate: `missed`, `out_of_range`, `below_threshold` or
+/// `absorbed`, see `Fate`; leg and deviceIndex (emitter), from 0. Pulses blocked by the optic were never sent, and have
+/// no line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class MissTextWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

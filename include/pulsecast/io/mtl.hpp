@@ -19,16 +19,18 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Content of MTL files.
 struct MaterialLibrary {
-  std::map<std::string, Material, std::less<>> materials;           ///< materials by name
-  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< pictures of those that have some, not read: see `add_pictures`
-  std::vector<std::string> warnings;                                ///< oddities that could still be read
+  std::map<std::string, Material, std::less<>> materials;  ///< materials by name
+  std::map<std::string, MaterialPictures, std::less<>>
+      pictures{};                     ///< pictures of those that have some, not read: see `add_pictures`
+  std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is `helios_reflectance`, a
-/// fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and `helios_classification` count, too. Of light that
-/// goes on tell `illum`, `Ni`, `Tf`, `Pm` and keys of this library, see docs/surveys.md; of pictures `map_Kd` (colour of points), `map_d`
-/// (outline) and `pulsecast_reflectanceMap`, without their options. Other keys are ignored. The first of equal names counts. Keys before
-/// the first name describe the material "default". Throws a `FileError` with path and line at the first error.
+/// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is
+/// `helios_reflectance`, a fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and
+/// `helios_classification` count, too. Of light that goes on tell `illum`, `Ni`, `Tf`, `Pm` and keys of this library,
+/// see docs/surveys.md; of pictures `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`,
+/// without their options. Other keys are ignored. The first of equal names counts. Keys before the first name describe
+/// the material "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
 /// Surface without a description. It scatters alike in all directions, as in HELIOS++, which defined the extra keys.

@@ -27,7 +27,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of an NPZ file.
 struct NpzSettings {
   PointLayout layout = layouts::map();  ///< arrays: one a field, by its name
-  PointSettings points{};               ///< values of the arrays; set the origin for large coordinates in single precision
+  PointSettings points{};  ///< values of the arrays; set the origin for large coordinates in single precision
 
   void validate() const {
     layout.validate();
@@ -45,7 +45,8 @@ class StoredZip {
     if (!archive_ || !entry_) throw std::bad_alloc();
     check(archive_write_set_format_zip(archive_.get()));
     check(archive_write_zip_set_compression_store(archive_.get()));
-    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // unbuffered: the file has a buffer, and a last block is not padded
+    check(archive_write_set_bytes_per_block(archive_.get(),
+                                            0));  // unbuffered: the file has a buffer, and a last block is not padded
     check(archive_write_open(archive_.get(), this, nullptr, write_some, nullptr));
   }
   StoredZip(const StoredZip&) = delete;
@@ -98,8 +99,9 @@ class StoredZip {
     if (error_) std::rethrow_exception(error_);
     const char* const reason = archive_error_string(archive_.get());
     file_.discard();
-    throw FileError(file_.path().string(), "",
-                    pulsecast::detail::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
+    throw FileError(
+        file_.path().string(), "",
+        pulsecast::detail::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
   }
 
   OutputFile& file_;
@@ -108,11 +110,13 @@ class StoredZip {
   std::unique_ptr<archive_entry, Free> entry_;
 };
 
-/// Header of an array of one dimension. Source: NumPy, numpy.lib.format, version 1.0: a length of 16 bits, padded to 64 bytes in all.
+/// Header of an array of one dimension. Source: NumPy, numpy.lib.format, version 1.0: a length of 16 bits, padded to 64
+/// bytes in all.
 [[nodiscard]] inline std::string npy_header(FieldType type, std::uint64_t count) {
   constexpr std::array<std::string_view, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
-  std::string text = pulsecast::detail::joined(
-      {"{'descr': '", types[static_cast<std::size_t>(type)], "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
+  std::string text =
+      pulsecast::detail::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
+                                 "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
   constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
   text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
   text.back() = '\n';
@@ -122,11 +126,10 @@ class StoredZip {
 
 }  // namespace detail
 
-/// Writes points as NPZ for NumPy: for each field of the layout an array of one dimension, `name.npy`, in a zip file without compression.
-/// Equal points give equal bytes. Source: NumPy, numpy.savez and numpy.lib.format.
-/// Columns are held in memory until `close()`, up to twice the size of the points.
-/// Times since a scan's start count from tick 0, except of scans that `add` appends.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Writes points as NPZ for NumPy: for each field of the layout an array of one dimension, `name.npy`, in a zip file
+/// without compression. Equal points give equal bytes. Source: NumPy, numpy.savez and numpy.lib.format. Columns are
+/// held in memory until `close()`, up to twice the size of the points. Times since a scan's start count from tick 0,
+/// except of scans that `add` appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 /// Limits: where memory runs out in `close()`, libarchive ends the process with status 1, and `NAME.part` stays.
 class NpzWriter {
  public:

@@ -35,7 +35,8 @@ struct OusterFormat {
     require_within("SpinningSensor::start", sensor.start, pi - 1e-9, pi + 1e-9, "rad");  // encoder 0
     const double columns = sensor.sequence_rate / sensor.turns_per_second;
     const bool is_mode = columns == 512 || columns == 1024 || columns == 2048;
-    if (!is_mode) throw SettingError("SpinningSensor::sequence_rate (sequences a turn)", columns, "", "512, 1024 or 2048");
+    if (!is_mode)
+      throw SettingError("SpinningSensor::sequence_rate (sequences a turn)", columns, "", "512, 1024 or 2048");
   }
 
   [[nodiscard]] static std::size_t size(const PacketSource& source) noexcept {
@@ -90,8 +91,12 @@ struct OusterFormat {
   }
 
  private:
-  [[nodiscard]] static std::size_t column_header(const PacketSource& source) noexcept { return source.is_dual() ? 12 : 16; }
-  [[nodiscard]] static std::size_t pixel_size(const PacketSource& source) noexcept { return source.is_dual() ? 16 : 12; }
+  [[nodiscard]] static std::size_t column_header(const PacketSource& source) noexcept {
+    return source.is_dual() ? 12 : 16;
+  }
+  [[nodiscard]] static std::size_t pixel_size(const PacketSource& source) noexcept {
+    return source.is_dual() ? 16 : 12;
+  }
   [[nodiscard]] static std::size_t column_size(const PacketSource& source) noexcept {
     return column_header(source) + lasers * pixel_size(source) + (source.is_dual() ? 0 : 4);
   }
@@ -119,10 +124,11 @@ struct OusterFormat {
 
 }  // namespace detail
 
-/// Sink that writes the echoes of an OS1-64 as its lidar packets: `OusterPackets packets(ouster_os1_64(), {}, std::ref(file))`. Single
-/// returns are of the profile LEGACY, of 12608 bytes; dual ones of RNG19_RFL8_SIG16_NIR16_DUAL, of 16640 bytes, the strongest first. After
-/// construction, it allocates nothing. All columns are valid; the near infrared is 0. Ranges are as the manual has them, where (r - n)
-/// is the way from the lens at the radius n to the point; beyond what their bits hold, they are 0, as without a return.
+/// Sink that writes the echoes of an OS1-64 as its lidar packets: `OusterPackets packets(ouster_os1_64(), {},
+/// std::ref(file))`. Single returns are of the profile LEGACY, of 12608 bytes; dual ones of
+/// RNG19_RFL8_SIG16_NIR16_DUAL, of 16640 bytes, the strongest first. After construction, it allocates nothing. All
+/// columns are valid; the near infrared is 0. Ranges are as the manual has them, where (r - n) is the way from the lens
+/// at the radius n to the point; beyond what their bits hold, they are 0, as without a return.
 using OusterPackets = detail::PacketStream<detail::OusterFormat>;
 static_assert(EchoSink<OusterPackets> && ChoosesShots<OusterPackets>);
 

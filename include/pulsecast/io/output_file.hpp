@@ -27,7 +27,8 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file system has no locks.
+/// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file
+/// system has no locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno != EWOULDBLOCK;
@@ -38,13 +39,15 @@ namespace PULSECAST_NAMESPACE::io {
 [[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
   struct stat open {};
   struct stat named {};
-  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
+         open.st_ino == named.st_ino;
 }
 
 /// Flushes an open file to its disk; true where there is nothing to flush, or no disk.
 [[nodiscard]] inline bool sync_to_disk(int file) noexcept {
   struct stat status {};
-  return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
+  return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL ||
+         errno == EROFS;
 }
 
 /// Encoder of the bytes of a file before they are written, as a compressor.
@@ -55,27 +58,29 @@ class OutputEncoder {
   virtual void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) = 0;
 };
 
-/// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete. Until then, or if the
-/// program is killed, the final name keeps its former content. Destruction without `commit()` leaves nothing behind.
-/// Throws a `FileError` that names the final path at every failure; after one to write, nothing can be written or committed.
-/// With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again or overwritten.
-/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On a file system without
-/// locks, the second takes the name, and the first fails at its commit.
-/// The content is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name.
-/// Limits: a power cut may lose the name until the folder itself is written to the disk.
+/// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete.
+/// Until then, or if the program is killed, the final name keeps its former content. Destruction without `commit()`
+/// leaves nothing behind. Throws a `FileError` that names the final path at every failure; after one to write, nothing
+/// can be written or committed. With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again
+/// or overwritten. The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On
+/// a file system without locks, the second takes the name, and the first fails at its commit. The content is on the
+/// disk before the renaming, so that a power cut leaves no incomplete file under the final name. Limits: a power cut
+/// may lose the name until the folder itself is written to the disk.
 class OutputFile {
  public:
   /// Opens and locks the temporary file of `path`; with an `encoder`, bytes pass through it.
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
       : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
+    if (std::filesystem::is_directory(path_, ignored))
+      throw FileError(path_.string(), "", "is a folder; expected the name of a file");
     buffer_.reserve(capacity);
     file_ = Temporary(temporary_name(path_));
     open_alone();
   }
 
-  /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for messages.
+  /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for
+  /// messages.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
   /// Appends bytes.
@@ -102,10 +107,12 @@ class OutputFile {
     PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
     require_open();
     flush();
-    while (!bytes.empty()) position += advance(bytes, ::pwrite(file_.number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
+    while (!bytes.empty())
+      position += advance(bytes, ::pwrite(file_.number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
   }
 
-  /// Reads bytes written before, from `position` [byte] on; on several threads while none writes. It needs no name, see `forget_name`.
+  /// Reads bytes written before, from `position` [byte] on; on several threads while none writes. It needs no name, see
+  /// `forget_name`.
   void read(std::uint64_t position, std::span<std::byte> bytes) const {
     PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
     require_open();
@@ -122,7 +129,8 @@ class OutputFile {
     if (!bytes.empty()) std::memcpy(bytes.data(), buffer_.data() + (position - passed_on), bytes.size());
   }
 
-  /// Removes the name of the temporary file, which lives on without one: for what this object alone reads again, and never commits.
+  /// Removes the name of the temporary file, which lives on without one: for what this object alone reads again, and
+  /// never commits.
   void forget_name() noexcept { file_.remove(); }
 
   /// Continues behind bytes that others wrote to the temporary file; without an encoder.
@@ -131,11 +139,14 @@ class OutputFile {
     require_open();
     flush();
     position_ = position;
-    if (::lseek(file_.number, static_cast<off_t>(position), SEEK_SET) < 0) fail("cannot be written", errno, "a seekable file");
+    if (::lseek(file_.number, static_cast<off_t>(position), SEEK_SET) < 0)
+      fail("cannot be written", errno, "a seekable file");
   }
 
   /// Name until `commit()`.
-  [[nodiscard]] static std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".part"; }
+  [[nodiscard]] static std::filesystem::path temporary_name(const std::filesystem::path& path) {
+    return path.string() + ".part";
+  }
 
   /// Number of bytes written, before any encoding: offset of the next one.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
@@ -150,7 +161,8 @@ class OutputFile {
     flush(true);
     if (!stands_at(file_.number, file_.name)) {
       discard();
-      throw FileError(path_.string(), "", "cannot be completed: another program has replaced " + temporary_name(path_).string());
+      throw FileError(path_.string(), "",
+                      "cannot be completed: another program has replaced " + temporary_name(path_).string());
     }
     errno = 0;
     std::error_code failed;
@@ -199,11 +211,15 @@ class OutputFile {
     }
   };
 
-  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes passed on at a time, so many that the cost of calls is negligible
+  static constexpr std::size_t capacity =
+      std::size_t{1} << 20;  // bytes passed on at a time, so many that the cost of calls is negligible
 
-  [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
+  [[nodiscard]] static std::error_code system_error(int number) {
+    return {number != 0 ? number : EIO, std::generic_category()};
+  }
 
-  /// Opens the temporary file exclusively. Remains of a killed program are removed, not truncated: its processes may still write to them.
+  /// Opens the temporary file exclusively. Remains of a killed program are removed, not truncated: its processes may
+  /// still write to them.
   void open_alone() {
     const char* const name = file_.name.c_str();
     for (int tries = 0; tries < 100; ++tries) {
@@ -221,13 +237,16 @@ class OutputFile {
         if (S_ISREG(status.st_mode)) file_.remove();
       }
       file_.close();  // without its name, which is not ours
-      if (!is_alone) throw FileError(path_.string(), "", pulsecast::detail::joined({"is already being written: ", name, " is locked"}));
+      if (!is_alone)
+        throw FileError(path_.string(), "",
+                        pulsecast::detail::joined({"is already being written: ", name, " is locked"}));
     }
     fail("cannot be created", EEXIST, pulsecast::detail::joined({"no other file ", name}));
   }
 
   [[nodiscard]] FileError error(std::string_view what, int number, std::string_view expected) const {
-    return {path_.string(), "", pulsecast::detail::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
+    return {path_.string(), "",
+            pulsecast::detail::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
   }
   [[noreturn]] void fail(std::string_view what, int number, std::string_view expected) {
     discard();
@@ -235,7 +254,8 @@ class OutputFile {
   }
 
   void require_open() const {
-    if (file_.number < 0) throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
+    if (file_.number < 0)
+      throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
   }
 
   void put(std::span<const std::byte> bytes) {

@@ -25,12 +25,13 @@ struct PcapSettings {
 
 namespace detail {
 
-/// Frame of a packet in a capture file: its record, and the headers of Ethernet, IPv4 and UDP. Numbers of the network are big-endian.
+/// Frame of a packet in a capture file: its record, and the headers of Ethernet, IPv4 and UDP. Numbers of the network
+/// are big-endian.
 class PacketFrame {
  public:
-  static constexpr std::size_t record = 16;           // header of a record. Source: IETF draft-ietf-opsawg-pcap, 5 [byte]
-  static constexpr std::size_t ethernet = 14;         // source: IEEE 802.3, frame format [byte]
-  static constexpr std::size_t ip = 20, udp = 8;      // source: RFC 791, 3.1; RFC 768 [byte]
+  static constexpr std::size_t record = 16;       // header of a record. Source: IETF draft-ietf-opsawg-pcap, 5 [byte]
+  static constexpr std::size_t ethernet = 14;     // source: IEEE 802.3, frame format [byte]
+  static constexpr std::size_t ip = 20, udp = 8;  // source: RFC 791, 3.1; RFC 768 [byte]
   static constexpr std::size_t payload_max = 65'507;  // by the lengths of IPv4 and UDP [byte]
 
   explicit PacketFrame(const PcapSettings& settings) noexcept {
@@ -86,9 +87,9 @@ class PacketFrame {
 
 }  // namespace detail
 
-/// Writes packets to a capture file of the classic form, as of tcpdump: frames of Ethernet, IPv4 and UDP, each undivided whatever its
-/// length. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-/// Source: IETF draft-ietf-opsawg-pcap, 4 and 5.
+/// Writes packets to a capture file of the classic form, as of tcpdump: frames of Ethernet, IPv4 and UDP, each
+/// undivided whatever its length. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`. Source:
+/// IETF draft-ietf-opsawg-pcap, 4 and 5.
 class PcapWriter {
  public:
   /// Opens the file. @throws FileError
@@ -105,7 +106,8 @@ class PcapWriter {
 
   /// Appends a packet. @throws SettingError for one longer than UDP allows @throws FileError
   void operator()(const SensorPacket& packet) {
-    require_within("SensorPacket::payload (size)", static_cast<double>(packet.payload.size()), 0, detail::PacketFrame::payload_max, "byte");
+    require_within("SensorPacket::payload (size)", static_cast<double>(packet.payload.size()), 0,
+                   detail::PacketFrame::payload_max, "byte");
     file_.write(frame_.before(packet, parts_per_second_));
     file_.write(packet.payload);
   }

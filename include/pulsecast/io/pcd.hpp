@@ -37,10 +37,11 @@ enum class PcdEncoding : std::uint8_t {
 struct PcdSettings {
   PcdEncoding encoding = PcdEncoding::binary;  ///< encoding of the points
   PointLayout layout = layouts::xyzi();        ///< fields, written without gaps
-  PointSettings points{};                      ///< values of the fields; set the origin for large coordinates in single precision
+  PointSettings points{};  ///< values of the fields; set the origin for large coordinates in single precision
 
   void validate() const {
-    require_within("PcdSettings::encoding", static_cast<double>(encoding), 0, static_cast<double>(PcdEncoding::binary_compressed), "");
+    require_within("PcdSettings::encoding", static_cast<double>(encoding), 0,
+                   static_cast<double>(PcdEncoding::binary_compressed), "");
     layout.validate();
     points.validate();
     detail::require_field_names(layout);
@@ -49,13 +50,15 @@ struct PcdSettings {
 
 namespace detail {
 
-/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: at most 104 % of the input; and some bytes that its checks keep free.
+/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: at most 104 % of the input; and some bytes that its checks
+/// keep free.
 [[nodiscard]] constexpr std::uint64_t lzf_room(std::uint64_t size) noexcept { return size + size / 25 + 16; }
 /// Greatest input of LZF: the sizes before and after are 32-bit numbers [byte].
 inline constexpr std::uint64_t lzf_size_max = 4'129'776'230;
 static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max());
 
-/// Bytes compressed by LZF, behind their sizes with and without compression. Source: PCD file format 0.7, binary_compressed.
+/// Bytes compressed by LZF, behind their sizes with and without compression. Source: PCD file format 0.7,
+/// binary_compressed.
 [[nodiscard]] inline std::vector<std::byte> pcd_compressed(std::span<const std::byte> bytes) {
   std::array<std::uint32_t, 2> sizes{0, static_cast<std::uint32_t>(bytes.size())};
   const auto room = static_cast<std::uint32_t>(lzf_room(bytes.size()));
@@ -68,12 +71,12 @@ static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max(
 
 }  // namespace detail
 
-/// Writes points as PCD, the format of PCL, as an unorganized cloud without a viewpoint. Source: PCL, PCD file format 0.7.
-/// Streams, unless compressed: memory does not grow with the number of points. Compressed files take up to four times the memory of their
-/// points until `close()`, and are limited to 4.1 GB before compression; more is a `FileError`.
-/// Default coordinates are in single precision: set `PointSettings::origin` for large ones.
-/// Times since a scan's start count from tick 0, except of scans that `add` appends.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Writes points as PCD, the format of PCL, as an unorganized cloud without a viewpoint. Source: PCL, PCD file format
+/// 0.7. Streams, unless compressed: memory does not grow with the number of points. Compressed files take up to four
+/// times the memory of their points until `close()`, and are limited to 4.1 GB before compression; more is a
+/// `FileError`. Default coordinates are in single precision: set `PointSettings::origin` for large ones. Times since a
+/// scan's start count from tick 0, except of scans that `add` appends. Only `close()` completes the file: see
+/// `OutputFile`. Throws a `FileError`.
 class PcdWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -88,7 +91,8 @@ class PcdWriter {
   void operator()(const EchoBatch& batch) { write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws FileError
+  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws
+  /// FileError
   void add(const PointBuffer& points) { write(points_.of(points)); }
 
   /// Compresses the points if so set, completes the header, and gives the file its name. Throws a `FileError`.
@@ -96,7 +100,8 @@ class PcdWriter {
     if (encoding_ == PcdEncoding::binary_compressed) {
       std::vector<std::byte> bytes;
       bytes.reserve(count_ * points_.layout().size);
-      for (const std::vector<std::byte>& column : columns_.all()) bytes.insert(bytes.end(), column.begin(), column.end());
+      for (const std::vector<std::byte>& column : columns_.all())
+        bytes.insert(bytes.end(), column.begin(), column.end());
       file_.write(detail::pcd_compressed(bytes));
     }
     const std::string head = header();
@@ -121,7 +126,8 @@ class PcdWriter {
   void write_rows(std::span<const std::byte> records) {
     for (; !records.empty(); records = records.subspan(points_.layout().size)) {
       for (const PointField& field : points_.layout().fields)
-        detail::visit_field_type(field.type, [&]<class Number>() { add_number<Number>(records.data() + field.offset); });
+        detail::visit_field_type(field.type,
+                                 [&]<class Number>() { add_number<Number>(records.data() + field.offset); });
       file_.write(row_.end());
     }
   }
@@ -135,7 +141,8 @@ class PcdWriter {
       row_.add(std::string_view("nan"));
     } else {
       std::array<char, 32> digits;
-      row_.add(std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
+      row_.add(
+          std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
     }
   }
 
@@ -158,10 +165,10 @@ class PcdWriter {
       counts.append(" 1");
     }
     const detail::CountText points(count_);
-    return pulsecast::detail::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks, "\nVERSION 0.7\nFIELDS",
-                                      names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT", counts, "\nWIDTH ", points.digits,
-                                      "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ", points.digits, "\nDATA ",
-                                      encodings[static_cast<std::size_t>(encoding_)], "\n"});
+    return pulsecast::detail::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks,
+                                      "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT",
+                                      counts, "\nWIDTH ", points.digits, "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ",
+                                      points.digits, "\nDATA ", encodings[static_cast<std::size_t>(encoding_)], "\n"});
   }
 
   detail::PackedPoints points_;

@@ -20,16 +20,18 @@ namespace PULSECAST_NAMESPACE::io {
 /// How pictures are read.
 struct PictureSettings {
   std::size_t max_pixels = std::size_t{1} << 26;  ///< greatest number of pixels
-  /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For files that are not trusted.
+  /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For files that are
+  /// not trusted.
   bool isolated = false;
 };
 
-/// Reads a picture, of 16 bits a channel the upper eight. Throws a `FileError` for one that is missing, damaged, or too large.
+/// Reads a picture, of 16 bits a channel the upper eight. Throws a `FileError` for one that is missing, damaged, or too
+/// large.
 [[nodiscard]] Image read_picture(const PictureSource& source, const PictureSettings& settings = {});
 
-/// Reads the pictures of the materials of a mesh, each once: colours and reflectances into the materials, outlines into the masks of the
-/// mesh. A picture that cannot be read, or a mesh without texture coordinates, is a warning, and the picture is left out. Without an
-/// outline the surface is solid.
+/// Reads the pictures of the materials of a mesh, each once: colours and reflectances into the materials, outlines into
+/// the masks of the mesh. A picture that cannot be read, or a mesh without texture coordinates, is a warning, and the
+/// picture is left out. Without an outline the surface is solid.
 void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<const MaterialPictures> pictures,
                   std::vector<std::string>& warnings, const PictureSettings& settings = {});
 

@@ -20,7 +20,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of a PLY file.
 struct PlySettings {
   PointLayout layout = layouts::map();  ///< properties of a vertex, written without gaps
-  PointSettings points{};               ///< values of the properties; set the origin for large coordinates in single precision
+  PointSettings points{};  ///< values of the properties; set the origin for large coordinates in single precision
 
   void validate() const {
     layout.validate();
@@ -31,8 +31,8 @@ struct PlySettings {
 
 /// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout.
 /// Source: Turk 1994, The PLY Polygon File Format. Streams: memory does not grow with the number of points.
-/// Readers know coordinates by the names x, y and z, and many keep them in single precision only: set `PointSettings::origin` for those.
-/// Times since a scan's start count from tick 0, except of scans that `add` appends.
+/// Readers know coordinates by the names x, y and z, and many keep them in single precision only: set
+/// `PointSettings::origin` for those. Times since a scan's start count from tick 0, except of scans that `add` appends.
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PlyWriter {
  public:
@@ -46,7 +46,8 @@ class PlyWriter {
   void operator()(const EchoBatch& batch) { file_.write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws FileError
+  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws
+  /// FileError
   void add(const PointBuffer& points) { file_.write(points_.of(points)); }
 
   /// Completes the header, and gives the file its name. Throws a `FileError`.
@@ -59,12 +60,17 @@ class PlyWriter {
  private:
   /// Header for a number of points, of equal length for all.
   [[nodiscard]] std::string header(std::uint64_t count) const {
-    constexpr std::array<std::string_view, 9> types{"", "char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
+    constexpr std::array<std::string_view, 9> types{"",    "char", "uchar", "short", "ushort",
+                                                    "int", "uint", "float", "double"};
     const detail::CountText points(count);
-    std::string text =
-        "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + points.blanks + "\nelement vertex " + points.digits + '\n';
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + points.blanks +
+                       "\nelement vertex " + points.digits + '\n';
     for (const PointField& field : points_.layout().fields)
-      text.append("property ").append(types[static_cast<std::size_t>(field.type)]).append(" ").append(field.name).append("\n");
+      text.append("property ")
+          .append(types[static_cast<std::size_t>(field.type)])
+          .append(" ")
+          .append(field.name)
+          .append("\n");
     return text + "end_header\n";
   }
 

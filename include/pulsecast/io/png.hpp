@@ -31,8 +31,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution, for smooth edges.
-/// `ground` is seen where there is no point; its values are shades of grey.
+/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution,
+/// for smooth edges. `ground` is seen where there is no point; its values are shades of grey.
 class Canvas {
  public:
   Canvas(const ImageSettings& s, std::span<const ImagePoint> points, std::span<const ImagePoint> ground)
@@ -89,12 +89,14 @@ class Canvas {
     for (const ImagePoint& point : all) {
       const Vec3 p = camera_.pixel(point);
       if (!(p.x >= 0 && p.x < settings_.width && p.y >= 0 && p.y < settings_.height)) continue;
-      const std::size_t i = static_cast<std::size_t>(p.y / cell) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(p.x / cell);
+      const std::size_t i = static_cast<std::size_t>(p.y / cell) * static_cast<std::size_t>(columns) +
+                            static_cast<std::size_t>(p.x / cell);
       cells += !taken[i];
       taken[i] = true;
       ++points;
     }
-    const double spacing = cell * std::sqrt(static_cast<double>(cells) / static_cast<double>(std::max<std::size_t>(points, 1)));
+    const double spacing =
+        cell * std::sqrt(static_cast<double>(cells) / static_cast<double>(std::max<std::size_t>(points, 1)));
     return std::clamp(2.2 * spacing, 1.2, 8.0);  // by eye
   }
 
@@ -109,7 +111,9 @@ class Canvas {
     if (!(p.x > -max_disc && p.x < width_ + max_disc && p.y > -max_disc && p.y < height_ + max_disc)) return;
     const double radius = std::clamp(diameter * camera_.magnification(p.z), 0.75, max_disc);
     const auto first = [](double low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5))); };
-    const auto last = [](double high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5))); };
+    const auto last = [](double high, int size) {
+      return std::min(size - 1, static_cast<int>(std::floor(high - 0.5)));
+    };
     const float depth = static_cast<float>(p.z);
     for (int y = first(p.y - radius); y <= last(p.y + radius, height_); ++y)
       for (int x = first(p.x - radius); x <= last(p.x + radius, width_); ++x) {
@@ -169,7 +173,8 @@ class Canvas {
           colours.push_back(from_srgb(of_class(static_cast<std::uint16_t>(p.value))));
           break;
         case ColourBy::return_number:
-          colours.push_back(from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
+          colours.push_back(
+              from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
           break;
         case ColourBy::kind:
           colours.push_back(from_srgb(kind_colours[static_cast<std::size_t>(p.value)]));
@@ -188,8 +193,8 @@ class Canvas {
 
 }  // namespace detail
 
-/// Sink that draws a preview of the cloud as a PNG, with automatic framing and a bounded number of points. The picture depends on the
-/// echoes and the settings only. Points that are not finite are skipped; without points it is empty.
+/// Sink that draws a preview of the cloud as a PNG, with automatic framing and a bounded number of points. The picture
+/// depends on the echoes and the settings only. Points that are not finite are skipped; without points it is empty.
 class ImageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -208,16 +213,19 @@ class ImageWriter {
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`: some million places, between pixels too; none
-  /// beside a pixel of shade 0. Without points it frames the picture.
+  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`: some million places, between
+  /// pixels too; none beside a pixel of shade 0. Without points it frames the picture.
   /// @throws SettingError as `Raster::validate` and `Similarity::validate`, or for another number of shades
   void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Similarity& placement = {}) {
     raster.validate();
     placement.validate();
     const auto pixels = static_cast<double>(raster.pixels());
-    require_within("ImageWriter::add_ground (number of shades)", static_cast<double>(shades.size()), pixels, pixels, "");
+    require_within("ImageWriter::add_ground (number of shades)", static_cast<double>(shades.size()), pixels, pixels,
+                   "");
     const double density = std::sqrt(1e6 / pixels);  // places by pixel, along a row or column
-    const auto places = [&](std::uint32_t count) { return static_cast<std::uint32_t>(std::ceil((count - 1) * density)) + 1; };
+    const auto places = [&](std::uint32_t count) {
+      return static_cast<std::uint32_t>(std::ceil((count - 1) * density)) + 1;
+    };
     const std::uint32_t columns = places(raster.columns), rows = places(raster.rows);
     raster.read([&](const auto& heights) {
       for (std::uint32_t row = 0; row < rows; ++row)
@@ -235,9 +243,11 @@ class ImageWriter {
     std::vector<std::byte> png;
     const auto append = [](void* to, void* data, int size) {
       const auto* bytes = static_cast<const std::byte*>(data);
-      static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), bytes, bytes + size);
+      static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), bytes,
+                                                       bytes + size);
     };
-    if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(), 3 * settings_.width) == 0)
+    if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(),
+                               3 * settings_.width) == 0)
       throw FileError(file_.path().string(), "", "the picture cannot be compressed: expected enough memory");
     file_.write(png);
     file_.commit();
@@ -252,8 +262,8 @@ class ImageWriter {
 
   /// Adds a place of a raster, in columns and rows from its first pixel.
   template <class Heights>
-  void add_ground(const pulsecast::detail::RasterGrid& grid, const Heights& heights, std::span<const std::uint8_t> shades,
-                  const Similarity& placement, double column, double row) {
+  void add_ground(const pulsecast::detail::RasterGrid& grid, const Heights& heights,
+                  std::span<const std::uint8_t> shades, const Similarity& placement, double column, double row) {
     const auto c = std::min(static_cast<std::uint32_t>(column), grid.columns - 2),
                r = std::min(static_cast<std::uint32_t>(row), grid.rows - 2);
     double height = 0, shade = 0;
@@ -265,7 +275,8 @@ class ImageWriter {
         height += weight * static_cast<double>(heights[i]);
         shade += weight * shades[i];
       }
-    const Vec3 point = placement.point({grid.first.x + column * grid.pixel.x, grid.first.y - row * grid.pixel.y, height});
+    const Vec3 point =
+        placement.point({grid.first.x + column * grid.pixel.x, grid.first.y - row * grid.pixel.y, height});
     if (!finite(point)) return;
     ground_.push_back(image_point(point, static_cast<float>(std::lround(shade))));
     if (ground_.size() >= settings_.points_max) drop_every_other(ground_);

@@ -39,14 +39,16 @@ struct PointCloudSettings {
   VoxelNormals normals = VoxelNormals::none;          ///< source of the normals
   std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels without a normal, of any length but 0
   bool colours = false;                               ///< true to give voxels colours
-  std::optional<double> colour_max = std::nullopt;    ///< maximum of a colour channel; by default 65535 in LAS and 255 in text
-  PointColumns columns = {};                          ///< columns of text files
+  std::optional<double> colour_max =
+      std::nullopt;           ///< maximum of a colour channel; by default 65535 in LAS and 255 in text
+  PointColumns columns = {};  ///< columns of text files
 
   void validate() const {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
     require_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
     if (default_normal && !(max_norm(*default_normal) >= 1e-100 && max_norm(*default_normal) <= 1e100))
-      throw SettingError("PointCloudSettings::default_normal length", length(*default_normal), "", "from 1e-100 to 1e100");
+      throw SettingError("PointCloudSettings::default_normal length", length(*default_normal), "",
+                         "from 1e-100 to 1e100");
     if (colour_max) require_positive("PointCloudSettings::colour_max", *colour_max, "");
     columns.validate();
   }
@@ -54,22 +56,26 @@ struct PointCloudSettings {
 
 /// Voxels occupied by the points of a cloud.
 struct PointCloud {
-  VoxelData voxels;                             ///< with normals, if requested and available
-  std::vector<std::array<float, 3>> colours{};  ///< red, green and blue from 0 to 1 for each voxel, as root mean square; or none
-  std::uint64_t points = 0;                     ///< number of points read
-  std::vector<std::string> warnings{};          ///< oddities that could still be read
+  VoxelData voxels;  ///< with normals, if requested and available
+  std::vector<std::array<float, 3>>
+      colours{};             ///< red, green and blue from 0 to 1 for each voxel, as root mean square; or none
+  std::uint64_t points = 0;  ///< number of points read
+  std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
-/// Reads point clouds, text (see `TextPoints`) or LAS (see `LasPoints`) as detected, into one grid of voxels. Every file is read twice,
-/// first for the extent, then for the voxels: memory depends on the voxels, not on the points.
+/// Reads point clouds, text (see `TextPoints`) or LAS (see `LasPoints`) as detected, into one grid of voxels. Every
+/// file is read twice, first for the extent, then for the voxels: memory depends on the voxels, not on the points.
 ///
-/// A voxel includes its lower faces and excludes its upper ones; with `at_cloud`, the last voxel includes its upper faces, too. Plane fits
-/// need at least three points not on one line. A voxel without a normal gets the default, or zero with a warning. Colours above the maximum
-/// are an error. Throws a `FileError` with path and line or byte at the first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
-[[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings = {});
+/// A voxel includes its lower faces and excludes its upper ones; with `at_cloud`, the last voxel includes its upper
+/// faces, too. Plane fits need at least three points not on one line. A voxel without a normal gets the default, or
+/// zero with a warning. Colours above the maximum are an error. Throws a `FileError` with path and line or byte at the
+/// first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
+[[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths,
+                                          const PointCloudSettings& settings = {});
 
 /// Reads a single point cloud.
-[[nodiscard]] inline PointCloud read_point_cloud(const std::filesystem::path& path, const PointCloudSettings& settings = {}) {
+[[nodiscard]] inline PointCloud read_point_cloud(const std::filesystem::path& path,
+                                                 const PointCloudSettings& settings = {}) {
   return read_point_cloud(std::vector{path}, settings);
 }
 

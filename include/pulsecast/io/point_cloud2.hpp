@@ -20,12 +20,13 @@
 #include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/io/point_records.hpp>
 
-/// Scans as ROS 2 messages, without ROS. Recording of a survey, 10 scans a second, with `io/mcap` and `io/scan_splitter`:
+/// Scans as ROS 2 messages, without ROS. Recording of a survey, 10 scans a second, with `io/mcap` and
+/// `io/scan_splitter`:
 ///
 ///     McapWriter bag("scans.mcap");
-///     const auto points = bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type, .schema = point_cloud2_definition});
-///     std::vector<std::byte> message;
-///     ScanSplitter scans(PointBuffer(layouts::velodyne(), settings), 10, [&](const PointBuffer& scan) {
+///     const auto points = bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type, .schema =
+///     point_cloud2_definition}); std::vector<std::byte> message; ScanSplitter scans(PointBuffer(layouts::velodyne(),
+///     settings), 10, [&](const PointBuffer& scan) {
 ///       serialize_point_cloud2(scan, "lidar", message);
 ///       bag.write(points, stamp_ns(scan), stamp_ns(scan), message);
 ///     });
@@ -37,8 +38,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// Name of the message type.
 inline constexpr const char* point_cloud2_type = "sensor_msgs/msg/PointCloud2";
 
-/// Definition of the message type and of those that it consists of, in the encoding "ros2msg". Source: fields of the ROS 2 packages
-/// sensor_msgs, std_msgs and builtin_interfaces; MCAP format registry, ros2msg.
+/// Definition of the message type and of those that it consists of, in the encoding "ros2msg". Source: fields of the
+/// ROS 2 packages sensor_msgs, std_msgs and builtin_interfaces; MCAP format registry, ros2msg.
 inline constexpr const char* point_cloud2_definition = R"(std_msgs/Header header
 uint32 height
 uint32 width
@@ -68,7 +69,8 @@ uint32 count
 /// @throws SettingError for a time that ROS does not hold: before 0 s or after 2^31 - 1 s
 [[nodiscard]] inline std::uint64_t stamp_ns(const PointBuffer& scan) {
   const double clock = scan.settings().start_time, max_seconds = 2'147'483'647;
-  require_within("PointSettings::start_time + PointBuffer::scan_start", clock + scan.scan_start().seconds(), 0, max_seconds, "s");
+  require_within("PointSettings::start_time + PointBuffer::scan_start", clock + scan.scan_start().seconds(), 0,
+                 max_seconds, "s");
   const Tick stamp = Tick::of_seconds(clock) + scan.scan_start();
   return static_cast<std::uint64_t>(stamp.second * 1'000'000'000 + std::llround(stamp.fraction * 1e9));
 }
@@ -86,23 +88,25 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
   return static_cast<std::uint32_t>(bytes);
 }
 
-/// Length of a message up to its data, without the encapsulation header [byte]. A number is aligned to its size; a string is its length,
-/// and its bytes with a zero behind them. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
+/// Length of a message up to its data, without the encapsulation header [byte]. A number is aligned to its size; a
+/// string is its length, and its bytes with a zero behind them. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
 [[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, const std::string& frame_id) noexcept {
   const auto aligned = [](std::size_t at) { return (at + 3) / 4 * 4; };
   const auto with_string = [&](std::size_t at, const std::string& text) { return aligned(at) + 4 + text.size() + 1; };
   std::size_t size = aligned(with_string(8, frame_id)) + 12;  // height, width, fields
-  for (const PointField& field : layout.fields) size = aligned(aligned(with_string(size, field.name)) + 4 + 1) + 4;  // offset, type, count
-  return aligned(size + 1) + 12;                                                                                     // steps, data
+  for (const PointField& field : layout.fields)
+    size = aligned(aligned(with_string(size, field.name)) + 4 + 1) + 4;  // offset, type, count
+  return aligned(size + 1) + 12;                                         // steps, data
 }
 
 }  // namespace detail
 
-/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`, in place of its former content: little-endian CDR behind an
-/// encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by `stamp_ns`. Once `message` has grown to the longest
-/// scan, it allocates nothing.
+/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`, in place of its former content:
+/// little-endian CDR behind an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
+/// `stamp_ns`. Once `message` has grown to the longest scan, it allocates nothing.
 /// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
-inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id, std::vector<std::byte>& message) {
+inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
+                                   std::vector<std::byte>& message) {
   const PointLayout& layout = scan.layout();
   const std::span<const std::byte> records = scan.records();
   const std::uint32_t length = detail::point_cloud2_length(records.size());
@@ -112,10 +116,11 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
   message.assign(detail::cdr_encapsulation.begin(), detail::cdr_encapsulation.end());
   message.reserve(message.size() + head + records.size() + 1);
   message.resize(message.size() + head);  // the padding of numbers is zero
-  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(message.data() + detail::cdr_encapsulation.size()), head);
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(message.data() + detail::cdr_encapsulation.size()),
+                                       head);
   eprosima::fastcdr::Cdr cdr(buffer);
-  cdr << static_cast<std::int32_t>(stamp / nanoseconds_per_second) << static_cast<std::uint32_t>(stamp % nanoseconds_per_second)
-      << frame_id;
+  cdr << static_cast<std::int32_t>(stamp / nanoseconds_per_second)
+      << static_cast<std::uint32_t>(stamp % nanoseconds_per_second) << frame_id;
   cdr << std::uint32_t{1} << static_cast<std::uint32_t>(scan.size());  // height, width
   cdr << static_cast<std::uint32_t>(layout.fields.size());
   for (const PointField& field : layout.fields)

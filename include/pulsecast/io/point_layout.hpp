@@ -12,11 +12,21 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// Layouts of point records: of what fields, of what types, at what offsets. PCD, PLY, NPZ and PointCloud2 are headers for such records.
+/// Layouts of point records: of what fields, of what types, at what offsets. PCD, PLY, NPZ and PointCloud2 are headers
+/// for such records.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Number type of a field. The values are those of the data types of sensor_msgs/PointField.
-enum class FieldType : std::uint8_t { int8 = 1, uint8 = 2, int16 = 3, uint16 = 4, int32 = 5, uint32 = 6, float32 = 7, float64 = 8 };
+enum class FieldType : std::uint8_t {
+  int8 = 1,
+  uint8 = 2,
+  int16 = 3,
+  uint16 = 4,
+  int32 = 5,
+  uint32 = 6,
+  float32 = 7,
+  float64 = 8
+};
 
 /// Size of a number [byte].
 [[nodiscard]] constexpr std::uint32_t size_of(FieldType type) noexcept {
@@ -76,13 +86,13 @@ enum class PointQuantity : std::uint8_t {
   near_infrared,    ///< as `PointColour::near_infrared`, from 0 to 1; NaN if unknown
   packed_rgb,       ///< 65536 red + 256 green + blue, of 8 bits each; NaN if unknown
   packed_rgb_bits,  ///< float32 of the bits of `packed_rgb`, as PCL and ROS have it; 0 if unknown
-  attribute         ///< attribute of the object, by the field's name, as of `PointSettings::attributes`; NaN if it has none
+  attribute  ///< attribute of the object, by the field's name, as of `PointSettings::attributes`; NaN if it has none
 };
 
 /// Field of a point record: a quantity times a scale.
 struct PointField {
-  std::string name{};                            ///< name in the file or message
-  FieldType type = FieldType::float32;           ///< number type; integers are rounded, and limited to the range of their type
+  std::string name{};                   ///< name in the file or message
+  FieldType type = FieldType::float32;  ///< number type; integers are rounded, and limited to the range of their type
   PointQuantity quantity = PointQuantity::none;  ///< quantity
   double scale = 1;                              ///< number in the record per unit of the quantity
   std::uint32_t offset = 0;                      ///< position in the record [byte]
@@ -119,7 +129,8 @@ struct PointLayout {
     require_within("PointLayout::fields (number)", static_cast<double>(fields.size()), 1, 1000, "");
     std::uint32_t end = 0;
     for (const PointField& field : fields) {
-      require_within("PointField::offset of " + field.name, field.offset, end, static_cast<double>(size) - size_of(field.type), "byte");
+      require_within("PointField::offset of " + field.name, field.offset, end,
+                     static_cast<double>(size) - size_of(field.type), "byte");
       require_finite("PointField::scale of " + field.name, field.scale, "");
       end = field.offset + size_of(field.type);
     }
@@ -162,25 +173,29 @@ namespace layouts {
   return PointLayout::packed(xyz_float()).with({{"intensity", FieldType::float32, PointQuantity::reflectivity}});
 }
 
-/// Fields of the ROS driver of Velodyne, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time since the scan's start [s].
+/// Fields of the ROS driver of Velodyne, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time since the
+/// scan's start [s].
 [[nodiscard]] inline PointLayout velodyne() {
-  return xyzi().with({{"ring", FieldType::uint16, PointQuantity::ring}, {"time", FieldType::float32, PointQuantity::time}});
+  return xyzi().with(
+      {{"ring", FieldType::uint16, PointQuantity::ring}, {"time", FieldType::float32, PointQuantity::time}});
 }
 
 /// Fields of the ROS driver of Hesai, 26 bytes. Source: HesaiTechnology/HesaiLidar_ROS_2.0: timestamp by the clock [s].
 [[nodiscard]] inline PointLayout hesai() {
-  return xyzi().with({{"ring", FieldType::uint16, PointQuantity::ring}, {"timestamp", FieldType::float64, PointQuantity::clock}});
+  return xyzi().with(
+      {{"ring", FieldType::uint16, PointQuantity::ring}, {"timestamp", FieldType::float64, PointQuantity::clock}});
 }
 
-/// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns], in double precision.
+/// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns], in
+/// double precision.
 [[nodiscard]] inline PointLayout livox() {
   return xyzi().with({{"tag", FieldType::uint8, PointQuantity::none},
                       {"line", FieldType::uint8, PointQuantity::ring},
                       {"timestamp", FieldType::float64, PointQuantity::clock, 1e9}});
 }
 
-/// Fields of the ROS driver of Ouster, 48 bytes. Source: ouster-lidar/ouster-ros, its default point type: t since the scan's start [ns],
-/// intensity in photons, range [mm], all in the places that a C++ structure aligned to 16 bytes has.
+/// Fields of the ROS driver of Ouster, 48 bytes. Source: ouster-lidar/ouster-ros, its default point type: t since the
+/// scan's start [ns], intensity in photons, range [mm], all in the places that a C++ structure aligned to 16 bytes has.
 [[nodiscard]] inline PointLayout ouster() {
   return {{{"x", FieldType::float32, PointQuantity::x, 1, 0},
            {"y", FieldType::float32, PointQuantity::y, 1, 4},
@@ -194,8 +209,8 @@ namespace layouts {
           48};
 }
 
-/// Fields of Autoware's PointXYZIRCAEDT, 32 bytes. Source: autowarefoundation, data types of point clouds: time_stamp since the scan's
-/// start [ns]; return types are not told.
+/// Fields of Autoware's PointXYZIRCAEDT, 32 bytes. Source: autowarefoundation, data types of point clouds: time_stamp
+/// since the scan's start [ns]; return types are not told.
 [[nodiscard]] inline PointLayout autoware() {
   return PointLayout::packed(xyz_float())
       .with({{"intensity", FieldType::uint8, PointQuantity::reflectivity},
@@ -207,8 +222,8 @@ namespace layouts {
              {"time_stamp", FieldType::uint32, PointQuantity::time, 1e9}});
 }
 
-/// Labels of a point, to go behind another layout's fields: `layouts::velodyne().with(layouts::labels())`. Part, material, normal and
-/// velocity need `PointSettings::surfaces`.
+/// Labels of a point, to go behind another layout's fields: `layouts::velodyne().with(layouts::labels())`. Part,
+/// material, normal and velocity need `PointSettings::surfaces`.
 [[nodiscard]] inline std::vector<PointField> labels() {
   return {{"classification", FieldType::uint16, PointQuantity::classification},
           {"object", FieldType::uint32, PointQuantity::object},
@@ -222,8 +237,8 @@ namespace layouts {
           {"velocity_z", FieldType::float32, PointQuantity::velocity_z}};
 }
 
-/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY know, to go behind another layout's fields. Colours need
-/// `PointSettings::colours`. 0 if unknown, which is black.
+/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY know, to go behind another layout's
+/// fields. Colours need `PointSettings::colours`. 0 if unknown, which is black.
 [[nodiscard]] inline std::vector<PointField> colours() {
   return {{"red", FieldType::uint8, PointQuantity::red, 255},
           {"green", FieldType::uint8, PointQuantity::green, 255},
@@ -240,11 +255,14 @@ namespace layouts {
 
 /// Red, green and blue of a point in one field, as PCL and the viewers of ROS have them.
 /// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
-[[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}}; }
+[[nodiscard]] inline std::vector<PointField> packed_colour() {
+  return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}};
+}
 
-/// Attributes of a point's object, a field each, to go behind another layout's fields: of `ObjectAttributes::names`. NaN where an object
-/// has none, and 0 in integers.
-[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, FieldType type = FieldType::float64) {
+/// Attributes of a point's object, a field each, to go behind another layout's fields: of `ObjectAttributes::names`.
+/// NaN where an object has none, and 0 in integers.
+[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names,
+                                                        FieldType type = FieldType::float64) {
   std::vector<PointField> fields;
   for (const std::string& name : names) fields.push_back({name, type, PointQuantity::attribute});
   return fields;

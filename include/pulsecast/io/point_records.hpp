@@ -49,13 +49,13 @@ struct PointSettings {
   std::function<Pose<frame::Instrument, frame::World>(Tick)> sensor{};
   MotionDistortion distortion = MotionDistortion::kept;  ///< distortion of points in the sensor's frame
   PointAxes axes = PointAxes::right_forward_up;          ///< axes of the coordinates
-  Vec3 origin{};                                         ///< place in the world that has coordinates 0, for points in the world [m]
-  std::vector<std::uint16_t> rings{};                    ///< ring of each channel, as of `SpinningSensor::rings`; empty: the channel
-  double start_time = 0;                                 ///< clock time at tick 0 [s]
-  Laser laser{};                                         ///< laser, for `PointQuantity::photons`
-  SurfaceQuery surfaces{};                               ///< surfaces of echoes, as of `surfaces_of`; empty: they are unknown
-  PointColours colours{};                                ///< colours of echoes, as of `colours_of`; empty: they are unknown
-  ObjectAttributes attributes{};                         ///< attributes of objects, for `PointQuantity::attribute`
+  Vec3 origin{};                       ///< place in the world that has coordinates 0, for points in the world [m]
+  std::vector<std::uint16_t> rings{};  ///< ring of each channel, as of `SpinningSensor::rings`; empty: the channel
+  double start_time = 0;               ///< clock time at tick 0 [s]
+  Laser laser{};                       ///< laser, for `PointQuantity::photons`
+  SurfaceQuery surfaces{};             ///< surfaces of echoes, as of `surfaces_of`; empty: they are unknown
+  PointColours colours{};              ///< colours of echoes, as of `colours_of`; empty: they are unknown
+  ObjectAttributes attributes{};       ///< attributes of objects, for `PointQuantity::attribute`
 
   void validate() const {
     require_finite("PointSettings::origin (length)", length(origin), "m");
@@ -64,8 +64,9 @@ struct PointSettings {
   }
 };
 
-/// Reflectance as instruments tell it in a byte: percents from 0 to 100 for surfaces up to white ones; above, 10 a doubling, up to 255.
-/// Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, for the first part and the limit; makers do not publish the second.
+/// Reflectance as instruments tell it in a byte: percents from 0 to 100 for surfaces up to white ones; above, 10 a
+/// doubling, up to 255. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, for the first part and the limit;
+/// makers do not publish the second.
 [[nodiscard]] inline double reflectivity_byte(double reflectance) noexcept {
   if (!(reflectance > 0)) return 0;
   return std::min(255.0, reflectance <= 1 ? 100 * reflectance : 100 + 10 * std::log2(reflectance));
@@ -152,7 +153,8 @@ class PointEncoder {
   /// Sets the start of the scan, from which its times count. The sensor's pose is asked for it now.
   void begin_scan(Tick start) {
     start_ = start;
-    if (settings_.sensor && settings_.distortion == MotionDistortion::removed) frame_ = settings_.sensor(start).inverse();
+    if (settings_.sensor && settings_.distortion == MotionDistortion::removed)
+      frame_ = settings_.sensor(start).inverse();
   }
 
   /// Appends a record for each echo of the shots of a batch.
@@ -169,7 +171,8 @@ class PointEncoder {
       for (const Echo& echo : batch.echoes_of(shot)) {
         set_echo(echo, values);
         if (places_) set_place(frame.point(point_of(shot, echo)), values);
-        if (surfaces_) set_surface(settings_.surfaces ? settings_.surfaces(batch, shot, echo) : std::nullopt, frame, values);
+        if (surfaces_)
+          set_surface(settings_.surfaces ? settings_.surfaces(batch, shot, echo) : std::nullopt, frame, values);
         if (colours_) set_colour(settings_.colours ? settings_.colours(batch, shot, echo) : std::nullopt, values);
         store(values, records.data() + at);
         if (!attributes_.empty()) store_attributes(settings_.attributes.of(echo.object), records.data() + at);
@@ -179,7 +182,9 @@ class PointEncoder {
   }
 
  private:
-  static double& value(detail::PointValues& values, PointQuantity quantity) noexcept { return values[static_cast<std::size_t>(quantity)]; }
+  static double& value(detail::PointValues& values, PointQuantity quantity) noexcept {
+    return values[static_cast<std::size_t>(quantity)];
+  }
 
   /// Frame of the points of a time.
   [[nodiscard]] Pose<frame::World, frame::Instrument> frame_at(Tick tick) const {
@@ -193,7 +198,8 @@ class PointEncoder {
 
   void set_shot(const Shot& shot, detail::PointValues& values) const noexcept {
     using enum PointQuantity;
-    value(values, time) = static_cast<double>(shot.tick.second - start_.second) + (shot.tick.fraction - start_.fraction);
+    value(values, time) =
+        static_cast<double>(shot.tick.second - start_.second) + (shot.tick.fraction - start_.fraction);
     value(values, clock) = (settings_.start_time + static_cast<double>(shot.tick.second)) + shot.tick.fraction;
     value(values, ring) = shot.channel < settings_.rings.size() ? settings_.rings[shot.channel] : shot.channel;
     value(values, returns) = shot.echoes;
@@ -239,7 +245,9 @@ class PointEncoder {
   static void set_colour(const std::optional<PointColour>& colour, detail::PointValues& values) noexcept {
     using enum PointQuantity;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    const auto share = [&](std::uint16_t PointColour::*channel) { return colour ? (*colour).*channel / 65535.0 : unknown; };
+    const auto share = [&](std::uint16_t PointColour::*channel) {
+      return colour ? (*colour).*channel / 65535.0 : unknown;
+    };
     const auto byte = [&](double of_white) { return static_cast<std::uint32_t>(std::lround(255 * of_white)); };
     const double r = share(&PointColour::red), g = share(&PointColour::green), b = share(&PointColour::blue);
     const std::uint32_t packed = colour ? byte(r) << 16 | byte(g) << 8 | byte(b) : 0;
@@ -261,7 +269,8 @@ class PointEncoder {
   void store(const detail::PointValues& values, std::byte* record) const noexcept {
     for (const PointField& field : layout_.fields) {
       const double number = values[static_cast<std::size_t>(field.quantity)] * field.scale;
-      detail::visit_field_type(field.type, [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
+      detail::visit_field_type(field.type,
+                               [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
     }
   }
 
@@ -273,7 +282,8 @@ class PointEncoder {
       if (field.quantity != PointQuantity::attribute) continue;
       const auto found = std::find(names.begin(), names.end(), field.name);
       if (found == names.end())
-        throw SettingError("PointSettings::attributes (number of names '" + field.name + "')", 0, "", "1: the layout has such a field");
+        throw SettingError("PointSettings::attributes (number of names '" + field.name + "')", 0, "",
+                           "1: the layout has such a field");
       attributes_.emplace_back(k, static_cast<std::size_t>(found - names.begin()));
     }
   }
@@ -282,24 +292,27 @@ class PointEncoder {
     for (const auto& [index, attribute] : attributes_) {
       const PointField& field = layout_.fields[index];
       const double number = of_object[attribute] * field.scale;
-      detail::visit_field_type(field.type, [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
+      detail::visit_field_type(field.type,
+                               [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
     }
   }
 
   PointLayout layout_;
   PointSettings settings_;
-  bool places_ = false, angles_ = false, surfaces_ = false, colours_ = false;  // true if the layout holds such quantities
-  std::vector<std::pair<std::size_t, std::size_t>> attributes_;                // index of a field, and of its attribute
+  bool places_ = false, angles_ = false, surfaces_ = false,
+       colours_ = false;                                         // true if the layout holds such quantities
+  std::vector<std::pair<std::size_t, std::size_t>> attributes_;  // index of a field, and of its attribute
   Tick start_{};
   Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
 };
 
-/// Point records in memory: a sink that keeps them, and gives them to the writers of files and messages. Once it has grown to the longest
-/// scan, it allocates nothing.
+/// Point records in memory: a sink that keeps them, and gives them to the writers of files and messages. Once it has
+/// grown to the longest scan, it allocates nothing.
 class PointBuffer {
  public:
   /// @throws SettingError for a layout or settings out of range
-  explicit PointBuffer(PointLayout layout, PointSettings settings = {}) : encoder_(std::move(layout), std::move(settings)) {}
+  explicit PointBuffer(PointLayout layout, PointSettings settings = {})
+      : encoder_(std::move(layout), std::move(settings)) {}
 
   /// Appends the points of a batch.
   void operator()(const EchoBatch& batch) { encoder_.encode(batch, records_); }

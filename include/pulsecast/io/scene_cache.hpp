@@ -33,21 +33,22 @@
 
 /// Cache of a built scene: one memory-mapped file.
 ///
-/// A cache belongs to one build of the program on one machine: it holds arrays in their memory layout, and records version, shapes and
-/// element types. It is accepted only if complete, by a checksum over all bytes, and made from the present bytes of its sources. The
-/// checksum guards against accidents; forgery is detected as far as a shape has `is_consistent`.
-/// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones intact; but programs that start
-/// at the same time should not make the same cache.
+/// A cache belongs to one build of the program on one machine: it holds arrays in their memory layout, and records
+/// version, shapes and element types. It is accepted only if complete, by a checksum over all bytes, and made from the
+/// present bytes of its sources. The checksum guards against accidents; forgery is detected as far as a shape has
+/// `is_consistent`. Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped
+/// ones intact; but programs that start at the same time should not make the same cache.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading. All its arrays are
-/// `SharedArray`, so that they can stay in the file:
+/// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading.
+/// All its arrays are `SharedArray`, so that they can stay in the file:
 ///
 ///     explicit G(DeserializeTag) {}
 ///     template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }
 ///
-/// Members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects with an `archive` of their own.
-/// Not required: `bool is_consistent() const`, called after the filling: true if all indices in the arrays are in bounds.
+/// Members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects with an `archive`
+/// of their own. Not required: `bool is_consistent() const`, called after the filling: true if all indices in the
+/// arrays are in bounds.
 template <class G>
 concept Archived = Geometry<G> && detail::Restorable<G>;
 
@@ -64,14 +65,16 @@ concept CacheableScene = requires(const S& scene) {
 
 /// Inputs of a scene.
 struct SceneSources {
-  std::vector<std::filesystem::path> files{};  ///< all files that the build reads; a folder counts with all its files and their names
-  std::string settings{};                      ///< all else that the scene depends on, as text
+  std::vector<std::filesystem::path>
+      files{};             ///< all files that the build reads; a folder counts with all its files and their names
+  std::string settings{};  ///< all else that the scene depends on, as text
 };
 
-/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of each, so that files
-/// already read need not be read again. Throws a `FileError` if one cannot be read.
-[[nodiscard]] Fingerprint scene_key(const SceneSources& sources,
-                                    const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint);
+/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of
+/// each, so that files already read need not be read again. Throws a `FileError` if one cannot be read.
+[[nodiscard]] Fingerprint scene_key(
+    const SceneSources& sources,
+    const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint);
 
 /// Writes a cache. Throws a `FileError`.
 template <CacheableScene S>
@@ -86,7 +89,8 @@ struct OpenedScene {
 
 /// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
 template <CacheableScene S, class... Further>
-[[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key, const Further&... further);
+[[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key,
+                                        const Further&... further);
 
 /// Scene and its origin.
 template <class S>
@@ -97,8 +101,9 @@ struct CachedScene {
   std::string warning;      ///< reason for not saving it; empty if saved or from the cache
 };
 
-/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build` returns the parts;
-/// its exceptions pass through. The scene is made from its parts and `further`, as needed by a `MovingScene`.
+/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build`
+/// returns the parts; its exceptions pass through. The scene is made from its parts and `further`, as needed by a
+/// `MovingScene`.
 template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further);
@@ -106,10 +111,11 @@ template <CacheableScene S, class Build, class... Further>
 /// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
-  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
-         roughness, table, classification, ground, spectrum, smooth, colour, picture, reflectance_map] = m;
-  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
-    roughness, table, classification, ground, spectrum, colour, picture, reflectance_map);
+  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector,
+         prism_index, width, roughness, table, classification, ground, spectrum, smooth, colour, picture,
+         reflectance_map] = m;
+  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector,
+    prism_index, width, roughness, table, classification, ground, spectrum, colour, picture, reflectance_map);
   auto& [kind, mirrored, thickness, inside] = smooth;
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
@@ -197,10 +203,12 @@ inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& p
     throw Unusable{"was written by another version of the program, or for other shapes"};
   if (header.size != bytes.size()) throw Unusable{"is truncated, or has grown"};
   if (header.key != key) throw Unusable{"is out of date: a source or a setting has changed"};
-  if (header.checksum != checksum_of(header, bytes.subspan(sizeof header))) throw Unusable{"is damaged: its checksum is wrong"};
+  if (header.checksum != checksum_of(header, bytes.subspan(sizeof header)))
+    throw Unusable{"is damaged: its checksum is wrong"};
 }
 
-/// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's `SettingError`.
+/// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's
+/// `SettingError`.
 template <class P>
 [[nodiscard]] std::vector<P> parts_in(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) {
   ArchiveReader reader(bytes.subspan(sizeof(CacheHeader)), std::move(owner));
@@ -212,7 +220,8 @@ template <class P>
 
 }  // namespace detail
 
-inline Fingerprint scene_key(const SceneSources& sources, const std::function<Fingerprint(const std::filesystem::path&)>& content) {
+inline Fingerprint scene_key(const SceneSources& sources,
+                             const std::function<Fingerprint(const std::filesystem::path&)>& content) {
   Digest digest;
   digest.add(std::string_view(sources.settings));
   for (const std::filesystem::path& path : sources.files) digest.add(content(path));
@@ -259,7 +268,8 @@ OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& 
 }
 
 template <CacheableScene S, class Build, class... Further>
-CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build, const Further&... further) {
+CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
+                            const Further&... further) {
   std::optional<Fingerprint> key;
   std::string reason;
   try {

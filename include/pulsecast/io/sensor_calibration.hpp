@@ -25,9 +25,10 @@
 /// Files by which decoders know the lasers of a sensor, written and read.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in radians, heights in metres. As in the
-/// files of that driver, `rot_correction` is subtracted from the azimuth, and `vert_offset_correction` is the manual's height.
-/// Source: ros-drivers/velodyne, velodyne_pointcloud, params/. @throws SettingError for another sensor @throws FileError
+/// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in radians, heights in
+/// metres. As in the files of that driver, `rot_correction` is subtracted from the azimuth, and
+/// `vert_offset_correction` is the manual's height. Source: ros-drivers/velodyne, velodyne_pointcloud, params/. @throws
+/// SettingError for another sensor @throws FileError
 inline void write_velodyne_calibration(const std::filesystem::path& path, const SpinningSensor& sensor) {
   using pulsecast::detail::joined;
   using pulsecast::detail::to_text;
@@ -37,34 +38,39 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   file.write("lasers:\n");
   for (std::size_t k = 0; k < sensor.lasers.size(); ++k) {
     const SensorLaser& laser = sensor.lasers[k];
-    file.write(
-        joined({"- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0, focal_slope: 0.0,"
-                " horiz_offset_correction: 0.0, laser_id: ",
-                std::to_string(k), ", rot_correction: ", to_text(0 - laser.azimuth), ", vert_correction: ", to_text(laser.elevation),
-                ", vert_offset_correction: ", to_text(laser.height), "}\n"}));
+    file.write(joined(
+        {"- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0, focal_slope: "
+         "0.0,"
+         " horiz_offset_correction: 0.0, laser_id: ",
+         std::to_string(k), ", rot_correction: ", to_text(0 - laser.azimuth),
+         ", vert_correction: ", to_text(laser.elevation), ", vert_offset_correction: ", to_text(laser.height), "}\n"}));
   }
   file.write(joined({"num_lasers: ", std::to_string(sensor.lasers.size()),
                      "\ndistance_resolution: ", to_text(detail::VelodyneFormat::distance_resolution(sensor)), "\n"}));
   file.commit();
 }
 
-/// Sensor of a data sheet with the angles and heights of a unit's calibration, as `write_velodyne_calibration` describes it. Corrections of
-/// distances and to the side must be 0, as packets do not contain them.
+/// Sensor of a data sheet with the angles and heights of a unit's calibration, as `write_velodyne_calibration`
+/// describes it. Corrections of distances and to the side must be 0, as packets do not contain them.
 /// @throws SettingError for the sheet of another sensor @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_velodyne_calibration(const std::filesystem::path& path, SpinningSensor sheet) {
   detail::VelodyneFormat::validate(sheet);
   const detail::CalibrationFile file(path, "a Velodyne calibration");
   const std::size_t count = sheet.lasers.size();
-  static_cast<void>(file.number(file.at(file.root(), "num_lasers"), "num_lasers", static_cast<double>(count), static_cast<double>(count)));
+  static_cast<void>(file.number(file.at(file.root(), "num_lasers"), "num_lasers", static_cast<double>(count),
+                                static_cast<double>(count)));
   if (const auto resolution = file.find(file.root(), "distance_resolution")) {
     const double own = detail::VelodyneFormat::distance_resolution(sheet);
     static_cast<void>(file.number(*resolution, "distance_resolution", own, own));
   }
   const YAML::Node lasers = file.at(file.root(), "lasers");
-  if (!lasers.IsSequence() || lasers.size() != count) file.fail(lasers, "lasers is no list of " + std::to_string(count));
+  if (!lasers.IsSequence() || lasers.size() != count)
+    file.fail(lasers, "lasers is no list of " + std::to_string(count));
   std::vector<bool> is_known(count);
   for (const YAML::Node& laser : lasers) {
-    const auto number = [&](const char* name, double most) { return file.number(file.at(laser, name), name, -most, most); };
+    const auto number = [&](const char* name, double most) {
+      return file.number(file.at(laser, name), name, -most, most);
+    };
     const double id = file.number(file.at(laser, "laser_id"), "laser_id", 0, static_cast<double>(count) - 1);
     const auto k = static_cast<std::size_t>(id);
     if (static_cast<double>(k) != id || is_known[k]) file.fail(laser, "expected each laser_id once");
@@ -72,7 +78,8 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
     sheet.lasers[k].azimuth = 0 - number("rot_correction", pi);
     sheet.lasers[k].elevation = number("vert_correction", pi / 2);
     sheet.lasers[k].height = number("vert_offset_correction", 1);
-    for (const char* const name : {"dist_correction", "dist_correction_x", "dist_correction_y", "horiz_offset_correction"})
+    for (const char* const name :
+         {"dist_correction", "dist_correction_x", "dist_correction_y", "horiz_offset_correction"})
       if (file.find(laser, name)) static_cast<void>(number(name, 0));
   }
   return sheet;
@@ -83,12 +90,14 @@ namespace detail {
 /// JSON list of numbers, rounded to 9 decimals.
 [[nodiscard]] inline std::string json_list(const std::vector<double>& values) {
   std::string list;
-  for (const double value : values) list += (list.empty() ? "[" : ", ") + pulsecast::detail::to_text(std::nearbyint(value * 1e9) / 1e9);
+  for (const double value : values)
+    list += (list.empty() ? "[" : ", ") + pulsecast::detail::to_text(std::nearbyint(value * 1e9) / 1e9);
   return list + "]";
 }
 
 /// Member of a sensor's metadata, of the form without sections, or of the later one with them.
-[[nodiscard]] inline std::optional<YAML::Node> metadata_member(const CalibrationFile& file, const char* section, const char* key) {
+[[nodiscard]] inline std::optional<YAML::Node> metadata_member(const CalibrationFile& file, const char* section,
+                                                               const char* key) {
   if (const auto part = file.find(file.root(), section)) return file.find(*part, key);
   return file.find(file.root(), key);
 }
@@ -101,10 +110,12 @@ namespace detail {
 
 }  // namespace detail
 
-/// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without sections, which Ouster's software reads of
-/// all firmware. Angles of the azimuth are positive to the right, as the manual's formula has them. @throws SettingError for another sensor
+/// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without sections, which Ouster's
+/// software reads of all firmware. Angles of the azimuth are positive to the right, as the manual's formula has them.
+/// @throws SettingError for another sensor
 /// @throws FileError
-inline void write_ouster_metadata(const std::filesystem::path& path, const SpinningSensor& sensor, const PacketSettings& settings = {}) {
+inline void write_ouster_metadata(const std::filesystem::path& path, const SpinningSensor& sensor,
+                                  const PacketSettings& settings = {}) {
   using pulsecast::detail::joined;
   sensor.validate();
   detail::OusterFormat::validate(sensor);
@@ -120,23 +131,26 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const std::string width = std::to_string(columns);
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
-  file.write(
-      joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x", pulsecast::detail::to_text(sensor.turns_per_second),
-              "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
-  file.write(joined({"  \"beam_altitude_angles\": ", detail::json_list(altitudes),
-                     ",\n  \"beam_azimuth_angles\": ", detail::json_list(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ",
-                     pulsecast::detail::to_text(std::nearbyint(1e12 * sensor.exit_radius) / 1e9), ",\n  \"lidar_to_sensor_transform\": ",
-                     detail::json_list({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * sensor.lasers.front().height, 0, 0, 0, 1}), ",\n"}));
+  file.write(joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
+                     pulsecast::detail::to_text(sensor.turns_per_second),
+                     "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
+  file.write(joined(
+      {"  \"beam_altitude_angles\": ", detail::json_list(altitudes),
+       ",\n  \"beam_azimuth_angles\": ", detail::json_list(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ",
+       pulsecast::detail::to_text(std::nearbyint(1e12 * sensor.exit_radius) / 1e9),
+       ",\n  \"lidar_to_sensor_transform\": ",
+       detail::json_list({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * sensor.lasers.front().height, 0, 0, 0, 1}), ",\n"}));
   file.write(joined({"  \"data_format\": {\n    \"columns_per_frame\": ", width,
                      ",\n    \"columns_per_packet\": ", std::to_string(detail::OusterFormat::packet_columns),
-                     ",\n    \"pixels_per_column\": ", std::to_string(detail::OusterFormat::lasers), ",\n    \"column_window\": [0, ",
-                     std::to_string(columns - 1), "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts),
-                     ",\n    \"udp_profile_lidar\": \"", is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"}));
+                     ",\n    \"pixels_per_column\": ", std::to_string(detail::OusterFormat::lasers),
+                     ",\n    \"column_window\": [0, ", std::to_string(columns - 1),
+                     "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts), ",\n    \"udp_profile_lidar\": \"",
+                     is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"}));
   file.commit();
 }
 
-/// OS1-64 with the angles, lenses, columns and rate of a unit's metadata, of the form without sections or the later one with them; all else
-/// is of the data sheet. @throws FileError with the line of the first error
+/// OS1-64 with the angles, lenses, columns and rate of a unit's metadata, of the form without sections or the later one
+/// with them; all else is of the data sheet. @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path) {
   const detail::CalibrationFile file(path, "the metadata of an Ouster sensor");
   const YAML::Node line = detail::metadata_need(file, "sensor_info", "prod_line");
@@ -156,7 +170,8 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const auto angles = [&](const char* name, double most) {
     return file.numbers(detail::metadata_need(file, "beam_intrinsics", name), name, count, -most, most);
   };
-  const std::vector<double> altitudes = angles("beam_altitude_angles", 90), azimuths = angles("beam_azimuth_angles", 180);
+  const std::vector<double> altitudes = angles("beam_altitude_angles", 90),
+                            azimuths = angles("beam_azimuth_angles", 180);
   for (std::size_t k = 0; k < count; ++k) {
     sensor.lasers[k].elevation = altitudes[k] * pi / 180;
     sensor.lasers[k].azimuth = azimuths[k] * pi / 180;

@@ -26,16 +26,15 @@ struct SpectrumFile {
   std::vector<std::string> warnings{};                  ///< oddities that could still be read
 };
 
-/// Reads a text of two columns, wavelength and reflectance, with any header and further columns; rows in any order. Rows without a value,
-/// also -1.23e34 of the USGS, are left out.
-/// Units come from the header, as in the ECOSTRESS and ASTER libraries ("X Units:", "Y Units:"), or from column titles in the line above
-/// the numbers. Otherwise wavelengths that begin at 100 or more are nanometres, below 0.01 metres, and micrometres between; reflectances
-/// above 1.5 are percent. The report states units and reasons.
-/// Throws a `FileError` with path and line at the first error.
+/// Reads a text of two columns, wavelength and reflectance, with any header and further columns; rows in any order.
+/// Rows without a value, also -1.23e34 of the USGS, are left out. Units come from the header, as in the ECOSTRESS and
+/// ASTER libraries ("X Units:", "Y Units:"), or from column titles in the line above the numbers. Otherwise wavelengths
+/// that begin at 100 or more are nanometres, below 0.01 metres, and micrometres between; reflectances above 1.5 are
+/// percent. The report states units and reasons. Throws a `FileError` with path and line at the first error.
 [[nodiscard]] SpectrumFile read_spectrum(const std::filesystem::path& path);
 
-/// Reads a file, or all files of a folder. A spectrum is named like its file without the extension; files without one are left out with a
-/// warning. Throws a `FileError` if there is no spectrum at all.
+/// Reads a file, or all files of a folder. A spectrum is named like its file without the extension; files without one
+/// are left out with a warning. Throws a `FileError` if there is no spectrum at all.
 [[nodiscard]] SpectralLibrary read_spectral_library(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io

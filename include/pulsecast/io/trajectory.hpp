@@ -31,7 +31,8 @@ struct TrajectoryFileSettings {
   void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
-/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and the end, `duration`.
+/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and the end,
+/// `duration`.
 template <class Record>
 void for_each_record(const Tick& duration, double interval, const Record& record) {
   const double end = duration.seconds();
@@ -45,8 +46,9 @@ void for_each_record(const Tick& duration, double interval, const Record& record
 ///
 ///     x y z gpsTime roll pitch yaw
 ///
-/// x, y, z [m] and the angles [deg, as `helios_canonical`] have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no header line.
-/// These are the columns of HELIOS++ trajectory files, read by `helios_output_format`. Only `close()` completes the file: see `OutputFile`.
+/// x, y, z [m] and the angles [deg, as `helios_canonical`] have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360).
+/// There is no header line. These are the columns of HELIOS++ trajectory files, read by `helios_output_format`. Only
+/// `close()` completes the file: see `OutputFile`.
 class TrajectoryWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -57,18 +59,24 @@ class TrajectoryWriter {
   void add(Tick tick, const Pose<frame::Body, frame::World>& pose) {
     if (!finite(pose.position) || !std::isfinite(length(pose.rotation))) {
       file_.discard();
-      throw FileError(file_.path().string(), "line " + std::to_string(records_ + 1), "cannot be written: expected a finite pose");
+      throw FileError(file_.path().string(), "line " + std::to_string(records_ + 1),
+                      "cannot be written: expected a finite pose");
     }
     const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, helios_canonical);
     const double yaw_deg = degrees(angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw);
-    row_.add(pose.position.x, 4).add(pose.position.y, 4).add(pose.position.z, 4).add(settings_.start_time + tick.seconds(), 9);
-    row_.add(degrees(angles.roll), 4).add(degrees(angles.pitch), 4).add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
+    row_.add(pose.position.x, 4)
+        .add(pose.position.y, 4)
+        .add(pose.position.z, 4)
+        .add(settings_.start_time + tick.seconds(), 9);
+    row_.add(degrees(angles.roll), 4)
+        .add(degrees(angles.pitch), 4)
+        .add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
     file_.write(row_.end());
     ++records_;
   }
 
-  /// Adds a leg that begins at `start` in the survey's time. The trajectory is sampled in its own time: at multiples of `interval` [s] from
-  /// 0, and at the end, `duration`. Throws a `SettingError` unless `interval` is positive.
+  /// Adds a leg that begins at `start` in the survey's time. The trajectory is sampled in its own time: at multiples of
+  /// `interval` [s] from 0, and at the end, `duration`. Throws a `SettingError` unless `interval` is positive.
   void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
     require_positive("TrajectoryWriter::add interval", interval, "s");
     for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
@@ -83,10 +91,11 @@ class TrajectoryWriter {
   std::uint64_t records_ = 0;
 };
 
-/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of time, with a jump's
-/// time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for unordered, too large or non-unit poses.
-void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format = csv_format(),
-                      double start_time = 0);
+/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of
+/// time, with a jump's time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for
+/// unordered, too large or non-unit poses.
+void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
+                      const TrajectoryFormat& format = csv_format(), double start_time = 0);
 
 namespace detail {
 
@@ -106,7 +115,8 @@ namespace detail {
 }
 
 /// Values of a pose in a format.
-[[nodiscard]] inline QuantityValues values_of(const TimedPose& pose, const TrajectoryFormat& format, double start_time) {
+[[nodiscard]] inline QuantityValues values_of(const TimedPose& pose, const TrajectoryFormat& format,
+                                              double start_time) {
   const Vec3 p = pose.position, in_file = format.axes.swapped(p);
   const Rotation q = format.axes.to_file(pose.rotation);
   const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, format.angles);
@@ -133,8 +143,8 @@ namespace detail {
 
 }  // namespace detail
 
-inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format,
-                             double start_time) {
+inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
+                             const TrajectoryFormat& format, double start_time) {
   format.validate();
   require_finite("write_trajectory start_time", start_time, "s");
   const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
@@ -151,7 +161,8 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
         !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)
       throw FileError(path.string(), "",
                       "pose " + std::to_string(i) +
-                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not before the last one's");
+                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not "
+                          "before the last one's");
     const QuantityValues values = detail::values_of(pose, format, start_time);
     for (const std::optional<TrajectoryColumn>& column : columns.all())
       if (column) row.add(values[column->quantity] * column->per_si);

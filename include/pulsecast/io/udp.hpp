@@ -29,11 +29,13 @@ struct UdpSettings {
   void validate() const { require_within("UdpSettings::pace", pace, 0, 1e6, ""); }
 };
 
-/// Sends packets by UDP to one port of a host, or of all hosts of a network, as sensors do. Throws a `FileError` that names the receiver.
+/// Sends packets by UDP to one port of a host, or of all hosts of a network, as sensors do. Throws a `FileError` that
+/// names the receiver.
 class UdpSender {
  public:
   /// @throws SettingError for settings out of range @throws FileError without a socket
-  UdpSender(const Ipv4Address& address, std::uint16_t port, const UdpSettings& settings = {}) : settings_(validated(settings)) {
+  UdpSender(const Ipv4Address& address, std::uint16_t port, const UdpSettings& settings = {})
+      : settings_(validated(settings)) {
     std::uint32_t host = 0;
     for (const std::uint8_t part : address) {
       host = host << 8 | part;
@@ -60,8 +62,8 @@ class UdpSender {
   /// Sends a packet, at its time after the first if there is a pace. @throws FileError
   void operator()(const SensorPacket& packet) {
     if (settings_.pace > 0) wait_for(packet.time);
-    while (::sendto(socket_, packet.payload.data(), packet.payload.size(), 0, reinterpret_cast<const sockaddr*>(&receiver_),
-                    sizeof receiver_) < 0)
+    while (::sendto(socket_, packet.payload.data(), packet.payload.size(), 0,
+                    reinterpret_cast<const sockaddr*>(&receiver_), sizeof receiver_) < 0)
       if (errno != EINTR) fail("cannot be sent to");
   }
 

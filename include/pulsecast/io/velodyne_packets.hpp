@@ -16,8 +16,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Data packets of a VLP-16 or VLP-32C. Source of every offset and value: Velodyne, VLP-16 user manual 63-9243 rev. D, 2018, 9.3, and
-/// VLP-32C user manual 63-9325 rev. C, 2019, 9.3.
+/// Data packets of a VLP-16 or VLP-32C. Source of every offset and value: Velodyne, VLP-16 user manual 63-9243 rev. D,
+/// 2018, 9.3, and VLP-32C user manual 63-9325 rev. C, 2019, 9.3.
 struct VelodyneFormat {
   static constexpr std::uint16_t port = 2368;      // of data packets
   static constexpr std::size_t blocks = 12;        // in a packet
@@ -26,7 +26,8 @@ struct VelodyneFormat {
 
   static void validate(const SpinningSensor& sensor) {
     const std::size_t lasers = sensor.lasers.size();
-    if (lasers != 16) require_within("SpinningSensor::lasers (number other than 16)", static_cast<double>(lasers), 32, 32, "");
+    if (lasers != 16)
+      require_within("SpinningSensor::lasers (number other than 16)", static_cast<double>(lasers), 32, 32, "");
     require_within("SpinningSensor::exit_radius", sensor.exit_radius, 0, 0, "m");
   }
 
@@ -43,7 +44,8 @@ struct VelodyneFormat {
       const double hundredths = std::nearbyint(source.sensor.heading(start) * (36'000 / (2 * pi)));
       put(payload, block * block_size + 2, static_cast<std::uint16_t>(hundredths < 36'000 ? hundredths : 0));
     }
-    put(payload, 1200, static_cast<std::uint32_t>(parts_of(source.clock(first), 1'000'000) % 3'600'000'000));  // since the hour [us]
+    put(payload, 1200,
+        static_cast<std::uint32_t>(parts_of(source.clock(first), 1'000'000) % 3'600'000'000));  // since the hour [us]
     put(payload, 1204, mode(source.settings.returns));
     put(payload, 1205, is_vlp_16(source) ? std::uint8_t{0x22} : std::uint8_t{0x28});
   }
@@ -95,10 +97,11 @@ struct VelodyneFormat {
 }  // namespace detail
 
 /// Sink that writes the echoes of a VLP-16 or VLP-32C, by the number of its lasers, as its data packets of 1206 bytes:
-/// `VelodynePackets packets(velodyne_vlp_16(), {.returns = PacketReturns::last}, std::ref(file))`. After construction, it allocates
-/// nothing. Of dual returns, even blocks hold the last and odd ones the strongest; the second strongest if the strongest is the last; the
-/// same if there is only one. Distances are from the sensor's axis; beyond what 16 bits hold, they are 0, as without a return. Decoders
-/// know the times of firings from the manual: a sensor with other rates or delays is decoded wrong.
+/// `VelodynePackets packets(velodyne_vlp_16(), {.returns = PacketReturns::last}, std::ref(file))`. After construction,
+/// it allocates nothing. Of dual returns, even blocks hold the last and odd ones the strongest; the second strongest if
+/// the strongest is the last; the same if there is only one. Distances are from the sensor's axis; beyond what 16 bits
+/// hold, they are 0, as without a return. Decoders know the times of firings from the manual: a sensor with other rates
+/// or delays is decoded wrong.
 using VelodynePackets = detail::PacketStream<detail::VelodyneFormat>;
 static_assert(EchoSink<VelodynePackets> && ChoosesShots<VelodynePackets>);
 

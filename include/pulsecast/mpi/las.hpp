@@ -47,10 +47,11 @@ class MpiLasPiece final : public MpiPiece {
       if (shot.echoes == 0) continue;
       std::optional<io::LasPacket> packet;
       if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
-      encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](const io::LasEncoder::Record& record, const Vec3& point) {
-        records_.insert(records_.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(size));
-        points_.push_back(point);
-      });
+      encoder_.encode(
+          shot, batch, packet ? &*packet : nullptr, [&](const io::LasEncoder::Record& record, const Vec3& point) {
+            records_.insert(records_.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(size));
+            points_.push_back(point);
+          });
     }
   }
 
@@ -112,8 +113,8 @@ struct MpiLasShare {
 
 }  // namespace detail
 
-/// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError` for intensities
-/// scaled to the greatest amplitude.
+/// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError`
+/// for intensities scaled to the greatest amplitude.
 class MpiLas final : public MpiOutput {
  public:
   /// Collective. @throws SettingError for intensities scaled to the greatest amplitude @throws FileError
@@ -130,7 +131,9 @@ class MpiLas final : public MpiOutput {
     begin_ = group.channel().from_first(whole_ ? whole_->records_at() : 0);
   }
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(points_file_.path(), settings_); }
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override {
+    return std::make_unique<detail::MpiLasPiece>(points_file_.path(), settings_);
+  }
 
   void put(MpiPiece& piece, const MpiPlace& place) override {
     auto& own = static_cast<detail::MpiLasPiece&>(piece);

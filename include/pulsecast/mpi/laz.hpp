@@ -24,8 +24,8 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// LAZ file written by all processes; its bytes equal those of `LazWriter`. The process with the first point of a chunk compresses it on
-/// its threads; others send their part of that chunk. The first process sums up the sizes of chunks.
+/// LAZ file written by all processes; its bytes equal those of `LazWriter`. The process with the first point of a chunk
+/// compresses it on its threads; others send their part of that chunk. The first process sums up the sizes of chunks.
 class MpiLaz final : public MpiOutput {
  public:
   /// `threads` per process, 0 as in `thread_count`. Throws a `SettingError` or `FileError`.
@@ -41,9 +41,12 @@ class MpiLaz final : public MpiOutput {
     }
   }
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_); }
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override {
+    return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_);
+  }
 
-  /// Keeps the chunks that begin in the piece, for compression here; sends the points before to the owner of their chunk.
+  /// Keeps the chunks that begin in the piece, for compression here; sends the points before to the owner of their
+  /// chunk.
   void put(MpiPiece& piece, const MpiPlace& place) override {
     auto& own = static_cast<detail::MpiLasPiece&>(piece);
     std::uint64_t at = place.starts[0];
@@ -104,7 +107,8 @@ class MpiLaz final : public MpiOutput {
     std::vector<Chunk> some;
     for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
     if (some.empty()) return false;
-    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, settings_); });
+    for_each_index(some.size(), threads_,
+                   [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, settings_); });
     MpiMessage sizes;
     sizes.add(MessageKind::sizes);
     for (Chunk& chunk : some) {
@@ -121,11 +125,13 @@ class MpiLaz final : public MpiOutput {
 
   void close() override {
     if (group().first())
-      for (int rank = 0; rank < group().size(); ++rank) send(rank, std::move(MpiMessage().add(MessageKind::all_points).add(points_)));
+      for (int rank = 0; rank < group().size(); ++rank)
+        send(rank, std::move(MpiMessage().add(MessageKind::all_points).add(points_)));
     work_until([&] {
       if (group().first() && !all_told_ && sizes_of_placed_.size() == chunks_of(points_)) {
         all_told_ = true;
-        for (int rank = 0; rank < group().size(); ++rank) send(rank, std::move(MpiMessage().add(MessageKind::all_placed)));
+        for (int rank = 0; rank < group().size(); ++rank)
+          send(rank, std::move(MpiMessage().add(MessageKind::all_placed)));
       }
       return all_placed_ && compressed_.empty();
     });
@@ -151,14 +157,18 @@ class MpiLaz final : public MpiOutput {
   static constexpr std::uint64_t chunk_points = io::LazWriter::chunk_points;
   static constexpr std::size_t max_waiting = 64;  // in chunks
 
-  [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept { return (points + chunk_points - 1) / chunk_points; }
+  [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept {
+    return (points + chunk_points - 1) / chunk_points;
+  }
 
   /// Adds records of one chunk at their position in it, in any order.
   void add(std::uint64_t at, std::span<const std::byte> records) {
     const std::uint64_t number = at / chunk_points;
     const auto chunk = gathered_.try_emplace(number, Chunk{number, {}, 0}).first;
-    chunk->second.bytes.resize(std::max<std::size_t>(chunk->second.bytes.size(), (at % chunk_points) * record_ + records.size()));
-    std::copy(records.begin(), records.end(), chunk->second.bytes.begin() + static_cast<std::ptrdiff_t>((at % chunk_points) * record_));
+    chunk->second.bytes.resize(
+        std::max<std::size_t>(chunk->second.bytes.size(), (at % chunk_points) * record_ + records.size()));
+    std::copy(records.begin(), records.end(),
+              chunk->second.bytes.begin() + static_cast<std::ptrdiff_t>((at % chunk_points) * record_));
     chunk->second.points += records.size() / record_;
     finish(chunk);
   }
@@ -173,7 +183,8 @@ class MpiLaz final : public MpiOutput {
 
   /// First process: sends the positions of chunks behind which no size is missing.
   void place_chunks() {
-    for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end(); next = sizes_.find(sizes_of_placed_.size())) {
+    for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end();
+         next = sizes_.find(sizes_of_placed_.size())) {
       const auto [size, owner] = next->second;
       send(owner, std::move(MpiMessage().add(MessageKind::position).add(Size{next->first, end_})));
       end_ += size;
@@ -197,9 +208,10 @@ class MpiLaz final : public MpiOutput {
   std::optional<io::LazWriter> whole_;
   std::uint64_t points_ = 0, end_ = 0;  // points placed; end of the chunks placed [byte]
   Vec3 first_{};
-  int chunk_owner_ = 0;                                         // owner of the chunk begun last
-  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // sizes and owners of chunks without a position, by number
-  std::vector<std::size_t> sizes_of_placed_;                    // [byte]
+  int chunk_owner_ = 0;  // owner of the chunk begun last
+  std::map<std::uint64_t, std::pair<std::size_t, int>>
+      sizes_;                                 // sizes and owners of chunks without a position, by number
+  std::vector<std::size_t> sizes_of_placed_;  // [byte]
   bool all_told_ = false;
 };
 

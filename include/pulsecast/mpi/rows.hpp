@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once, as do `XyzWriter`,
-/// `PulseTextWriter` and `WaveformTextWriter`.
+/// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once,
+/// as do `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
 template <class Writer, class Settings>
 class MpiRows final : public MpiOutput {
  public:
@@ -29,7 +29,9 @@ class MpiRows final : public MpiOutput {
   }
 
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(file_.path(), settings_); }
-  void put(MpiPiece& piece, const MpiPlace& place) override { file_.write(place.starts[0], static_cast<Piece&>(piece).bytes); }
+  void put(MpiPiece& piece, const MpiPlace& place) override {
+    file_.write(place.starts[0], static_cast<Piece&>(piece).bytes);
+  }
 
   [[nodiscard]] MpiPlace place(const MpiExtent& extent, int /*owner*/) override {
     MpiPlace place;
@@ -53,7 +55,9 @@ class MpiRows final : public MpiOutput {
       writer.emplace(io::OutputFile(path, bytes), settings);
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept override { return pulsecast::detail::reads_empty_shots(*writer); }
+    [[nodiscard]] bool reads_empty_shots() const noexcept override {
+      return pulsecast::detail::reads_empty_shots(*writer);
+    }
     [[nodiscard]] MpiExtent extent() override {
       writer->close();
       MpiExtent extent;

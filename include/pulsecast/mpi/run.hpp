@@ -33,18 +33,22 @@
 ///     run(group, survey, {.threads = 8}, points);      // the same survey on all processes
 ///     points.close();
 ///
-/// The first process hands out blocks of pulses on request, and simulates, too. Results equal those of one process, byte for byte.
-/// All functions are collective: every process calls them. An exception on one process must end all: see `MpiSession`.
+/// The first process hands out blocks of pulses on request, and simulates, too. Results equal those of one process,
+/// byte for byte. All functions are collective: every process calls them. An exception on one process must end all: see
+/// `MpiSession`.
 namespace PULSECAST_NAMESPACE::mpi {
 
 /// Sink of part of a survey on one process.
 class MpiPartSink {
  public:
   /// Takes a function of batches, and whether it reads shots without echoes.
-  MpiPartSink(std::function<void(const EchoBatch&)> take, bool empty_shots) : take_(std::move(take)), empty_shots_(empty_shots) {}
+  MpiPartSink(std::function<void(const EchoBatch&)> take, bool empty_shots)
+      : take_(std::move(take)), empty_shots_(empty_shots) {}
 
   void operator()(const EchoBatch& batch) const { take_(batch); }
-  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] bool reads_empty_shots() const noexcept {
+    return empty_shots_;
+  }  ///< as the concept ChoosesShots describes
 
  private:
   std::function<void(const EchoBatch&)> take_;
@@ -59,14 +63,20 @@ namespace detail {
 /// Part of one process in a run.
 class MpiRun {
  public:
-  MpiRun(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
-      : group_(group), slots_(options.slots(size)), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
+  MpiRun(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
+         std::span<MpiOutput* const> outputs)
+      : group_(group),
+        slots_(options.slots(size)),
+        options_(options),
+        simulate_(simulate),
+        outputs_(outputs.begin(), outputs.end()) {
     if (group.first()) scheduler_.emplace(slots_.count, static_cast<unsigned>(group.size()));
   }
 
   RunSummary run() {
-    group_.begin(this,
-                 [](void* self, int from, int kind, MpiMessage message) { static_cast<MpiRun*>(self)->receive(from, kind, message); });
+    group_.begin(this, [](void* self, int from, int kind, MpiMessage message) {
+      static_cast<MpiRun*>(self)->receive(from, kind, message);
+    });
     send(0, ask, {});
     while (!(no_more_ && held_.empty())) {
       const bool served = serve(), worked = work();
@@ -129,7 +139,9 @@ class MpiRun {
   /// First process: sends the places of finished blocks as soon as they are known.
   void place() {
     if (!scheduler_) return;
-    const auto may = [this] { return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); }); };
+    const auto may = [this] {
+      return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); });
+    };
     scheduler_->settle(may, [this](std::uint64_t number, int owner, const std::vector<MpiExtent>& extents) {
       MpiMessage message;
       message.add(number);
@@ -169,8 +181,8 @@ class MpiRun {
                     .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
-    const bool empty_shots =
-        std::any_of(held.pieces.begin(), held.pieces.end(), [](const auto& piece) { return piece->reads_empty_shots(); });
+    const bool empty_shots = std::any_of(held.pieces.begin(), held.pieces.end(),
+                                         [](const auto& piece) { return piece->reads_empty_shots(); });
     const auto take = [&](const EchoBatch& batch) {
       for (std::size_t k = 0; k < outputs_.size(); ++k) {
         EchoBatch some = batch;
@@ -203,7 +215,9 @@ class MpiRun {
     return group_.channel().from_first(own_);
   }
 
-  [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  }
 
   MpiGroup& group_;
   RunSlots slots_;
@@ -229,9 +243,9 @@ template <class Sink>
 
 }  // namespace detail
 
-/// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve several runs; their makers close them.
-/// `options.progress` and `options.stop` count on the first process only: a stopped run finishes the blocks begun, so its results are
-/// complete up to some slot. `options.threads` and `options.executor` are per process.
+/// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve several runs; their
+/// makers close them. `options.progress` and `options.stop` count on the first process only: a stopped run finishes the
+/// blocks begun, so its results are complete up to some slot. `options.threads` and `options.executor` are per process.
 inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
   return detail::MpiRun(group, size, options, simulate, outputs).run();
@@ -241,8 +255,9 @@ inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& 
 template <class S>
 concept MpiSink = std::is_base_of_v<MpiOutput, std::remove_reference_t<S>> || EchoSink<S>;
 
-/// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any `EchoSink`, called on
-/// the first process only, with batches in pulse order, whose choice of shots counts for all. Every process gets the summary of all.
+/// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any
+/// `EchoSink`, called on the first process only, with batches in pulse order, whose choice of shots counts for all.
+/// Every process gets the summary of all.
 template <PulseSurvey Survey, MpiSink... Sinks>
 RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;
@@ -255,7 +270,9 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
     }
   };
   (take(sinks), ...);
-  const MpiSimulate simulate = [&](const RunOptions& part, const MpiPartSink& sink) { return pulsecast::run(survey, part, sink); };
+  const MpiSimulate simulate = [&](const RunOptions& part, const MpiPartSink& sink) {
+    return pulsecast::run(survey, part, sink);
+  };
   const RunSummary summary = run_parts(group, survey.size(), options, simulate, outputs);
   for (const auto& output : own) output->close();
   return summary;
@@ -263,10 +280,13 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
 
 /// Says of a call of `run` what is wrong with it.
 template <class Survey, class... Sinks>
-requires(!PulseSurvey<Survey> || !(MpiSink<Sinks> && ...)) RunSummary run(MpiGroup&, const Survey&, const RunOptions&, Sinks&&...) {
-  static_assert(PulseSurvey<Survey>, "run: the second argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
-  static_assert((MpiSink<Sinks> && ...),
-                "run: a sink must be an MpiOutput or callable with one batch, as is [](const EchoBatch& batch) { ... }");
+requires(!PulseSurvey<Survey> || !(MpiSink<Sinks> && ...)) RunSummary
+    run(MpiGroup&, const Survey&, const RunOptions&, Sinks&&...) {
+  static_assert(PulseSurvey<Survey>,
+                "run: the second argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
+  static_assert(
+      (MpiSink<Sinks> && ...),
+      "run: a sink must be an MpiOutput or callable with one batch, as is [](const EchoBatch& batch) { ... }");
   return {};
 }
 

@@ -26,7 +26,8 @@
 #include <pulsecast/version.hpp>
 
 #if !__has_include(<pulsecast/page/detail/assets.hpp>)
-#error "pulsecast/page/detail/assets.hpp is generated: install pulsecast with CMake, or run `cmake -P include/pulsecast/page/assets.cmake`"
+#error \
+    "pulsecast/page/detail/assets.hpp is generated: install pulsecast with CMake, or run `cmake -P include/pulsecast/page/assets.cmake`"
 #endif
 #include <pulsecast/page/detail/assets.hpp>
 
@@ -39,9 +40,10 @@ struct PageLeg {
   std::vector<Vec3> places{};   ///< one for each time, in the world [m]
 };
 
-/// Samples a trajectory from `start` to `start + duration` in the survey's time: evenly spaced, or once if it does not move. The
-/// trajectory's own time begins at 0.
-[[nodiscard]] PageLeg page_leg(std::string name, const Trajectory auto& trajectory, Tick start, Tick duration, int moments = 200) {
+/// Samples a trajectory from `start` to `start + duration` in the survey's time: evenly spaced, or once if it does not
+/// move. The trajectory's own time begins at 0.
+[[nodiscard]] PageLeg page_leg(std::string name, const Trajectory auto& trajectory, Tick start, Tick duration,
+                               int moments = 200) {
   PageLeg leg{std::move(name), {}, {}};
   bool moves = false;
   for (int k = 0; k < moments; ++k) {
@@ -128,8 +130,10 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 
 }  // namespace detail
 
-/// Whole page as HTML, without other files or network requests. With `live`, it has no points and asks its own server for them.
-[[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns, bool live = false) {
+/// Whole page as HTML, without other files or network requests. With `live`, it has no points and asks its own server
+/// for them.
+[[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns,
+                                           bool live = false) {
   std::string out;
   for (const std::string_view piece : page::detail::html_before_survey) out += piece;
   out += detail::json_of(survey, echoes, live);
@@ -139,9 +143,10 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
   return out;
 }
 
-/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes. Works in any browser
-/// since 2023, without a network. The file depends on echoes and settings alone. `PageSample` thins larger clouds evenly; `page_columns`
-/// states the accuracy of attributes. Only `close()` makes the file: see `OutputFile`.
+/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes.
+/// Works in any browser since 2023, without a network. The file depends on echoes and settings alone. `PageSample`
+/// thins larger clouds evenly; `page_columns` states the accuracy of attributes. Only `close()` makes the file: see
+/// `OutputFile`.
 class PageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

@@ -32,16 +32,21 @@
 
 namespace PULSECAST_NAMESPACE::page {
 
-/// Sink that shows the growing cloud: the page of `PageWriter` with progress and a stop button, at an address of this machine only.
+/// Sink that shows the growing cloud: the page of `PageWriter` with progress and a stop button, at an address of this
+/// machine only.
 ///
-/// It is a `LocalServer` at 127.0.0.1: no client takes memory, descriptors or time from the run. Every address contains a random secret of
-/// this object. Requests must use the name of this machine and come from no other site's page, so that other sites in the same browser
-/// learn and stop nothing. Any reader of this user's screen has access. The functions may be called from any thread.
+/// It is a `LocalServer` at 127.0.0.1: no client takes memory, descriptors or time from the run. Every address contains
+/// a random secret of this object. Requests must use the name of this machine and come from no other site's page, so
+/// that other sites in the same browser learn and stop nothing. Any reader of this user's screen has access. The
+/// functions may be called from any thread.
 class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any free one.
   explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
-      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.points_max, settings.colours) {
+      : settings_(validated(settings)),
+        token_(secret()),
+        survey_(std::move(survey)),
+        sample_(settings.points_max, settings.colours) {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
@@ -53,8 +58,9 @@ class PageServer {
                                  {"Referrer-Policy", "no-referrer"},
                                  {"X-Content-Type-Options", "nosniff"},
                                  {"X-Frame-Options", "DENY"}});
-    server_.Get('/' + token_ + '/',
-                [this](const httplib::Request&, httplib::Response& response) { response.set_content(page(), "text/html; charset=utf-8"); });
+    server_.Get('/' + token_ + '/', [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(page(), "text/html; charset=utf-8");
+    });
     server_.Get('/' + token_ + "/points", [this](const httplib::Request& request, httplib::Response& response) {
       response.set_content(news(text::number_in<std::uint64_t>(request.get_param_value("run")),
                                 text::number_in<std::uint64_t>(request.get_param_value("after"))),
@@ -137,8 +143,8 @@ class PageServer {
     return out;
   }
 
-  /// True if a request has the right host name and, if a page sent it, comes from this page. Other names may resolve to this machine ("DNS
-  /// rebinding"). Other pages may send requests without access to the response.
+  /// True if a request has the right host name and, if a page sent it, comes from this page. Other names may resolve to
+  /// this machine ("DNS rebinding"). Other pages may send requests without access to the response.
   [[nodiscard]] bool is_ours(const httplib::Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (host != "127.0.0.1" + host_ && host != "localhost" + host_) return false;
@@ -152,7 +158,8 @@ class PageServer {
     return page_html(survey_, sample_.seen(), "", true);
   }
 
-  /// Progress of the run, and points of later pulses than `after`: the length of a JSON text in four bytes, the text, and columns.
+  /// Progress of the run, and points of later pulses than `after`: the length of a JSON text in four bytes, the text,
+  /// and columns.
   [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
     page::detail::JsonWriter json;
     std::vector<PagePoint> fresh;
@@ -163,12 +170,21 @@ class PageServer {
       const std::span<const PagePoint> all = sample_.points();
       const auto later = [](std::uint64_t pulse, const PagePoint& p) { return pulse < p.pulse; };
       const auto first = other || !after ? all.begin() : std::upper_bound(all.begin(), all.end(), *after, later);
-      auto end = first + static_cast<std::ptrdiff_t>(std::min(max_at_once, static_cast<std::size_t>(all.end() - first)));
+      auto end =
+          first + static_cast<std::ptrdiff_t>(std::min(max_at_once, static_cast<std::size_t>(all.end() - first)));
       if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
       fresh.assign(first, end);
-      const std::string last = !fresh.empty() ? std::to_string(fresh.back().pulse) : other || !after ? "" : std::to_string(*after);
-      json.begin_object().member("run", run_).member("state", state_).member("done", progress_.done).member("total", progress_.total);
-      json.member("echoes", sample_.seen()).member("seconds", progress_.seconds).member("largest_key", sample_.largest_key());
+      const std::string last = !fresh.empty()    ? std::to_string(fresh.back().pulse)
+                               : other || !after ? ""
+                                                 : std::to_string(*after);
+      json.begin_object()
+          .member("run", run_)
+          .member("state", state_)
+          .member("done", progress_.done)
+          .member("total", progress_.total);
+      json.member("echoes", sample_.seen())
+          .member("seconds", progress_.seconds)
+          .member("largest_key", sample_.largest_key());
       json.member("more", end != all.end()).member("last", last);
       if (other) {
         json.key("legs");
@@ -178,7 +194,9 @@ class PageServer {
     }
     constexpr double step = 1e-3;  // suits any extent: nothing is stored [m]
     return detail::with_length(json.text()) +
-           page_columns(fresh, {.position_step = settings_.position_step > 0 ? settings_.position_step : step, .keys = true, .effort = 1});
+           page_columns(fresh, {.position_step = settings_.position_step > 0 ? settings_.position_step : step,
+                                .keys = true,
+                                .effort = 1});
   }
 
   PageSettings settings_;

@@ -26,7 +26,8 @@ struct BlockFlight {
   double run_in = 0;      ///< extension of each line before and behind the area [m]
 
   void validate() const {
-    if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "at least 0, as must be the length");
+    if (area.empty())
+      throw SettingError("BlockFlight::area (width)", area.size().x, "m", "at least 0, as must be the length");
     require_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
     require_finite("BlockFlight::altitude", altitude, "m");
     require_positive("BlockFlight::swath", swath, "m");
@@ -37,8 +38,8 @@ struct BlockFlight {
   }
 };
 
-/// Lines of a block flight, from left to right as seen along the first line. Together their swaths cover the area, with equal margins on
-/// both sides. Throws a `SettingError`.
+/// Lines of a block flight, from left to right as seen along the first line. Together their swaths cover the area, with
+/// equal margins on both sides. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<StraightLine> plan_block_flight(const BlockFlight& block) {
   block.validate();
   const Vec3 along{std::sin(block.heading), std::cos(block.heading), 0}, across{along.y, -along.x, 0};

@@ -27,16 +27,18 @@ namespace PULSECAST_NAMESPACE {
 
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
-  double speed = 10;            ///< maximum [m/s]
-  double acceleration = 2;      ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
-  double jerk = 2;              ///< maximum change of acceleration along the path [m/s^3]
+  double speed = 10;  ///< maximum [m/s]
+  double acceleration =
+      2;            ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
+  double jerk = 2;  ///< maximum change of acceleration along the path [m/s^3]
   double turn_radius = 5.5;     ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
   double wheelbase = 2.7;       ///< distance from the rear to the front axle [m]
   double track = 1.6;           ///< distance from the left to the right wheels [m]
   double wheel_radius = 0.316;  ///< [m]; source: tyre 205/55 R16 by ISO 4000-1, half of 16 inches and 55 % of 205 mm
   double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
-  double start_height = std::numeric_limits<double>::infinity();  ///< the drive begins on the ground nearest to it: on the highest [m]
-  std::optional<double> height_without_ground{};                  ///< height where there is no ground, which is an error if empty [m]
+  double start_height =
+      std::numeric_limits<double>::infinity();    ///< the drive begins on the ground nearest to it: on the highest [m]
+  std::optional<double> height_without_ground{};  ///< height where there is no ground, which is an error if empty [m]
 
   void validate() const {
     require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -47,7 +49,8 @@ struct GroundVehicleSettings {
     require_within("GroundVehicleSettings::track", track, 1e-2, 1e2, "m");
     require_within("GroundVehicleSettings::wheel_radius", wheel_radius, 1e-3, 1e2, "m");
     require_within("GroundVehicleSettings::ground_step", ground_step, 1e-3, 1e2, "m");
-    if (height_without_ground) require_within("GroundVehicleSettings::height_without_ground", *height_without_ground, -1e9, 1e9, "m");
+    if (height_without_ground)
+      require_within("GroundVehicleSettings::height_without_ground", *height_without_ground, -1e9, 1e9, "m");
   }
 };
 
@@ -62,12 +65,13 @@ struct Footing {
   /// Source: the up of Rx(pitch) Ry(roll) is (sin r, -sin p cos r, cos p cos r), and the normal is (-aside, -ahead, 1).
   [[nodiscard]] Rotation attitude(double heading) const noexcept {
     const double pitch = std::atan(ahead);
-    return level(heading) * rotation_about(axis::right, pitch) * rotation_about(axis::forward, -std::atan(aside * std::cos(pitch)));
+    return level(heading) * rotation_about(axis::right, pitch) *
+           rotation_about(axis::forward, -std::atan(aside * std::cos(pitch)));
   }
 };
 
-/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact. Position, speed in space
-/// and attitude are continuous; the vehicle stops where it changes gear.
+/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact.
+/// Position, speed in space and attitude are continuous; the vehicle stops where it changes gear.
 class GroundVehicleDrive {
  public:
   /// Piece of the path with the footings at equal distances along it on the map, both ends included.
@@ -78,8 +82,12 @@ class GroundVehicleDrive {
   };
 
   /// `driven` is the length driven in space over time [m]: see `plan_ground_vehicle`.
-  GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration, std::vector<std::string> warnings = {})
-      : sections_(std::move(sections)), driven_(std::move(driven)), duration_(duration), warnings_(std::move(warnings)) {}
+  GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration,
+                     std::vector<std::string> warnings = {})
+      : sections_(std::move(sections)),
+        driven_(std::move(driven)),
+        duration_(duration),
+        warnings_(std::move(warnings)) {}
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const double driven = driven_.at(t).position;
@@ -91,7 +99,8 @@ class GroundVehicleDrive {
     const Footing &a = section.footings[k], &b = section.footings[next];
     const double part = k < next ? (along - a.along) / (b.along - a.along) : 0;
     const Stance stance = section.path.after(section.path.length * ((static_cast<double>(k) + part) / steps));
-    const Footing footing{std::lerp(a.height, b.height, part), std::lerp(a.ahead, b.ahead, part), std::lerp(a.aside, b.aside, part)};
+    const Footing footing{std::lerp(a.height, b.height, part), std::lerp(a.ahead, b.ahead, part),
+                          std::lerp(a.aside, b.aside, part)};
     return {footing.attitude(stance.heading), {stance.position.x, stance.position.y, footing.height}};
   }
 
@@ -114,8 +123,8 @@ static_assert(Trajectory<GroundVehicleDrive>);
 
 namespace detail {
 
-/// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers` receives their
-/// indices in the list. Throws a `SettingError`.
+/// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers`
+/// receives their indices in the list. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
   require_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<Vec2> points;
@@ -142,16 +151,19 @@ namespace detail {
 template <Ground G>
 class FootingFinder {
  public:
-  FootingFinder(const G& ground, const GroundVehicleSettings& settings) : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
+  FootingFinder(const G& ground, const GroundVehicleSettings& settings)
+      : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
 
-  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. The wheels' contact depends
-  /// on the attitude, so the plane is iterated from that of the footing before; each round leaves about the square of the slope of the
-  /// error before. Where the ground has levels, wheels keep to the one that this footing leads to. Throws a `SettingError` where there is
-  /// no ground. Source: the slopes of a plane through a rectangle's corners are the differences of the means of opposite sides.
+  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. The
+  /// wheels' contact depends on the attitude, so the plane is iterated from that of the footing before; each round
+  /// leaves about the square of the slope of the error before. Where the ground has levels, wheels keep to the one that
+  /// this footing leads to. Throws a `SettingError` where there is no ground. Source: the slopes of a plane through a
+  /// rectangle's corners are the differences of the means of opposite sides.
   [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
     Footing expected = before_;
     expected.height += step * expected.ahead;
-    if (std::exchange(is_first_, false)) expected.height = height(stance.position, s_.start_height).value_or(s_.start_height);
+    if (std::exchange(is_first_, false))
+      expected.height = height(stance.position, s_.start_height).value_or(s_.start_height);
     bool gap = false;
     const auto error = [&](const Footing& footing, double x, double y) {  // height error of a wheel against the ground
       const Vec3 wheel = footing.attitude(stance.heading) * Vec3{x, y, 0};
@@ -163,13 +175,15 @@ class FootingFinder {
     if (!std::isfinite(footing.height)) footing.height = 0;
     for (int round = 0; round < 6; ++round) {
       const double rear_left = error(footing, -s_.track / 2, 0), rear_right = error(footing, s_.track / 2, 0);
-      const double front_left = error(footing, -s_.track / 2, s_.wheelbase), front_right = error(footing, s_.track / 2, s_.wheelbase);
+      const double front_left = error(footing, -s_.track / 2, s_.wheelbase),
+                   front_right = error(footing, s_.track / 2, s_.wheelbase);
       const double rear = 0.5 * (rear_left + rear_right), pitch = 0.5 * (front_left + front_right) - rear;
       const double roll = 0.5 * (rear_right - rear_left + front_right - front_left);
       footing.height += rear;
       footing.ahead = std::clamp(footing.ahead + pitch / s_.wheelbase, -tilt_max, tilt_max);
       footing.aside = std::clamp(footing.aside + roll / s_.track, -tilt_max, tilt_max);
-      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height))) break;  // rounding errors
+      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height)))
+        break;  // rounding errors
     }
     gaps_ += gap ? 1 : 0;
     return before_ = footing;
@@ -179,10 +193,11 @@ class FootingFinder {
   [[nodiscard]] std::vector<std::string> warnings(const std::vector<GroundVehicleDrive::Section>& sections) const {
     std::vector<std::string> all;
     if (gaps_ > 0 && any_ground_)
-      all.push_back("no ground at x = " + brief(first_gap_.x) + ", y = " + brief(first_gap_.y) +
-                    " m, under a wheel of the vehicle, nor at " + brief(static_cast<double>(gaps_ - 1)) +
-                    " places of it more: its wheels roll over gaps narrower than they are" +
-                    (s_.height_without_ground ? ", and stand at " + brief(*s_.height_without_ground) + " m in others" : ""));
+      all.push_back(
+          "no ground at x = " + brief(first_gap_.x) + ", y = " + brief(first_gap_.y) +
+          " m, under a wheel of the vehicle, nor at " + brief(static_cast<double>(gaps_ - 1)) +
+          " places of it more: its wheels roll over gaps narrower than they are" +
+          (s_.height_without_ground ? ", and stand at " + brief(*s_.height_without_ground) + " m in others" : ""));
     std::size_t steep = 0;
     double most = 0;
     Vec2 first{};
@@ -190,7 +205,8 @@ class FootingFinder {
       const std::size_t steps = footings.size() - 1;
       const double step = path.length / static_cast<double>(steps);
       // a section may have no length
-      const auto wheel = static_cast<std::size_t>(std::fmin(std::ceil(s_.wheel_radius / step), static_cast<double>(steps)));
+      const auto wheel =
+          static_cast<std::size_t>(std::fmin(std::ceil(s_.wheel_radius / step), static_cast<double>(steps)));
       for (std::size_t i = 0; i <= steps; ++i) {
         const double rise = i + wheel <= steps ? std::fabs(footings[i + wheel].height - footings[i].height) : 0;
         const double tilt = std::fmax(std::fabs(footings[i].ahead), std::fabs(footings[i].aside));
@@ -200,14 +216,16 @@ class FootingFinder {
       }
     }
     if (steep > 0)
-      all.push_back("ground steeper than 45 degrees under the vehicle at x = " + brief(first.x) + ", y = " + brief(first.y) +
-                    " m, and at " + brief(static_cast<double>(steep - 1)) + " places of it more, with steps of up to " + brief(most) +
+      all.push_back("ground steeper than 45 degrees under the vehicle at x = " + brief(first.x) +
+                    ", y = " + brief(first.y) + " m, and at " + brief(static_cast<double>(steep - 1)) +
+                    " places of it more, with steps of up to " + brief(most) +
                     " m: it drives over them at its speed all the same");
     return all;
   }
 
  private:
-  /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this tangent.
+  /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this
+  /// tangent.
   static constexpr double tilt_max = 1.7;
 
   /// Lengths for messages, rounded to the centimetre.
@@ -235,9 +253,11 @@ class FootingFinder {
     return rolled ? *rolled : *s_.height_without_ground;
   }
 
-  /// Lowest point that a wheel rolling ahead reaches at a place: the closing of the ground's profile with the wheel's disc, which is the
-  /// ground itself wherever that bends less than the wheel. Source: ISO 16610-41:2015, closing with a disk.
-  [[nodiscard]] std::optional<double> roll(const Vec2& place, const Vec2& ahead, double near, const std::optional<double>& below) const {
+  /// Lowest point that a wheel rolling ahead reaches at a place: the closing of the ground's profile with the wheel's
+  /// disc, which is the ground itself wherever that bends less than the wheel. Source: ISO 16610-41:2015, closing with
+  /// a disk.
+  [[nodiscard]] std::optional<double> roll(const Vec2& place, const Vec2& ahead, double near,
+                                           const std::optional<double>& below) const {
     const double r = s_.wheel_radius, nothing = -std::numeric_limits<double>::infinity();
     const auto at = [&](double u) { return height(place + u * ahead, near).value_or(nothing); };
     if (below) {
@@ -245,17 +265,20 @@ class FootingFinder {
           heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
       const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
       bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
-      for (std::size_t k = 0; k < 4; ++k) touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
+      for (std::size_t k = 0; k < 4; ++k)
+        touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
       if (touched) return below;
     }
     constexpr int n = 12;  // samples of a radius
     std::array<double, 4 * n + 1> profile{};
-    for (int k = -2 * n; k <= 2 * n; ++k) profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
+    for (int k = -2 * n; k <= 2 * n; ++k)
+      profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
     const auto disc = [&](int k) { return r * std::sqrt(1 - static_cast<double>(k * k) / (n * n)); };
     double lowest = std::numeric_limits<double>::infinity();
     for (int axle = -n; axle <= n; ++axle) {
       double centre = nothing;
-      for (int k = -n; k <= n; ++k) centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
+      for (int k = -n; k <= n; ++k)
+        centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
       lowest = std::fmin(lowest, centre - disc(axle));
     }
     return lowest > nothing ? std::optional(lowest) : below;
@@ -272,17 +295,18 @@ class FootingFinder {
 /// Speed limits on a piece of the path. In a curve, acceleration along and across have equal shares of the maximum.
 [[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
   const double bend = std::fabs(path.curvature), share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
-  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
+  const double speed =
+      bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
   return {speed, share, share, s.jerk};
 }
 
 }  // namespace detail
 
-/// Plans a drive from the first waypoint to the last along `path_through`, at rest at both ends and at changes of gear. All four wheels
-/// roll over the ground as far as a rigid body can, and speed and acceleration are limited along the way in space. A single waypoint looks
-/// north. Waypoints less than a centimetre apart are one. The ground is queried only during planning: one of several levels, as roads and
-/// bridges, should model `LevelledGround`. Throws a `SettingError` for invalid settings or waypoints, a path that is too long, or missing
-/// ground.
+/// Plans a drive from the first waypoint to the last along `path_through`, at rest at both ends and at changes of gear.
+/// All four wheels roll over the ground as far as a rigid body can, and speed and acceleration are limited along the
+/// way in space. A single waypoint looks north. Waypoints less than a centimetre apart are one. The ground is queried
+/// only during planning: one of several levels, as roads and bridges, should model `LevelledGround`. Throws a
+/// `SettingError` for invalid settings or waypoints, a path that is too long, or missing ground.
 [[nodiscard]] inline GroundVehicleDrive plan_ground_vehicle(std::span<const Vec2> waypoints, const Ground auto& ground,
                                                             const GroundVehicleSettings& settings = {}) {
   settings.validate();
@@ -293,7 +317,8 @@ class FootingFinder {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 320 MB
+  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step,
+                 "m");  // footings take some 320 MB
 
   detail::FootingFinder finder(ground, settings);
   std::vector<GroundVehicleDrive::Section> sections;
@@ -301,7 +326,8 @@ class FootingFinder {
   std::vector<double> joints(path.size() + 1, 0.0);
   double start = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
-    const std::size_t steps = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(path[k].length / settings.ground_step)));
+    const std::size_t steps =
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(path[k].length / settings.ground_step)));
     const double step = path[k].length / static_cast<double>(steps);
     GroundVehicleDrive::Section section{path[k], start, {}};
     double climbs = 0;  // length in space beyond that on the map
@@ -313,7 +339,8 @@ class FootingFinder {
       section.footings.push_back(footing);
     }
     path_sections.push_back({section.footings.back().along, detail::limits_on(path[k], settings)});
-    if (k > 0 && path[k].gear == path[k - 1].gear) joints[k] = std::fmin(path_sections[k - 1].limits.speed, path_sections[k].limits.speed);
+    if (k > 0 && path[k].gear == path[k - 1].gear)
+      joints[k] = std::fmin(path_sections[k - 1].limits.speed, path_sections[k].limits.speed);
     sections.push_back(std::move(section));
     start += path_sections.back().length;
   }
@@ -322,7 +349,8 @@ class FootingFinder {
   PiecewiseCubic<double> driven(0);
   Tick now{};
   for (std::size_t k = 0; k < sections.size(); ++k) {
-    for (CubicPiece<double> piece : speed_profile(path_sections[k].length, joints[k], joints[k + 1], path_sections[k].limits)) {
+    for (CubicPiece<double> piece :
+         speed_profile(path_sections[k].length, joints[k], joints[k + 1], path_sections[k].limits)) {
       piece.position += sections[k].start;
       if (piece.duration > 0) driven.add(now, piece);
       now = now + Tick::of_seconds(piece.duration);

@@ -24,15 +24,16 @@ struct Leg {
   std::optional<Tick> start{};  ///< start since the survey's start; by default the end of the leg before
 };
 
-/// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
-/// time continues from leg to leg, unless a leg says when it starts: such legs may leave gaps and overlap. Legs with equal tables of
-/// emitters share one.
+/// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at
+/// zero; the survey's time continues from leg to leg, unless a leg says when it starts: such legs may leave gaps and
+/// overlap. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
   static_assert(detail::DrawsByLegCheck<P>::passed);
 
  public:
-  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a `SettingError`.
+  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
+  /// `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
@@ -42,7 +43,8 @@ class Legs {
       require_within("Legs::legs (start)", start.seconds(), 0, 1e15, "s");
       starts_.push_back({first, start});
       if (leg.active && leg.platform.size() > 0) {
-        require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
+        require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0,
+                       0x1p60, "");
         first += leg.platform.size();
         starts_.back().first_emitter = add_emitters(leg.platform.emitters());
       }

@@ -41,9 +41,9 @@ struct MulticopterSettings {
   double bank_max = pi / 6;                        ///< maximum angle from upright [rad]
   double yaw_rate = pi / 2;                        ///< maximum [rad/s]
   MulticopterTurn turn = MulticopterTurn::smooth;  ///< behaviour at waypoints between the first and the last
-  double turn_distance = 10;                       ///< maximum distance from the begin of a smooth turn to its waypoint [m]
-  std::optional<double> departure_heading{};       ///< clockwise from north; along the first leg if empty [rad]
-  std::optional<double> arrival_heading{};         ///< clockwise from north; along the last leg if empty [rad]
+  double turn_distance = 10;                  ///< maximum distance from the begin of a smooth turn to its waypoint [m]
+  std::optional<double> departure_heading{};  ///< clockwise from north; along the first leg if empty [rad]
+  std::optional<double> arrival_heading{};    ///< clockwise from north; along the last leg if empty [rad]
 
   void validate() const {
     require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -57,19 +57,21 @@ struct MulticopterSettings {
   }
 };
 
-/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of acceleration and lift. In
-/// a level turn tan(bank) = v^2 / (g r): a coordinated turn. Position, velocity and attitude are continuous.
+/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of
+/// acceleration and lift. In a level turn tan(bank) = v^2 / (g r): a coordinated turn. Position, velocity and attitude
+/// are continuous.
 class MulticopterFlight {
  public:
   /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: see `plan_multicopter`.
-  MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration, std::vector<Tick> passes = {})
+  MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration,
+                    std::vector<Tick> passes = {})
       : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration), passes_(std::move(passes)) {}
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean =
-        normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // shortest rotation from up to the thrust
+    const Rotation lean = normalize(
+        detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // shortest rotation from up to the thrust
     return {lean * level(heading_.at(t).position), state.position};
   }
 
@@ -78,8 +80,10 @@ class MulticopterFlight {
   /// Passing time of each waypoint of the plan: the middle of its turn, or the begin of its hover.
   [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
 
-  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }      ///< position over time [m]
-  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }  ///< clockwise from north over time [rad]
+  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position over time [m]
+  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept {
+    return heading_;
+  }  ///< clockwise from north over time [rad]
 
  private:
   PiecewiseCubic<Vec3> motion_;
@@ -92,8 +96,9 @@ static_assert(Trajectory<MulticopterFlight>);
 
 namespace detail {
 
-/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the weight.
-/// Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the acceleration.
+/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the
+/// weight. Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the
+/// acceleration.
 [[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
   const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
   double most = settings.acceleration;
@@ -102,8 +107,8 @@ namespace detail {
   return most;
 }
 
-/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so the speed never grows.
-/// Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
+/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so the speed never
+/// grows. Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
 struct SmoothTurn {
   Vec3 before{};        ///< direction in, unit
   Vec3 after{};         ///< direction out, unit
@@ -119,14 +124,17 @@ struct SmoothTurn {
 /// Flight under construction, at its current time and state.
 class FlightPlan {
  public:
-  FlightPlan(const Vec3& position, double heading, double yaw_rate) : motion_(position), heading_(heading), yaw_rate_(yaw_rate) {}
+  FlightPlan(const Vec3& position, double heading, double yaw_rate)
+      : motion_(position), heading_(heading), yaw_rate_(yaw_rate) {}
 
   /// Appends motion along a unit direction from a point, superposed on a constant velocity.
-  void fly(const std::vector<CubicPiece<double>>& pieces, const Vec3& from, const Vec3& direction, const Vec3& drift = {}) {
+  void fly(const std::vector<CubicPiece<double>>& pieces, const Vec3& from, const Vec3& direction,
+           const Vec3& drift = {}) {
     double elapsed = 0;
     for (const auto& p : pieces) {
       const Vec3 start = from + p.position * direction + elapsed * drift, velocity = p.velocity * direction + drift;
-      if (p.duration > 0) motion_.add(now_, {p.duration, start, velocity, p.acceleration * direction, p.jerk * direction});
+      if (p.duration > 0)
+        motion_.add(now_, {p.duration, start, velocity, p.acceleration * direction, p.jerk * direction});
       now_ = now_ + Tick::of_seconds(p.duration);
       elapsed += p.duration;
     }
@@ -164,9 +172,10 @@ class FlightPlan {
   std::vector<Tick> passes_;
 };
 
-/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum of hover times. `numbers` maps each to
-/// its merged waypoint. Throws a `SettingError`.
-[[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints, std::vector<std::size_t>& numbers) {
+/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum of hover times.
+/// `numbers` maps each to its merged waypoint. Throws a `SettingError`.
+[[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints,
+                                                      std::vector<std::size_t>& numbers) {
   require_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<FlightPoint> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
@@ -197,7 +206,8 @@ struct FlightLegs {
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Vec3 way = points[k + 1].position - points[k].position;
       directions[k] = normalize(way);
-      const double ahead = acceleration_along(directions[k], settings), back = acceleration_along(-directions[k], settings);
+      const double ahead = acceleration_along(directions[k], settings),
+                   back = acceleration_along(-directions[k], settings);
       sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
       if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
         heading = heading_of(directions[k]);
@@ -211,11 +221,12 @@ struct FlightLegs {
 
 }  // namespace detail
 
-/// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on a vertical one, and
-/// turns in place at departure and arrival. Each leg takes the least time that speed, acceleration, jerk and bank allow from turn to turn.
-/// A smooth turn takes at most a third of either leg, so waypoints close to each other are flown slowly. Waypoints less than a nanometre
-/// apart are one. Throws a `SettingError`.
-[[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints, const MulticopterSettings& settings = {}) {
+/// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on
+/// a vertical one, and turns in place at departure and arrival. Each leg takes the least time that speed, acceleration,
+/// jerk and bank allow from turn to turn. A smooth turn takes at most a third of either leg, so waypoints close to each
+/// other are flown slowly. Waypoints less than a nanometre apart are one. Throws a `SettingError`.
+[[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints,
+                                                        const MulticopterSettings& settings = {}) {
   settings.validate();
   std::vector<std::size_t> numbers;
   const std::vector<FlightPoint> points = detail::checked(waypoints, numbers);
@@ -227,18 +238,22 @@ struct FlightLegs {
   const double sharpest = -0.5 * std::sqrt(3.0);  // cos(150 deg)
   for (std::size_t k = 1; k < legs; ++k) {
     const Vec3 before = directions[k - 1], after = directions[k];
-    if (settings.turn == MulticopterTurn::stop_and_turn || points[k].hover > 0 || dot(before, after) < sharpest) continue;
+    if (settings.turn == MulticopterTurn::stop_and_turn || points[k].hover > 0 || dot(before, after) < sharpest)
+      continue;
     const Vec3 change = after - before;
-    const double most = length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
+    const double most =
+        length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
     turns[k] = {before, after, {0, 0, most, settings.jerk}};
     const double room = std::fmin(settings.turn_distance, std::fmin(sections[k - 1].length, sections[k].length) / 3);
     speeds[k] = max_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
   }
   std::vector<PathSection> straights = sections;
-  for (std::size_t k = 0; k < legs; ++k) straights[k].length -= turns[k].distance(speeds[k]) + turns[k + 1].distance(speeds[k + 1]);
+  for (std::size_t k = 0; k < legs; ++k)
+    straights[k].length -= turns[k].distance(speeds[k]) + turns[k + 1].distance(speeds[k + 1]);
   settle_speeds(speeds, straights);
 
-  detail::FlightPlan plan(points[0].position, settings.departure_heading.value_or(legs > 0 ? headings[0] : 0), settings.yaw_rate);
+  detail::FlightPlan plan(points[0].position, settings.departure_heading.value_or(legs > 0 ? headings[0] : 0),
+                          settings.yaw_rate);
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 at = points[k].position;
     const double begin = turns[k].distance(speeds[k]), end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
@@ -250,9 +265,11 @@ struct FlightLegs {
       std::vector<CubicPiece<double>> blend;
       change.add_to(blend, 0);
       plan.turn_to(headings[k], change.duration());
-      plan.fly(blend, at - begin * turns[k].before, normalize(turns[k].after - turns[k].before), speeds[k] * turns[k].before);
+      plan.fly(blend, at - begin * turns[k].before, normalize(turns[k].after - turns[k].before),
+               speeds[k] * turns[k].before);
     }
-    plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], sections[k].limits), at + begin * directions[k], directions[k]);
+    plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], sections[k].limits), at + begin * directions[k],
+             directions[k]);
   }
   plan.pass(0);
   const double last_heading = legs > 0 ? headings.back() : settings.departure_heading.value_or(0);

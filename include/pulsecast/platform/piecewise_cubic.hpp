@@ -23,13 +23,13 @@ struct CubicPiece {
 
   /// State after a time [s]; `duration` is the rest.
   [[nodiscard]] CubicPiece after(double t) const noexcept {
-    return {duration - t, position + t * (velocity + t / 2 * (acceleration + t / 3 * jerk)), velocity + t * (acceleration + t / 2 * jerk),
-            acceleration + t * jerk, jerk};
+    return {duration - t, position + t * (velocity + t / 2 * (acceleration + t / 3 * jerk)),
+            velocity + t * (acceleration + t / 2 * jerk), acceleration + t * jerk, jerk};
   }
 };
 
-/// Motion in closed form: pieces in order of time, each valid until the next begins. A piece shorter than that holds its last state, as
-/// does the last piece for ever. Before the first piece, its start state holds.
+/// Motion in closed form: pieces in order of time, each valid until the next begins. A piece shorter than that holds
+/// its last state, as does the last piece for ever. Before the first piece, its start state holds.
 template <class V>
 class PiecewiseCubic {
  public:
@@ -44,7 +44,9 @@ class PiecewiseCubic {
 
   /// State at a time; its duration is the rest of the piece.
   [[nodiscard]] CubicPiece<V> at(Tick t) const noexcept {
-    const Timed& now = pieces_[detail::neighbours(pieces_.size(), [&](std::size_t i) noexcept { return !(t < pieces_[i].start); }).before];
+    const Timed& now = pieces_[detail::neighbours(pieces_.size(), [&](std::size_t i) noexcept {
+                                 return !(t < pieces_[i].start);
+                               }).before];
     const double elapsed = static_cast<double>(t.second - now.start.second) + (t.fraction - now.start.fraction);
     return now.piece.after(std::clamp(elapsed, 0.0, now.piece.duration));
   }

@@ -53,12 +53,15 @@ class Platform {
     if constexpr (MeasuresBeam<Source>)
       for (std::size_t lane = 0; lane < inner.size; ++lane)
         if (inner.sent[lane] != 0)
-          if (const auto beam = source_.measured(i + lane, inner.tick[lane])) out.report(lane, instrument_at(inner.tick[lane]) * *beam);
+          if (const auto beam = source_.measured(i + lane, inner.tick[lane]))
+            out.report(lane, instrument_at(inner.tick[lane]) * *beam);
     return out;
   }
 
   /// As the concept SkipsBlocked requires.
-  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
+    return source_.next_pulse(i);
+  }
 
   /// Pulses of the instrument, transformed into the world.
   [[nodiscard]] PulseLanes<frame::World> placed(const PulseLanes<frame::Instrument>& inner) const noexcept {
@@ -66,10 +69,13 @@ class Platform {
     [[maybe_unused]] const simd::Mask moved = find_poses(path_, inner.tick, inner.sent, world_from_body);
     PULSECAST_ASSERT(rigid_lanes(world_from_body, moved));
     PulseLanes<frame::World> out(world_from_body * PoseLanes(mount_.pose()), inner);
-    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward), ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
+    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward),
+                    ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
     // the components to the right of the level heading and down, both times the length of the heading on the map
-    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x, on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
-    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) out.scan_angle[lane] = {right[lane], -beam.z[lane] * on_map[lane]};
+    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x,
+                        on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
+      out.scan_angle[lane] = {right[lane], -beam.z[lane] * on_map[lane]};
     return out;
   }
 

@@ -25,9 +25,11 @@ struct PoseErrors {
   double attitude_noise = 0;  ///< white noise of the attitude [rad]
   double position_drift = 0;  ///< slow drift of the position: Gauss-Markov process of this deviation [m]
   double attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
-  double drift_time = 60;     ///< correlation time of the drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey's length [s]
-  double angular_jitter = 0;  ///< unreported white deviation of each beam from the optic's direction, to the right and up [rad]
-  Vec3 lever_arm_error{};     ///< reported minus true lever arm [m]
+  double drift_time =
+      60;  ///< correlation time of the drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey's length [s]
+  double angular_jitter =
+      0;  ///< unreported white deviation of each beam from the optic's direction, to the right and up [rad]
+  Vec3 lever_arm_error{};                  ///< reported minus true lever arm [m]
   Rotation boresight_error = no_rotation;  ///< rotation from the instrument's true frame to the reported one
   std::uint64_t seed = 0;                  ///< seed of all random draws; each of several `Legs` draws its own
 
@@ -44,12 +46,16 @@ struct PoseErrors {
   void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
-/// Platform with pose errors: rays start at the true pose, points are computed from the reported one. Throws a `SettingError`.
+/// Platform with pose errors: rays start at the true pose, points are computed from the reported one. Throws a
+/// `SettingError`.
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
   /// Plans the drifts. @throws SettingError for settings out of range
-  WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
+  WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
+      : truth_(std::move(truth)), errors_(validated(errors)) {
+    plan_drift();
+  }
 
   /// Draws independent errors of the same kind for each leg.
   void draw_for_leg(std::uint32_t leg) {
@@ -64,7 +70,9 @@ class WithPoseErrors {
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
   /// As the concept SkipsBlocked requires.
-  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return truth_.next_pulse(i); }
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
+    return truth_.next_pulse(i);
+  }
 
   /// Reported pose of the body.
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
@@ -123,12 +131,14 @@ class WithPoseErrors {
     for (std::size_t lane = 0; lane < p.size; ++lane) {
       const double aside = errors_.angular_jitter * drawn(i + lane, 0, Purpose::angular_jitter);
       const double upwards = errors_.angular_jitter * drawn(i + lane, 1, Purpose::angular_jitter);
-      p.pose.rotation.set(lane, p.pose.rotation[lane] * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards));
+      p.pose.rotation.set(
+          lane, p.pose.rotation[lane] * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards));
     }
     return p;
   }
 
-  /// Drift at each node: the previous one, decayed, plus a random part that keeps the deviation. Source: Gelb 1974, sec. 3.8.
+  /// Drift at each node: the previous one, decayed, plus a random part that keeps the deviation. Source: Gelb 1974,
+  /// sec. 3.8.
   void plan_drift() {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);

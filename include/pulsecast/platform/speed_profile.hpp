@@ -31,10 +31,14 @@ struct SpeedChange {
   double jerk = 1;          ///< magnitude while the acceleration rises or falls [m/s^3]
 
   /// Duration of the rise of the acceleration, equal to that of its fall [s].
-  [[nodiscard]] double ramp() const noexcept { return std::fmin(acceleration / jerk, std::sqrt(std::fabs(to - from) / jerk)); }
+  [[nodiscard]] double ramp() const noexcept {
+    return std::fmin(acceleration / jerk, std::sqrt(std::fabs(to - from) / jerk));
+  }
 
   /// Duration of constant acceleration in between [s].
-  [[nodiscard]] double hold() const noexcept { return std::fmax(0.0, std::fabs(to - from) / acceleration - acceleration / jerk); }
+  [[nodiscard]] double hold() const noexcept {
+    return std::fmax(0.0, std::fabs(to - from) / acceleration - acceleration / jerk);
+  }
 
   [[nodiscard]] double duration() const noexcept { return 2 * ramp() + hold(); }  ///< total [s]
 
@@ -63,12 +67,15 @@ struct SpeedChange {
 }
 
 /// Fastest motion over a length [m] between two speeds [m/s] that `reachable_speed` allows, in up to seven pieces.
-/// Source: Biagiotti & Melchiorri 2008, section 3.4; over a short length, the speed in the middle is found by bisection.
-[[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to, const SpeedLimits& limits) {
+/// Source: Biagiotti & Melchiorri 2008, section 3.4; over a short length, the speed in the middle is found by
+/// bisection.
+[[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to,
+                                                                   const SpeedLimits& limits) {
   const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
   const auto fall = [&](double speed) { return SpeedChange{speed, to, limits.braking, limits.jerk}; };
-  const double most = max_speed(std::fmax(from, to), std::fmax(limits.speed, std::fmax(from, to)),
-                                [&](double speed) { return rise(speed).distance() + fall(speed).distance() <= length; });
+  const double most = max_speed(std::fmax(from, to), std::fmax(limits.speed, std::fmax(from, to)), [&](double speed) {
+    return rise(speed).distance() + fall(speed).distance() <= length;
+  });
   const double begin = rise(most).distance(), end = std::fmax(begin, length - fall(most).distance());
   std::vector<CubicPiece<double>> pieces;
   rise(most).add_to(pieces, 0);
@@ -78,7 +85,8 @@ struct SpeedChange {
 }
 
 /// Highest speed after a length [m], from an initial speed [m/s].
-[[nodiscard]] inline double reachable_speed(double length, double from, double acceleration, const SpeedLimits& limits) {
+[[nodiscard]] inline double reachable_speed(double length, double from, double acceleration,
+                                            const SpeedLimits& limits) {
   return max_speed(from, std::fmax(from, limits.speed), [&](double speed) {
     return SpeedChange{from, speed, acceleration, limits.jerk}.distance() <= length;
   });
@@ -90,8 +98,9 @@ struct PathSection {
   SpeedLimits limits{};  ///< limits all along it
 };
 
-/// Lowers the speeds at the joints of sections until each section can be driven within its limits: forwards for speeding up, then backwards
-/// for braking. Joints are one more than sections. Source: look-ahead of machine tools, with zero acceleration at a joint.
+/// Lowers the speeds at the joints of sections until each section can be driven within its limits: forwards for
+/// speeding up, then backwards for braking. Joints are one more than sections. Source: look-ahead of machine tools,
+/// with zero acceleration at a joint.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {
@@ -101,7 +110,8 @@ inline void settle_speeds(std::span<double> joints, std::span<const PathSection>
   }
   for (std::size_t k = sections.size(); k-- > 0;) {
     const PathSection& s = sections[k];
-    if (joints[k] > joints[k + 1]) joints[k] = std::fmin(joints[k], reachable_speed(s.length, joints[k + 1], s.limits.braking, s.limits));
+    if (joints[k] > joints[k + 1])
+      joints[k] = std::fmin(joints[k], reachable_speed(s.length, joints[k + 1], s.limits.braking, s.limits));
   }
 }
 

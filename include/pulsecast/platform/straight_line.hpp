@@ -9,7 +9,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if vertical or empty.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if
+/// vertical or empty.
 struct StraightLine {
   Vec3 from{};          ///< start, in the world [m]
   Vec3 to{0, 1000, 0};  ///< end, in the world [m]
@@ -25,15 +26,20 @@ struct StraightLine {
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes<frame::Body, frame::World>(*this, t); }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    return pose_in_lanes<frame::Body, frame::World>(*this, t);
+  }
 
-  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in different ways.
+  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in
+  /// different ways.
   [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
     const double whole = length(path);
     const simd::Doubles gone = speed * t.seconds(), share = gone / whole;
     const auto on_the_way = gone < whole;
-    const auto between = [&](double a, double way, double b) { return on_the_way ? a + way * share : simd::Doubles{} + b; };
+    const auto between = [&](double a, double way, double b) {
+      return on_the_way ? a + way * share : simd::Doubles{} + b;
+    };
     poses.rotation = RotationLanes(level(heading_of(path)));
     poses.position = {between(from.x, path.x, to.x), between(from.y, path.y, to.y), between(from.z, path.z, to.z)};
     return all_lanes();

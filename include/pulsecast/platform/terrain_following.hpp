@@ -30,10 +30,12 @@ struct TerrainFollowing {
   }
 };
 
-/// Plans a path over the ground along a line: `ground(place)` gives the height [m] at a place east and north [m], or nothing where unknown;
-/// there the last known height counts, or else the first one. The path is the lowest that keeps its height at every query and its slope
-/// within the limit. Without any known ground it is the line itself. Throws a `SettingError`.
-[[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground auto& ground, const TerrainFollowing& settings = {}) {
+/// Plans a path over the ground along a line: `ground(place)` gives the height [m] at a place east and north [m], or
+/// nothing where unknown; there the last known height counts, or else the first one. The path is the lowest that keeps
+/// its height at every query and its slope within the limit. Without any known ground it is the line itself. Throws a
+/// `SettingError`.
+[[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground auto& ground,
+                                               const TerrainFollowing& settings = {}) {
   line.validate();
   settings.validate();
   const Vec3 path = line.to - line.from;
@@ -46,7 +48,8 @@ struct TerrainFollowing {
   std::optional<double> last;
   std::size_t unknown = 0;  // queries at the start of the line
   for (std::size_t i = 0; i <= steps; ++i) {
-    positions.push_back(steps == 0 ? line.from : line.from + path * (static_cast<double>(i) / static_cast<double>(steps)));
+    positions.push_back(steps == 0 ? line.from
+                                   : line.from + path * (static_cast<double>(i) / static_cast<double>(steps)));
     const std::optional<double> here = ground(Vec2{positions[i].x, positions[i].y});
     if (here) last = here;
     if (last)

@@ -27,22 +27,25 @@ enum class Interpolation : std::uint8_t {
   cubic,   ///< cubic polynomials through the waypoints, with continuous velocity
 };
 
-/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller angle, so headings may cross north. Before
-/// the first waypoint and after the last one the body rests. Planners and trajectory files end in this.
+/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller angle, so headings may
+/// cross north. Before the first waypoint and after the last one the body rests. Planners and trajectory files end in
+/// this.
 ///
-/// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it on, the last counts.
-/// Cubic positions are interpolated on either side of a jump alone.
+/// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it
+/// on, the last counts. Cubic positions are interpolated on either side of a jump alone.
 class Waypoints {
  public:
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
-  explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
+  explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
+      : points_(std::move(points)) {
     require_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
       TimedPose& p = points_[i];
       require_within(field + ".time", p.time, -1e15, 1e15, "s");  // limit of a `Tick`
       if (i > 0 && p.time < points_[i - 1].time)
-        throw SettingError(field + ".time", p.time, "s", "at least that of the previous waypoint, " + detail::to_text(points_[i - 1].time));
+        throw SettingError(field + ".time", p.time, "s",
+                           "at least that of the previous waypoint, " + detail::to_text(points_[i - 1].time));
       require_finite(field + ".position (length)", length(p.position), "m");
       require_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);
@@ -56,14 +59,17 @@ class Waypoints {
   /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes<frame::Body, frame::World>(*this, t); }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    return pose_in_lanes<frame::Body, frame::World>(*this, t);
+  }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const simd::Doubles t = ticks.seconds();
     const auto about = neighbours_of(t[0]);
     bool together = true;  // between the same waypoints
-    for (std::size_t lane = 1; lane < simd::lane_count && together; ++lane) together = t[lane] == t[0] || neighbours_of(t[lane]) == about;
+    for (std::size_t lane = 1; lane < simd::lane_count && together; ++lane)
+      together = t[lane] == t[0] || neighbours_of(t[lane]) == about;
     if (together)
       find_poses(about, ticks, poses);
     else
@@ -77,7 +83,8 @@ class Waypoints {
   }
 
   /// Poses at times between two waypoints.
-  void find_poses(const detail::Neighbours& about, const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
+  void find_poses(const detail::Neighbours& about, const TickLanes& ticks,
+                  PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const TimedPose &a = points_[about.before], &b = points_[about.behind];
     poses = PoseLanes(Pose<frame::Body, frame::World>{a.rotation, a.position});
     if (about.before == about.behind) return;
@@ -97,8 +104,10 @@ class Waypoints {
     poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
   }
 
-  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985, Animating rotation with quaternion curves.
-  [[nodiscard]] static RotationLanes interpolated(const Rotation& from, const Rotation& to, const simd::Doubles& share) noexcept {
+  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985, Animating rotation with
+  /// quaternion curves.
+  [[nodiscard]] static RotationLanes interpolated(const Rotation& from, const Rotation& to,
+                                                  const simd::Doubles& share) noexcept {
     const double cosine = dot(from, to), along = std::fabs(cosine);
     simd::Doubles of_from = 1.0 - share, of_to = share;
     if (along <= 1 - std::numeric_limits<double>::epsilon()) {
@@ -107,8 +116,8 @@ class Waypoints {
       of_to = simd::sin(simd::Doubles(share * angle)) / sine;
     }
     if (cosine < 0) of_to = -of_to;
-    return normalize(RotationLanes{of_from * from.w + of_to * to.w, of_from * from.x + of_to * to.x, of_from * from.y + of_to * to.y,
-                                   of_from * from.z + of_to * to.z});
+    return normalize(RotationLanes{of_from * from.w + of_to * to.w, of_from * from.x + of_to * to.x,
+                                   of_from * from.y + of_to * to.y, of_from * from.z + of_to * to.z});
   }
 
   void find_velocities() {
@@ -120,14 +129,17 @@ class Waypoints {
     for (const Vec3& v : velocities_) require_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
-  /// Velocities between two jumps: at each waypoint that of the parabola through it and its neighbours; at the ends, of the parabola
-  /// through the outer three. Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise cubic Bessel interpolation; Catmull
-  /// & Rom 1974 where the times are evenly spaced.
+  /// Velocities between two jumps: at each waypoint that of the parabola through it and its neighbours; at the ends, of
+  /// the parabola through the outer three. Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise
+  /// cubic Bessel interpolation; Catmull & Rom 1974 where the times are evenly spaced.
   void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
-    const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
+    const auto mean = [&](std::size_t i) {
+      return (points_[i + 1].position - points_[i].position) / interval(i);
+    };  // velocity
     for (std::size_t i = first; i < last; ++i)
-      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the previous one)", length(mean(i)), "m/s");
+      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the previous one)",
+                     length(mean(i)), "m/s");
     velocities_[first] = velocities_[last] = mean(first);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));
@@ -145,9 +157,9 @@ class Waypoints {
 
 static_assert(Trajectory<Waypoints> && MovesInLanes<Waypoints>);
 
-/// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal the direction in.
-/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. A repeated
-/// time is a jump: neither side looks along it.
+/// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal
+/// the direction in. At rest or in vertical motion the last heading is kept, or else the next one taken; without
+/// horizontal motion, north. A repeated time is a jump: neither side looks along it.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
   std::vector<Vec3> ahead(n, Vec3{});  // next horizontal direction of motion from each waypoint; zero without one
@@ -175,8 +187,8 @@ static_assert(Trajectory<Waypoints> && MovesInLanes<Waypoints>);
   return points;
 }
 
-/// Waypoints of a body that follows the path through these positions [m] at a constant speed [m/s], level and looking along it. Repeated
-/// positions are left out. Throws a `SettingError`.
+/// Waypoints of a body that follows the path through these positions [m] at a constant speed [m/s], level and looking
+/// along it. Repeated positions are left out. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<TimedPose> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
   require_positive("at_constant_speed (speed)", speed, "m/s");
   std::vector<TimedPose> points;

@@ -22,7 +22,8 @@
 #include <pulsecast/python/detail/point_rows.hpp>
 #include <pulsecast/run.hpp>
 
-/// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs return NumPy arrays.
+/// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs
+/// return NumPy arrays.
 ///
 ///     PYBIND11_MODULE(own_scanner, m) {
 ///       pulsecast::python::bind_survey<OwnSurvey>(m, "OwnSurvey").def(pybind11::init(&make_own_survey));
@@ -53,27 +54,32 @@ struct RunRequest {
     require_not_negative("run every_seconds", every_seconds, "s");
     for (const auto& [name, function] : {std::pair{"callback", callback}, std::pair{"progress", progress}})
       if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
-        throw pybind11::type_error(std::string(name) + ": expected a function, not " + std::string(pybind11::repr(function)));
+        throw pybind11::type_error(std::string(name) + ": expected a function, not " +
+                                   std::string(pybind11::repr(function)));
   }
 };
 
-/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, of colours only if asked.
-/// Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the result. Throws a `SettingError`,
-/// a `TypeError` for a callback that is not callable, or a `ValueError` for colours of a survey without any.
+/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, of colours
+/// only if asked. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with
+/// the result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for
+/// colours of a survey without any.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& asked, PointExtras extras, const Run& run) {
   asked.validate();
   if (asked.colours && !extras.colours) throw pybind11::value_error("run colours: the points of this survey have none");
   if (!asked.colours) extras.colours = {};
   using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); };
+  const auto seconds_since = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
   const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
   std::stop_source stopping;
   RowSink rows({asked.pulses, asked.columns, std::move(extras)});
   auto handed_over = Clock::now(), told = handed_over;
 
   InterruptWatch watch(stopping);
-  RunOptions options{.threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
+  RunOptions options{
+      .threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
   if (asked.end) options.end = *asked.end;
   options.progress = [&](const Progress& p) {
     if (!tells || (p.done < p.total && seconds_since(told) < 0.1)) return;
@@ -112,30 +118,36 @@ inline void bind_common(pybind11::module_& m) {
   bind_batch(m);
 }
 
-/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink, `extras(self)` the `PointExtras` of its points.
+/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink, `extras(self)` the
+/// `PointExtras` of its points.
 template <class Class, class Runner, class Extras>
 void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
   namespace py = pybind11;
   using Self = typename Class::type;
   bound.def(
       "run",
-      [runner, extras](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end, PulseIndex stride,
-                       py::object callback, PulseIndex every_pulses, double every_seconds, py::object progress, bool pulses, bool columns,
-                       bool colours) {
-        return python::run(
-            {threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses, columns, colours},
-            extras(self), runner(self));
+      [runner, extras](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end,
+                       PulseIndex stride, py::object callback, PulseIndex every_pulses, double every_seconds,
+                       py::object progress, bool pulses, bool columns, bool colours) {
+        return python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses,
+                            every_seconds, pulses, columns, colours},
+                           extras(self), runner(self));
       },
-      py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
-      py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,
-      py::arg("columns") = false, py::arg("colours") = false,
-      "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), and returns a Batch. "
+      py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1,
+      py::arg("callback") = py::none(), py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0,
+      py::arg("progress") = py::none(), py::arg("pulses") = true, py::arg("columns") = false,
+      py::arg("colours") = false,
+      "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
+      "and returns a Batch. "
       "With a callback, "
-      "batches go to callback(batch) every `every_pulses` pulses or `every_seconds` seconds, and at the end, and are not kept. "
+      "batches go to callback(batch) every `every_pulses` pulses or `every_seconds` seconds, and at the end, and are "
+      "not kept. "
       "progress(done, total, echoes, "
-      "seconds) is called some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. columns=True "
+      "seconds) is called some ten times a second. pulses=False keeps points only, without rows of pulses and "
+      "waveforms. columns=True "
       "keeps points "
-      "by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more ray each. Raises "
+      "by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more ray each. "
+      "Raises "
       "Interrupted on Ctrl-C; its `result` is complete up to there.");
 }
 
@@ -144,13 +156,15 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
 
 namespace PULSECAST_NAMESPACE::python {
 
-/// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by `.def(pybind11::init(...))`; a survey
-/// that refers to a scene held by Python needs `pybind11::keep_alive`. `extras(survey)` gives the `PointExtras` of its points, such as
-/// `extras_of(scene)`.
+/// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by
+/// `.def(pybind11::init(...))`; a survey that refers to a scene held by Python needs `pybind11::keep_alive`.
+/// `extras(survey)` gives the `PointExtras` of its points, such as `extras_of(scene)`.
 template <PulseSurvey Survey, class Extras>
-pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name, const Extras& extras) {
+pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name,
+                                                              const Extras& extras) {
   python::bind_common(m);
-  pybind11::class_<Survey, std::shared_ptr<Survey>> bound(m, name, "A survey: a pure function from the number of a pulse to its echoes.");
+  pybind11::class_<Survey, std::shared_ptr<Survey>> bound(
+      m, name, "A survey: a pure function from the number of a pulse to its echoes.");
   bound.def("__len__", &Survey::size, "Number of pulse slots.");
   bound.def_property_readonly("subrays", &Survey::subrays, "Number of subrays of a pulse.");
   const auto runner = [](const Survey& survey) {

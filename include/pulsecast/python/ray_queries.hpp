@@ -48,8 +48,8 @@ struct HitRow {
   std::int32_t part = -1;                                          ///< as in `RayHit`
   std::uint32_t object = 0;                                        ///< as in `SurfacePoint`
   std::uint16_t classification = 0;                                ///< as in `SurfacePoint`
-  std::uint8_t front = 0;                                          ///< 1 if the shape's own normal is towards the ray's origin
-  std::uint8_t spare[5] = {};                                      ///< zeros outside the array
+  std::uint8_t front = 0;      ///< 1 if the shape's own normal is towards the ray's origin
+  std::uint8_t spare[5] = {};  ///< zeros outside the array
 
  private:
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -68,7 +68,8 @@ using NumberArray = pybind11::array_t<double, pybind11::array::c_style | pybind1
 class RayTable {
  public:
   /// @throws SettingError for arrays of other shapes, or values out of range
-  RayTable(NumberArray rays, std::optional<NumberArray> directions, NumberArray time, double near, double far, std::uint64_t seed)
+  RayTable(NumberArray rays, std::optional<NumberArray> directions, NumberArray time, double near, double far,
+           std::uint64_t seed)
       : rays_(std::move(rays)),
         directions_(directions ? std::move(*directions) : rays_),
         time_(std::move(time)),
@@ -82,7 +83,8 @@ class RayTable {
       throw SettingError("rays directions (rows)", static_cast<double>(directions_.shape(0)), "",
                          "as many as origins, " + std::to_string(size()));
     if (time_.size() != 1 && (time_.ndim() != 1 || time_.shape(0) != rays_.shape(0)))
-      throw SettingError("rays time (number)", static_cast<double>(time_.size()), "", "1, or as many as rays, " + std::to_string(size()));
+      throw SettingError("rays time (number)", static_cast<double>(time_.size()), "",
+                         "1, or as many as rays, " + std::to_string(size()));
     for (pybind11::ssize_t i = 0; i < time_.size(); ++i) require_within("rays time", time_.data()[i], -1e15, 1e15, "s");
     require_not_negative("rays near", near, "m");
     if (!(far >= 0)) throw SettingError("rays far", far, "m", "at least 0");
@@ -209,7 +211,8 @@ template <class World>
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) error += std::fabs(dot(turn[a], turn[b]) - (a == b ? 1 : 0));
     error += length(cross(turn[0], turn[1]) - turn[2]);  // 2 for a mirror image
-    if (!(error <= 1e-5)) throw SettingError("poses: pose " + std::to_string(p) + " (error)", error, "", "a rotation and a translation");
+    if (!(error <= 1e-5))
+      throw SettingError("poses: pose " + std::to_string(p) + " (error)", error, "", "a rotation and a translation");
     poses.push_back({unit(rotation_of(turn)), {m[3], m[7], m[11]}});
   }
   return poses;
@@ -217,7 +220,8 @@ template <class World>
 
 /// Ranges of equal sensors at many poses: shape (poses, rays), as `pulsecast::run_batch` gives them.
 template <class World>
-[[nodiscard]] pybind11::array_t<float> run_batch(const World& scene, const NumberArray& poses, const RayTable& rays, unsigned threads) {
+[[nodiscard]] pybind11::array_t<float> run_batch(const World& scene, const NumberArray& poses, const RayTable& rays,
+                                                 unsigned threads) {
   const auto at = sensor_poses(poses);
   std::vector<Ray> beams(rays.size());
   for (std::size_t i = 0; i < beams.size(); ++i) beams[i] = rays[i];
@@ -228,14 +232,17 @@ template <class World>
   return ranges;
 }
 
-/// Attributes of objects, such as those of hits: an array a name, of the shape of `objects`, NaN where an object has none.
+/// Attributes of objects, such as those of hits: an array a name, of the shape of `objects`, NaN where an object has
+/// none.
 /// @throws SettingError as `ObjectAttributes` @throws TypeError for numbers that are not whole
 template <class World>
 [[nodiscard]] pybind11::dict attributes_of(const World& scene, const pybind11::object& given) {
   using Numbers = pybind11::array_t<std::int64_t, pybind11::array::c_style | pybind11::array::forcecast>;
   const auto numbers = pybind11::array::ensure(given);
-  if (const char kind = numbers ? numbers.dtype().kind() : ' '; kind != 'i' && kind != 'u' && !(numbers && numbers.size() == 0))
-    throw pybind11::type_error("attributes_of objects: expected whole numbers, not " + std::string(pybind11::repr(given)));
+  if (const char kind = numbers ? numbers.dtype().kind() : ' ';
+      kind != 'i' && kind != 'u' && !(numbers && numbers.size() == 0))
+    throw pybind11::type_error("attributes_of objects: expected whole numbers, not " +
+                               std::string(pybind11::repr(given)));
   const Numbers objects(numbers);
   const ObjectAttributes all(scene.parts());
   const std::vector<pybind11::ssize_t> shape(objects.shape(), objects.shape() + objects.ndim());
@@ -245,39 +252,45 @@ template <class World>
     const std::int64_t object = objects.data()[i];
     const bool is_object = object >= 0 && object <= std::numeric_limits<ObjectId>::max();
     for (std::size_t k = 0; k < columns.size(); ++k)
-      columns[k].mutable_data()[i] = is_object ? all.of(static_cast<ObjectId>(object))[k] : std::numeric_limits<double>::quiet_NaN();
+      columns[k].mutable_data()[i] =
+          is_object ? all.of(static_cast<ObjectId>(object))[k] : std::numeric_limits<double>::quiet_NaN();
   }
   pybind11::dict named;
   for (std::size_t k = 0; k < columns.size(); ++k) named[all.names()[k].c_str()] = columns[k];
   return named;
 }
 
-/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a class of scenes, as `Scene` and
-/// `MovingScene`.
+/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a class of scenes, as
+/// `Scene` and `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
   using World = typename std::remove_reference_t<Class>::type;
   if (!py::detail::get_numpy_internals().get_type_info<HitRow>(false))
-    PYBIND11_NUMPY_DTYPE(HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object, classification, front);
+    PYBIND11_NUMPY_DTYPE(HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
+                         classification, front);
   const auto add = [&bound](const char* name, auto query, const std::string& returned) {
     const std::string doc =
         returned +
         " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
-        "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with the "
-        "number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction miss.";
+        "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with "
+        "the "
+        "number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
+        "miss.";
     bound.def(
         name,
-        [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near, double far, NumberArray time,
-                std::uint64_t seed, unsigned threads) {
-          return query(scene, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
+        [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near, double far,
+                NumberArray time, std::uint64_t seed, unsigned threads) {
+          return query(scene, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
+                       threads);
         },
         py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
-        py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0, py::arg("threads") = 0,
-        doc.c_str());
+        py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
+        py::arg("threads") = 0, doc.c_str());
   };
   const std::string row =
-      "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity (3) [m/s], ray, "
+      "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
+      "(3) [m/s], ray, "
       "primitive, part, object, classification, front.";
   add(
       "closest_hits", [](const World& s, const RayTable& r, unsigned t) { return python::closest_hits(s, r, t); },
@@ -290,17 +303,22 @@ Class& bind_ray_queries(Class&& bound) {
       "Boolean array: True for each ray that meets anything.");
   bound.def(
       "run_batch",
-      [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions, double near, double far,
-         NumberArray time, std::uint64_t seed, unsigned threads) {
-        return python::run_batch(scene, poses, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
+      [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions,
+         double near, double far, NumberArray time, std::uint64_t seed, unsigned threads) {
+        return python::run_batch(
+            scene, poses, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
       },
       py::arg("poses"), py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
-      py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0, py::arg("threads") = 0,
-      "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a hit. poses: shape "
-      "(n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in the sensor's frame; else as "
+      py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
+      py::arg("threads") = 0,
+      "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a "
+      "hit. poses: shape "
+      "(n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in the sensor's "
+      "frame; else as "
       "`closest_hits`. seed: with the index in the array, the key of leaves met at random.");
   bound.def("attributes_of", &python::attributes_of<World>, py::arg("objects"),
-            "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. objects: whole "
+            "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
+            "objects: whole "
             "numbers, as the column `object` of hits.");
   return bound;
 }

@@ -15,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in `Legs`. Another is
-/// emitters of one device behind different optics:
+/// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in
+/// `Legs`. Another is emitters of one device behind different optics:
 /// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
@@ -43,7 +43,8 @@ class AnySource {
     return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count); }, source_);
   }
   /// As the concept SkipsBlocked requires.
-  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||(SkipsBlocked<Others> || ...) {
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
+      (SkipsBlocked<Others> || ...) {
     const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {
       if constexpr (SkipsBlocked<Source>)
         return s.next_pulse(i);
@@ -53,10 +54,10 @@ class AnySource {
     return std::visit(skip, source_);
   }
   /// As the concept MeasuresBeam requires.
-  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i,
-                                                                             Tick t) const noexcept requires MeasuresBeam<First> ||
-      (MeasuresBeam<Others> || ...) {
-    const auto beam = [&]<class Source>(const Source& s) noexcept -> std::optional<Pose<frame::Beam, frame::Instrument>> {
+  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(
+      PulseIndex i, Tick t) const noexcept requires MeasuresBeam<First> ||(MeasuresBeam<Others> || ...) {
+    const auto beam =
+        [&]<class Source>(const Source& s) noexcept -> std::optional<Pose<frame::Beam, frame::Instrument>> {
       if constexpr (MeasuresBeam<Source>)
         return s.measured(i, t);
       else

@@ -21,13 +21,15 @@ template <class S>
 concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<S>;
 }  // namespace detail
 
-/// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one type. Of n channels,
-/// slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in `Scanner::delay`, which must not decrease from channel
-/// to channel; emitters that fire together share it. The emitters of channel k have the channel number k.
+/// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one
+/// type. Of n channels, slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in
+/// `Scanner::delay`, which must not decrease from channel to channel; emitters that fire together share it. The
+/// emitters of channel k have the channel number k.
 template <detail::SourceInSomeFrame Source>
 class Channels {
  public:
-  /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a `SettingError`.
+  /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a
+  /// `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
     require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, max_emitters, "");
     std::size_t emitters = 0;
@@ -57,7 +59,9 @@ class Channels {
     return all;
   }
 
-  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) { return pulse_lanes(i, 1)[0]; }
+  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) {
+    return pulse_lanes(i, 1)[0];
+  }
 
   /// As the concept MakesLanes requires.
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
@@ -89,8 +93,9 @@ class Channels {
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 
  private:
-  /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last rounds: two of each, and more until
-  /// every channel has fired, as an optic may block it at first. Channels of one rate show their order in any round.
+  /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last rounds: two of each,
+  /// and more until every channel has fired, as an optic may block it at first. Channels of one rate show their order
+  /// in any round.
   void require_order() const {
     constexpr PulseIndex max_waiting = 4096;  // slots in which a channel may be blocked
     const PulseIndex n = channels_.size(), some = 2 * n + max_waiting;
@@ -101,8 +106,8 @@ class Channels {
       const auto p = pulse(i);
       if (!p) return;
       if (last && p->tick < *last)
-        throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
-                           "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
+        throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(),
+                           "s", "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
       last = p->tick;
       if (!fired[i % n]) --waiting;
       fired[i % n] = true;

@@ -29,9 +29,10 @@ struct SingleRay {
 
 namespace detail {
 
-/// Moves offsets of equal energy so that their mean is 0 and, if there are more than two, their second moments are those of the beam: a
-/// quarter of its squared radius across and up, none mixed. Slopes then broaden an echo as a beam does. Each offset is mapped by the
-/// inverse square root of the covariance, the map closest to none. Source: two-by-two square root by the theorem of Cayley and Hamilton.
+/// Moves offsets of equal energy so that their mean is 0 and, if there are more than two, their second moments are
+/// those of the beam: a quarter of its squared radius across and up, none mixed. Slopes then broaden an echo as a beam
+/// does. Each offset is mapped by the inverse square root of the covariance, the map closest to none. Source:
+/// two-by-two square root by the theorem of Cayley and Hamilton.
 inline void match_moments(std::vector<Vec2>& offsets) noexcept {
   const double n = static_cast<double>(offsets.size());
   Vec2 sum{};
@@ -58,11 +59,12 @@ enum class RingMoments : std::uint8_t {
   whole,   ///< of the whole beam: circles are wider by 1.2, and slopes broaden echoes as a beam does
 };
 
-/// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each circle represents the ring of the beam up to halfway to
-/// its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the 1/e^2 radius.
-/// Source: Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
-/// Footprint of XML surveys. The beam extends beyond it, so more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`.
-/// Slopes broaden an echo by 17 % less than a beam does, unless the moments are those of the whole beam.
+/// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each circle represents the ring of the
+/// beam up to halfway to its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the
+/// 1/e^2 radius. Source: Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the
+/// footprint. Footprint of XML surveys. The beam extends beyond it, so more than 19 subrays gain little
+/// (docs/tradeoff.md): see `LatticeFootprint`. Slopes broaden an echo by 17 % less than a beam does, unless the moments
+/// are those of the whole beam.
 class RingFootprint {
  public:
   /// `circles` from 1 to 1000, the central ray included; 3 circles are 19 subrays. Throws a `SettingError`.
@@ -107,9 +109,9 @@ class RingFootprint {
   std::vector<double> shares_;
 };
 
-/// Subrays of equal energy on a sunflower spiral: golden-angle steps, radii at the quantiles of a Gaussian beam, mapped so that mean and
-/// second moments are the beam's.
-/// Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2 r^2 / w^2).
+/// Subrays of equal energy on a sunflower spiral: golden-angle steps, radii at the quantiles of a Gaussian beam, mapped
+/// so that mean and second moments are the beam's. Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2
+/// r^2 / w^2).
 class SunflowerFootprint {
  public:
   /// `subrays` from 1 to 100,000. Throws a `SettingError`.
@@ -135,15 +137,16 @@ class SunflowerFootprint {
   std::vector<Vec2> offsets_;
 };
 
-/// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam, mapped so that the
-/// second moments are the beam's. Rows follow the order of the multiples of the golden ratio, so that neighbours across are far apart up.
-/// Pareto-optimal in docs/tradeoff.md. Edges and wires that are upright or level in the beam, as on buildings, are sampled as exactly as by
-/// twice as many subrays in rings. Oblique ones are sampled as exactly as by as many on a sunflower.
-/// Source: Niederreiter 1992, ch. 3, for the order; columns and rows from inverting the normal distribution.
+/// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam,
+/// mapped so that the second moments are the beam's. Rows follow the order of the multiples of the golden ratio, so
+/// that neighbours across are far apart up. Pareto-optimal in docs/tradeoff.md. Edges and wires that are upright or
+/// level in the beam, as on buildings, are sampled as exactly as by twice as many subrays in rings. Oblique ones are
+/// sampled as exactly as by as many on a sunflower. Source: Niederreiter 1992, ch. 3, for the order; columns and rows
+/// from inverting the normal distribution.
 class LatticeFootprint {
  public:
-  /// `subrays` from 1 to 100,000; 19 are Pareto-optimal in docs/tradeoff.md, more exact on a facade than any rings. Throws a
-  /// `SettingError`.
+  /// `subrays` from 1 to 100,000; 19 are Pareto-optimal in docs/tradeoff.md, more exact on a facade than any rings.
+  /// Throws a `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
     part_axes();
@@ -161,8 +164,9 @@ class LatticeFootprint {
     return 0.5 * normal_quantile((static_cast<double>(i) + 0.5) / static_cast<double>(number));
   }
 
-  /// Exchanges the rows of the two subrays, and then of others, whose exchange brings across and up nearest to independence, so that
-  /// columns and rows stay nearly upright and level. For few subrays: many are independent enough.
+  /// Exchanges the rows of the two subrays, and then of others, whose exchange brings across and up nearest to
+  /// independence, so that columns and rows stay nearly upright and level. For few subrays: many are independent
+  /// enough.
   void part_axes() noexcept {
     const std::size_t n = offsets_.size();
     double mixed = 0;
@@ -208,7 +212,8 @@ class LatticeFootprint {
   std::vector<Vec2> offsets_;
 };
 
-static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> && Footprint<LatticeFootprint>);
+static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> &&
+              Footprint<LatticeFootprint>);
 
 /// Footprint that hands every subray with its hit on to the sinks (`EchoBatch::subrays`), for studies of footprints:
 /// `WithSubrayRecord{RingFootprint{5}}`.
@@ -221,8 +226,9 @@ struct WithSubrayRecord : Pattern {
 
 static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
-/// Footprint that a survey turns about the axis of each pulse's beam, by an angle of its own: `TurnedFootprint{LatticeFootprint{}}`. A thin
-/// wire or edge then meets other subrays from pulse to pulse, so that errors of neighbours do not repeat. For round beams only.
+/// Footprint that a survey turns about the axis of each pulse's beam, by an angle of its own:
+/// `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge then meets other subrays from pulse to pulse, so that
+/// errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
   static constexpr bool turned_by_pulse = true;  ///< as the concept TurnsFootprint describes
@@ -243,16 +249,17 @@ static_assert(Footprint<TurnedFootprint<LatticeFootprint>>);
   return {aside * scaled.x, std::cos(angle), aside * scaled.y};
 }
 
-/// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from a point. Otherwise each subray passes
-/// the waist a quarter turn ahead of its far-field azimuth, so that the subrays are rulings of the beam's hyperboloid. At every range,
-/// their distances from the axis are those of the footprint times `beam_radius`.
+/// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from a point. Otherwise
+/// each subray passes the waist a quarter turn ahead of its far-field azimuth, so that the subrays are rulings of the
+/// beam's hyperboloid. At every range, their distances from the axis are those of the footprint times `beam_radius`.
 [[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
   const Vec3 direction = subray_direction(offset, laser.divergence);
   const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};
   return at_waist - direction * (laser.waist_range / direction.y) + Vec3{0, laser.waist_range, 0};
 }
 
-/// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their memory.
+/// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their
+/// memory.
 class SubrayDirections {
  public:
   const double* x = nullptr;       ///< components of the unit directions to the right
@@ -267,8 +274,11 @@ class SubrayDirections {
   SubrayDirections() = default;
   /// Takes a valid footprint and emitter.
   template <Footprint Pattern>
-  SubrayDirections(const Pattern& footprint, const Emitter& emitter) : SubrayDirections(footprint.size(), emitter.laser) {
-    assign(footprint.size(), emitter, [&](std::size_t j) noexcept { return Subray{footprint.offset(j), footprint.share(j)}; });
+  SubrayDirections(const Pattern& footprint, const Emitter& emitter)
+      : SubrayDirections(footprint.size(), emitter.laser) {
+    assign(footprint.size(), emitter, [&](std::size_t j) noexcept {
+      return Subray{footprint.offset(j), footprint.share(j)};
+    });
   }
   /// Room for up to `size` subrays of any laser, which `assign` sets.
   [[nodiscard]] static SubrayDirections room(std::size_t size) { return {size, Laser{.waist_diameter = 1}}; }
@@ -305,7 +315,8 @@ class SubrayDirections {
   void to_world(const Matrix3& world_from_beam, std::size_t first, RayBundle& rays) const noexcept {
     const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
     for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
-      const simd::Doubles right = simd::load<simd::Doubles>(x[first + j]), forward = simd::load<simd::Doubles>(y[first + j]),
+      const simd::Doubles right = simd::load<simd::Doubles>(x[first + j]),
+                          forward = simd::load<simd::Doubles>(y[first + j]),
                           up = simd::load<simd::Doubles>(z[first + j]);
       simd::store(simd::Doubles(right * across.x + forward * ahead.x + up * above.x), rays.x[j]);
       simd::store(simd::Doubles(right * across.y + forward * ahead.y + up * above.y), rays.y[j]);

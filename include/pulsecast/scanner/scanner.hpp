@@ -23,10 +23,12 @@ struct Scanner {
 
   void validate() const {
     require_within("Scanner::pulse_rate", pulse_rate, 1e-3, 1e12, "Hz");
-    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // limit of the counts in `Tick` and `step_in_cycle`
+    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52,
+                   "");  // limit of the counts in `Tick` and `step_in_cycle`
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
-      throw SettingError("Scanner::delay", delay, "s", detail::joined({"at least 0 and less than ", detail::to_text(1 / pulse_rate)}));
+      throw SettingError("Scanner::delay", delay, "s",
+                         detail::joined({"at least 0 and less than ", detail::to_text(1 / pulse_rate)}));
     emitter().validate();
   }
 

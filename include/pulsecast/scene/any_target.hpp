@@ -25,7 +25,8 @@ struct VisitsHits {
 
 /// Scan target that answers queries by single rays, as `Scene` does.
 template <class T>
-concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, double range, detail::VisitsHits& visitor) {
+concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, double range,
+                               detail::VisitsHits& visitor) {
   { t.closest_hit(ray) }
   noexcept->std::same_as<std::optional<RayHit>>;
   { t.occluded(ray, range) }
@@ -36,9 +37,9 @@ concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, dou
   noexcept->std::same_as<SurfacePoint>;
 };
 
-/// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>, MovingScene<TriangleMesh<>>>`. Holds
-/// its target by value, and must outlive the survey as any map must. `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered`
-/// does.
+/// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>,
+/// MovingScene<TriangleMesh<>>>`. Holds its target by value, and must outlive the survey as any map must.
+/// `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered` does.
 template <Target First, Target... Others>
 class AnyTarget {
  public:
@@ -64,7 +65,8 @@ class AnyTarget {
   }
 
   /// Closest hit of a ray; empty for a miss. This query and the next three exist if all types have them.
-  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept
+      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
     return std::visit([&](const auto& target) noexcept { return target.closest_hit(ray); }, target_);
   }
   /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
@@ -92,8 +94,10 @@ class AnyTarget {
     return std::visit([](const auto& target) noexcept -> Box { return target.bounds(); }, target_);
   }
 
-  /// Height of the ground of the target at a place that is nearest to a height; by default of the highest [m]. Empty if there is none.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
+  /// Height of the ground of the target at a place that is nearest to a height; by default of the highest [m]. Empty if
+  /// there is none.
+  [[nodiscard]] std::optional<double> ground_height(
+      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
       requires(requires(const First& f, const Others&... o) {
         f.ground_height(at, near);
         (o.ground_height(at, near), ...);

@@ -24,11 +24,14 @@ struct ClassMaterials {
   std::vector<Material> materials{1};  ///< table of a part; the first is that of pixels without a class
   std::vector<CodeMaterial> listed{};  ///< code of each other material
 
-  void validate() const { require_within("ClassMaterials::materials (number)", static_cast<double>(materials.size()), 1, 256, ""); }
+  void validate() const {
+    require_within("ClassMaterials::materials (number)", static_cast<double>(materials.size()), 1, 256, "");
+  }
 };
 
-/// Gives each code that occurs in a raster the colour of a colour table (sRGB, each channel from 0 to 1), whose entry n is that of code n.
-/// A code that is not listed gets a copy of the first material; one beyond the table or that is no whole number stays as it is.
+/// Gives each code that occurs in a raster the colour of a colour table (sRGB, each channel from 0 to 1), whose entry n
+/// is that of code n. A code that is not listed gets a copy of the first material; one beyond the table or that is no
+/// whole number stays as it is.
 /// @throws SettingError for more than 256 materials, and as `Raster::validate`
 inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::span<const Vec3> colours) {
   classes.validate();
@@ -45,7 +48,8 @@ inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::sp
     auto found = std::find_if(classes.listed.begin(), classes.listed.end(),
                               [&](const CodeMaterial& one) { return one.code == static_cast<double>(code); });
     if (found == classes.listed.end()) {
-      require_within("ClassMaterials::materials (number)", static_cast<double>(classes.materials.size() + 1), 1, 256, "");
+      require_within("ClassMaterials::materials (number)", static_cast<double>(classes.materials.size() + 1), 1, 256,
+                     "");
       classes.listed.push_back({static_cast<double>(code), static_cast<std::uint8_t>(classes.materials.size())});
       classes.materials.push_back(classes.materials.front());
       classes.materials.back().name += " " + std::to_string(code);

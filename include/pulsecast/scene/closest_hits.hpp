@@ -51,7 +51,8 @@ namespace detail {
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const double per = per_half / size[axis];
   const auto cell = [&](int k) noexcept { return static_cast<std::uint32_t>(static_cast<int>(d[k] * per + per_half)); };
-  return static_cast<std::uint32_t>(axis) << 20U | (d[axis] < 0 ? 1U << 19U : 0U) | cell((axis + 1) % 3) << 6U | cell((axis + 2) % 3);
+  return static_cast<std::uint32_t>(axis) << 20U | (d[axis] < 0 ? 1U << 19U : 0U) | cell((axis + 1) % 3) << 6U |
+         cell((axis + 2) % 3);
 }
 
 /// Closest hits of rays of one origin and the same limits, some of which are named by `numbers`.
@@ -72,9 +73,9 @@ void trace_bundle(const World& world, std::span<const Ray> rays, std::span<const
 }
 }  // namespace detail
 
-/// Closest hit of each ray, the same as `world.closest_hit` gives, one per ray. Of up to 512 consecutive rays with one origin, `near` and
-/// `far`, those of about one direction are traced together, in whatever order they come; for a moving world they need one tick, too.
-/// Directions are unit vectors. Allocates nothing.
+/// Closest hit of each ray, the same as `world.closest_hit` gives, one per ray. Of up to 512 consecutive rays with one
+/// origin, `near` and `far`, those of about one direction are traced together, in whatever order they come; for a
+/// moving world they need one tick, too. Directions are unit vectors. Allocates nothing.
 template <GivesRanges World>
 void closest_hits(const World& world, std::span<const Ray> rays, std::span<ClosestHitOf<World>> hits) noexcept {
   std::size_t first = 0;
@@ -86,8 +87,8 @@ void closest_hits(const World& world, std::span<const Ray> rays, std::span<Close
       std::size_t count = 0;
       for (; count < order.size() && first + count < rays.size(); ++count) {
         const Ray& ray = rays[first + count];
-        const bool together =
-            ray.origin == one.origin && ray.near == one.near && ray.far == one.far && (World::timeless || ray.tick == one.tick);
+        const bool together = ray.origin == one.origin && ray.near == one.near && ray.far == one.far &&
+                              (World::timeless || ray.tick == one.tick);
         if (!together || !(std::fabs(dot(ray.direction, ray.direction) - 1) < 1e-6)) break;
         order[count] = std::uint64_t{detail::direction_cell(ray.direction)} << 16U | count;
       }
@@ -96,7 +97,8 @@ void closest_hits(const World& world, std::span<const Ray> rays, std::span<Close
       for (std::size_t from = 0, to = 0; from < count; from = to) {
         while (to < count && to - from < most && cell(to) == cell(from)) ++to;
         if (to - from >= least) {
-          detail::trace_bundle(world, rays.subspan(first), std::span(order).subspan(from, to - from), hits.subspan(first));
+          detail::trace_bundle(world, rays.subspan(first), std::span(order).subspan(from, to - from),
+                               hits.subspan(first));
         } else {
           for (std::size_t k = from; k < to; ++k) {
             const std::size_t number = first + (order[k] & 0xFFFF);

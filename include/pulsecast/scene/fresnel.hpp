@@ -20,8 +20,8 @@ struct FresnelSplit {
   [[nodiscard]] double refracted() const noexcept { return 1 - reflected; }  ///< share refracted
 };
 
-/// Splits light that meets a face at a cosine of incidence, by the index beyond the face over that before it. At angles beyond the critical
-/// one, all is reflected. Source: Fresnel's equations, Born & Wolf 1999, 1.5.2.
+/// Splits light that meets a face at a cosine of incidence, by the index beyond the face over that before it. At angles
+/// beyond the critical one, all is reflected. Source: Fresnel's equations, Born & Wolf 1999, 1.5.2.
 [[nodiscard]] inline FresnelSplit fresnel_split(double cos_incidence, double relative_index) noexcept {
   const double sine2 = (1 - cos_incidence * cos_incidence) / (relative_index * relative_index);
   if (!(sine2 < 1)) return {1, 1, 1, 0};
@@ -37,9 +37,10 @@ struct FresnelSplit {
   return direction - 2 * dot(direction, normal) * normal;
 }
 
-/// Direction of a ray refracted at a plane whose normal is towards the side it comes from; unit vectors. `split` is that of the same ray
-/// and index. Source: Snell's law.
-[[nodiscard]] inline Vec3 refracted(const Vec3& direction, const Vec3& normal, double relative_index, const FresnelSplit& split) noexcept {
+/// Direction of a ray refracted at a plane whose normal is towards the side it comes from; unit vectors. `split` is
+/// that of the same ray and index. Source: Snell's law.
+[[nodiscard]] inline Vec3 refracted(const Vec3& direction, const Vec3& normal, double relative_index,
+                                    const FresnelSplit& split) noexcept {
   const double per = 1 / relative_index;
   return per * direction + (-per * dot(direction, normal) - split.cos_refracted) * normal;
 }
@@ -52,17 +53,22 @@ struct PaneSplit {
   double delay = 0;        ///< optical path from face to face, less the path of the shifted ray between them [m]
   double cos_inside = 1;   ///< cosine between the ray inside and the normal
   /// Distance between the ray and its continuation without the pane, `d sin(a - b) / cos b` [m].
-  [[nodiscard]] double lateral(double cos_incidence) const noexcept { return shift * std::sqrt(1 - cos_incidence * cos_incidence); }
+  [[nodiscard]] double lateral(double cos_incidence) const noexcept {
+    return shift * std::sqrt(1 - cos_incidence * cos_incidence);
+  }
 };
 
-/// Splits light at a pane in a medium, of air if not told. Source: sum of the geometric series of reflections, for each polarisation; Born
-/// & Wolf 1999, 7.6, without interference.
-[[nodiscard]] inline PaneSplit pane_split(double cos_incidence, const SmoothInterface& pane, const Medium& around = {}) noexcept {
+/// Splits light at a pane in a medium, of air if not told. Source: sum of the geometric series of reflections, for each
+/// polarisation; Born & Wolf 1999, 7.6, without interference.
+[[nodiscard]] inline PaneSplit pane_split(double cos_incidence, const SmoothInterface& pane,
+                                          const Medium& around = {}) noexcept {
   const double n = pane.inside.index / around.index, d = pane.thickness;
   const FresnelSplit face = fresnel_split(cos_incidence, n);
   const double inside = face.cos_refracted;
   const double pass = std::exp(-pane.inside.absorption * d / inside);
-  const auto through = [&](double r) noexcept { return r < 1 ? (1 - r) * (1 - r) * pass / (1 - r * r * pass * pass) : 0; };
+  const auto through = [&](double r) noexcept {
+    return r < 1 ? (1 - r) * (1 - r) * pass / (1 - r * r * pass * pass) : 0;
+  };
   const auto back = [&](double r) noexcept { return r * (1 + pass * through(r)); };
   return {.reflected = (back(face.perpendicular) + back(face.parallel)) / 2,
           .transmitted = (through(face.perpendicular) + through(face.parallel)) / 2,

@@ -27,11 +27,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, 3.2 where the heights
-/// are packed, and of 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two triangles of cell i, row by row, are
-/// primitives 2 i and 2 i + 1. A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as
-/// a whole, front to back: row by row and column by column in the order of passage. Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights);
-/// Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, 3.2
+/// where the heights are packed, and of 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two
+/// triangles of cell i, row by row, are primitives 2 i and 2 i + 1. A min-max pyramid of heights, eight children per
+/// node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row by row and column by column
+/// in the order of passage. Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007
+/// (bundles by interval arithmetic).
 class HeightField {
  public:
   static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
@@ -46,13 +47,15 @@ class HeightField {
     const detail::PyramidLayout layout(grid_);
     levels_ = layout.levels;
     top_ = layout.top;
-    auto built = heights_.read([&](const auto& pixels) { return detail::HeightPyramid(grid_, pixels, layout, workers); });
+    auto built =
+        heights_.read([&](const auto& pixels) { return detail::HeightPyramid(grid_, pixels, layout, workers); });
     pyramid_ = std::move(built.heights);
     bounds_ = built.bounds;
     per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
     constexpr double single = std::numeric_limits<float>::epsilon();
     pad_ = {16 * single * grid_.columns * grid_.pixel.x, 16 * single * grid_.rows * grid_.pixel.y};
-    centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y, 0};
+    centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y,
+               0};
   }
 
   explicit HeightField(DeserializeTag) {}
@@ -63,11 +66,12 @@ class HeightField {
 
   /// True if the array sizes match the grid.
   [[nodiscard]] bool is_consistent() const noexcept {
-    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
+    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels)
+      return false;
     const detail::PyramidLayout layout(grid_);
     const std::size_t pixels = std::size_t{grid_.columns} * grid_.rows;
-    return heights_.is_consistent(pixels) && pyramid_.size() == layout.size && top_ == layout.top && levels_ == layout.levels &&
-           materials_.is_consistent(pixels);
+    return heights_.is_consistent(pixels) && pyramid_.size() == layout.size && top_ == layout.top &&
+           levels_ == layout.levels && materials_.is_consistent(pixels);
   }
 
   /// Pixels from west to east.
@@ -75,7 +79,9 @@ class HeightField {
   /// Pixels from north to south.
   [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory() + materials_.memory(); }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return heights_.memory() + pyramid_.memory() + materials_.memory();
+  }
   [[nodiscard]] std::size_t material_count() const noexcept { return std::size_t{materials_.greatest()} + 1; }
 
   /// Triangle of primitive i [m]; its missing corners are NaN.
@@ -94,7 +100,8 @@ class HeightField {
     if (span.empty() || !walk.narrow(span, cells)) return;
     // clips the span to the heights of the cells passed, and these to the span, while that helps
     unsigned level = level_of(cells, top_);
-    for (std::size_t before = std::numeric_limits<std::size_t>::max() / 4; cells.count() > 1 && 4 * cells.count() <= 3 * before;) {
+    for (std::size_t before = std::numeric_limits<std::size_t>::max() / 4;
+         cells.count() > 1 && 4 * cells.count() <= 3 * before;) {
       before = cells.count();
       const auto [low, high] = heights(cells, level);
       span = walk.interval.above(walk.interval.below(span, 2, high), 2, low);
@@ -111,7 +118,8 @@ class HeightField {
     const Cells nodes = cells.in_nodes(x, y);
     for (std::uint32_t i = 0; i <= nodes.south - nodes.north; ++i)
       for (std::uint32_t j = 0; j <= nodes.east - nodes.west; ++j)
-        visit(walk, level, walk.westward ? nodes.east - j : nodes.west + j, walk.northward ? nodes.south - i : nodes.north + i);
+        visit(walk, level, walk.westward ? nodes.east - j : nodes.west + j,
+              walk.northward ? nodes.south - i : nodes.north + i);
   }
 
   template <class Rays>
@@ -147,7 +155,8 @@ class HeightField {
 
     Walk(const HeightField& field, const Rays& r, Hits& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
-      const double scale = std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
+      const double scale =
+          std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
       for (int k = 0; k < 2; ++k) {
         const double per_metre = field.per_metre_[k];
@@ -167,7 +176,8 @@ class HeightField {
 
     /// Adds the triangles of a cell to the batch; tests it when full.
     void take(const HeightField& field, const detail::RasterCell& cell) noexcept {
-      const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{cell.row} * (field.grid_.columns - 1) + cell.column));
+      const auto first =
+          static_cast<PrimitiveIndex>(2 * (std::size_t{cell.row} * (field.grid_.columns - 1) + cell.column));
       for (const int which : {0, 1})
         if (cell.has(which)) {
           triangles[taken] = cell.triangle(field.grid_, which);
@@ -209,7 +219,8 @@ class HeightField {
   /// Slab between two heights.
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
-  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be the top.
+  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be
+  /// the top.
   [[nodiscard]] unsigned level_of(const Cells& cells, unsigned level) const noexcept {
     for (; level > 0; --level) {
       const Cells nodes = cells.in_nodes(levels_[level - 1].shift[0], levels_[level - 1].shift[1]);
@@ -253,11 +264,13 @@ class HeightField {
     const Level& own = levels_[level];
     Box8<float> boxes;
     put_walls(boxes, walk, own, column, row);
-    const unsigned taken = level == 1 ? walk.block.put(boxes, grid_, heights_, column, row) : put_nodes(boxes, level, column, row);
+    const unsigned taken =
+        level == 1 ? walk.block.put(boxes, grid_, heights_, column, row) : put_nodes(boxes, level, column, row);
     std::array<float, 8> entries;
     const unsigned wide = own.wide(), tall = 3 - wide;
     const unsigned turn = walk.turns[wide - 1];
-    for (unsigned open = turned(walk.interval.inside(boxes, walk.limit, entries) & taken, turn); open != 0; open &= open - 1) {
+    for (unsigned open = turned(walk.interval.inside(boxes, walk.limit, entries) & taken, turn); open != 0;
+         open &= open - 1) {
       const unsigned place = static_cast<unsigned>(std::countr_zero(open)) ^ turn;
       if (entries[place] > walk.limit) continue;
       const std::uint32_t c = (column << wide) + (place & ((1U << wide) - 1)), r = (row << tall) + (place >> wide);
@@ -276,8 +289,10 @@ class HeightField {
 
   /// Sets the walls of a node's children.
   template <class Walk>
-  void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
-    const float west = west_of(column << own.shift[0]) - walk.pad[0], north = north_of(row << own.shift[1]) + walk.pad[1];
+  void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column,
+                 std::uint32_t row) const noexcept {
+    const float west = west_of(column << own.shift[0]) - walk.pad[0],
+                north = north_of(row << own.shift[1]) + walk.pad[1];
     const float width = own.size[0] + 2 * walk.pad[0], height = own.size[1] + 2 * walk.pad[1];
     for (std::size_t i = 0; i < 8; i += simd::packet_size<float>) {
       const simd::Packet<float> x = simd::load<simd::Packet<float>>(own.east[i]) + west,
@@ -306,7 +321,9 @@ class HeightField {
   [[nodiscard]] float west_of(std::uint32_t column) const noexcept {
     return static_cast<float>((column - 0.5 * grid_.columns) * grid_.pixel.x);
   }
-  [[nodiscard]] float north_of(std::uint32_t row) const noexcept { return static_cast<float>((0.5 * grid_.rows - row) * grid_.pixel.y); }
+  [[nodiscard]] float north_of(std::uint32_t row) const noexcept {
+    return static_cast<float>((0.5 * grid_.rows - row) * grid_.pixel.y);
+  }
 
   detail::RasterGrid grid_;
   std::array<Level, detail::PyramidLayout::max_levels + 1> levels_{};

@@ -31,8 +31,8 @@ struct HillshadeSettings {
 
 namespace detail {
 
-/// Heights about a pixel [m]. What is missing, or beyond the edge, is as on a plane through the pixel and its opposite neighbour, or its
-/// neighbours to the sides; level without these.
+/// Heights about a pixel [m]. What is missing, or beyond the edge, is as on a plane through the pixel and its opposite
+/// neighbour, or its neighbours to the sides; level without these.
 template <class Heights>
 class PixelSurroundings {
  public:
@@ -53,8 +53,10 @@ class PixelSurroundings {
  private:
   [[nodiscard]] double at(int east, int south) const noexcept {
     const std::int64_t column = std::int64_t{column_} + east, row = std::int64_t{row_} + south;
-    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return std::numeric_limits<double>::quiet_NaN();
-    return static_cast<double>(heights_[grid_.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
+    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows)
+      return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(
+        heights_[grid_.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
   }
 
   const Heights& heights_;
@@ -65,10 +67,10 @@ class PixelSurroundings {
 
 }  // namespace detail
 
-/// Brightness of the pixels of a raster in the light of a sun, row by row: from 1 in its own shade to 255 where the sun is overhead, in
-/// proportion to the cosine of incidence; 0 where the height is missing. No pixel casts a shadow on another.
-/// Source: Horn 1981, Hill shading and the reflectance map (slopes by differences of three neighbours on each side, weighted 1, 2, 1);
-/// range of values: GDAL manual, gdaldem hillshade.
+/// Brightness of the pixels of a raster in the light of a sun, row by row: from 1 in its own shade to 255 where the sun
+/// is overhead, in proportion to the cosine of incidence; 0 where the height is missing. No pixel casts a shadow on
+/// another. Source: Horn 1981, Hill shading and the reflectance map (slopes by differences of three neighbours on each
+/// side, weighted 1, 2, 1); range of values: GDAL manual, gdaldem hillshade.
 /// @throws SettingError for settings out of range, and as `Raster::validate`
 [[nodiscard]] inline std::vector<std::uint8_t> hillshade(const Raster& raster, const HillshadeSettings& settings = {}) {
   settings.validate();
@@ -86,7 +88,8 @@ class PixelSurroundings {
         const double north = (z(-1, -1) + 2 * z(0, -1) + z(1, -1)) - (z(-1, 1) + 2 * z(0, 1) + z(1, 1));
         const double per_pixel = settings.vertical_scale / 8;
         const Vec3 normal = normalize(Vec3{-per_pixel * east / grid.pixel.x, -per_pixel * north / grid.pixel.y, 1});
-        shades[grid.index(column, row)] = static_cast<std::uint8_t>(1 + std::lround(254 * std::max(0.0, dot(normal, sun))));
+        shades[grid.index(column, row)] =
+            static_cast<std::uint8_t>(1 + std::lround(254 * std::max(0.0, dot(normal, sun))));
       }
   });
   return shades;

@@ -15,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the picture, (1, 1) the
-/// upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.
+/// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the
+/// picture, (1, 1) the upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.
 [[nodiscard]] inline std::size_t texel_at(std::uint32_t width, std::uint32_t height, const Vec2& at) noexcept {
   const auto place = [](double coordinate, std::uint32_t count) noexcept {
     const double turn = coordinate - std::floor(coordinate);  // 1 for a coordinate just below a whole number

@@ -16,8 +16,9 @@ namespace PULSECAST_NAMESPACE {
 /// Cell of a lattice, along x, y and z.
 using LatticeCell = std::array<std::int32_t, 3>;
 
-/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x comes before y before z, as by symbolic
-/// perturbation. So a ray through an edge or a corner still passes from a cell to its neighbour through a face.
+/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x comes before y
+/// before z, as by symbolic perturbation. So a ray through an edge or a corner still passes from a cell to its
+/// neighbour through a face.
 struct Crossing {
   static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings at that range
 
@@ -30,13 +31,14 @@ struct Crossing {
   }
 };
 
-/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same to the last bit for the cells on both sides, so
-/// neighbours leave no gap. A cell owns its lower faces, for rays that run along them.
+/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same to the last bit for the
+/// cells on both sides, so neighbours leave no gap. A cell owns its lower faces, for rays that run along them.
 class LatticeRay {
  public:
   /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
   template <class Rays>
-  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept : edge_(edge), per_edge_(1 / edge) {
+  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept
+      : edge_(edge), per_edge_(1 / edge) {
     const Vec3 direction = rays.direction(j);
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
@@ -61,7 +63,9 @@ class LatticeRay {
   }
 
   /// True if a ray with sense(k) = 0 is at or above a plane.
-  [[nodiscard]] bool above(int k, double plane) const noexcept { return start_[static_cast<std::size_t>(k)] + edge_ * plane <= 0; }
+  [[nodiscard]] bool above(int k, double plane) const noexcept {
+    return start_[static_cast<std::size_t>(k)] + edge_ * plane <= 0;
+  }
 
   /// Position along an axis at a range [m], up to rounding [edges].
   [[nodiscard]] double position(int k, double range) const noexcept {
@@ -92,7 +96,8 @@ class LatticeRay {
         if (!above(k, low[axis]) || above(k, high[axis])) return {.in = Passage{}.out, .out = Passage{}.in};
         continue;
       }
-      const Crossing in = crossing(k, sense(k) > 0 ? low[axis] : high[axis]), out = crossing(k, sense(k) > 0 ? high[axis] : low[axis]);
+      const Crossing in = crossing(k, sense(k) > 0 ? low[axis] : high[axis]),
+                     out = crossing(k, sense(k) > 0 ? high[axis] : low[axis]);
       if (p.in.before(in)) p.in = in;
       if (out.before(p.out)) p.out = out;
     }

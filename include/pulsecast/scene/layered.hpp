@@ -39,8 +39,9 @@ struct LayerHit {
   std::variant<detail::RayHitOf<Maps>...> hit{};  ///< of the target of its index
 };
 
-/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties go to the first target. Refers to its
-/// targets, which must outlive it. A target assigned anew, as by `Scene::with_placements`, is met as it then is.
+/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties go to the first
+/// target. Refers to its targets, which must outlive it. A target assigned anew, as by `Scene::with_placements`, is met
+/// as it then is.
 template <Target First, Target... Others>
 class Layered {
   static constexpr bool optical = detail::OpticalLayer<First> && (detail::OpticalLayer<Others> && ...);
@@ -50,7 +51,8 @@ class Layered {
   explicit Layered(const First& first, const Others&... others) noexcept : targets_(&first, &others...) {}
   template <class... Any>
   requires(sizeof...(Any) == 1 + sizeof...(Others) &&
-           !(std::is_lvalue_reference_v<Any> && ...)) explicit Layered(Any&&...) = delete;  // a temporary target would dangle
+           !(std::is_lvalue_reference_v<Any> &&
+             ...)) explicit Layered(Any&&...) = delete;  // a temporary target would dangle
 
   /// Nearest hit of each ray of the bundle. A range of NaN is kept.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
@@ -61,8 +63,10 @@ class Layered {
         },
         targets_);
   }
-  /// As above, with the material and normal at each hit. This query and the next three exist if all targets have them: light goes on there.
-  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept requires(optical) {
+  /// As above, with the material and normal at each hit. This query and the next three exist if all targets have them:
+  /// light goes on there.
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
+      requires(optical) {
     std::apply(
         [&](const First* first, const Others*... others) noexcept {
           first->closest(rays, hits, surfaces);
@@ -84,12 +88,15 @@ class Layered {
   }
 
   /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
-  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept requires(optical) {
-    return std::apply([&](const auto*... targets) noexcept { return (targets->occluded(ray, range) || ...); }, targets_);
+  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept
+      requires(optical) {
+    return std::apply([&](const auto*... targets) noexcept { return (targets->occluded(ray, range) || ...); },
+                      targets_);
   }
 
   /// Surface at a hit of the same ray, in the world. Its `part` is that of the target met.
-  [[nodiscard]] SurfacePoint surface(const LayerHit<First, Others...>& hit, const Ray& ray) const noexcept requires(optical) {
+  [[nodiscard]] SurfacePoint surface(const LayerHit<First, Others...>& hit, const Ray& ray) const noexcept
+      requires(optical) {
     SurfacePoint point;
     each([&]<std::size_t i>(const auto& map) noexcept {
       if (const auto* of = std::get_if<i>(&hit.hit)) point = map.surface(*of, ray);
@@ -99,7 +106,8 @@ class Layered {
 
   /// True only if no ray of a cone meets anything in any target.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
-    return std::apply([&](const auto*... targets) noexcept { return (detail::misses_cone(*targets, cone) && ...); }, targets_);
+    return std::apply([&](const auto*... targets) noexcept { return (detail::misses_cone(*targets, cone) && ...); },
+                      targets_);
   }
 
   /// Bounds of all targets [m].
@@ -112,8 +120,10 @@ class Layered {
     return all;
   }
 
-  /// Height of the ground of the targets at a place that is nearest to a height; by default of the highest [m]. Empty if none has any.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
+  /// Height of the ground of the targets at a place that is nearest to a height; by default of the highest [m]. Empty
+  /// if none has any.
+  [[nodiscard]] std::optional<double> ground_height(
+      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
       requires(requires(const First& f, const Others&... o) {
         f.ground_height(at, near);
         (o.ground_height(at, near), ...);
@@ -133,14 +143,16 @@ class Layered {
   /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
   template <class Map>
   static void add(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
-    alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)> memory;  // not initialised, as most bundles have one ray
+    alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)>
+        memory;  // not initialised, as most bundles have one ray
     const std::span<Hit> others(reinterpret_cast<Hit*>(memory.data()), rays.size);
     find_hits(map, up_to(hits, rays), others);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (is_nearer(others[j], hits[j])) hits[j] = others[j];
   }
   template <class Map>
-  static void add(const Map& map, const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) noexcept {
+  static void add(const Map& map, const StaggeredBundle& rays, std::span<Hit> hits,
+                  std::span<HitSurface> surfaces) noexcept {
     std::array<Hit, RayBundle::capacity> others;
     std::array<HitSurface, RayBundle::capacity> of_others;
     map.closest(up_to(hits, rays), others, of_others);
@@ -160,12 +172,16 @@ class Layered {
     return rays;
   }
   /// True for the nearer hit of a later target; a range of NaN is kept.
-  static bool is_nearer(const Hit& other, const Hit& hit) noexcept { return !std::isnan(hit.range) && !(other.range >= hit.range); }
+  static bool is_nearer(const Hit& other, const Hit& hit) noexcept {
+    return !std::isnan(hit.range) && !(other.range >= hit.range);
+  }
 
   /// Calls `visit.operator()<i>(target)` for each target, in order.
   template <class Visitor>
   void each(const Visitor& visit) const noexcept {
-    [&]<std::size_t... i>(std::index_sequence<i...>) noexcept { (visit.template operator()<i>(*std::get<i>(targets_)), ...); }
+    [&]<std::size_t... i>(std::index_sequence<i...>) noexcept {
+      (visit.template operator()<i>(*std::get<i>(targets_)), ...);
+    }
     (std::index_sequence_for<First, Others...>());
   }
 

@@ -24,9 +24,9 @@ struct LeafProjection {
   double g = 0;       ///< mean projection of unit leaf area onto the plane across the direction, in [0, 1]
 };
 
-/// Leaf inclination distribution of a plant, uniform in azimuth and equal for both sides. It gives G(direction), the mean projection of
-/// unit leaf area onto the plane across the direction (Ross 1981). The mean of G over all directions is 1/2 for any distribution. Spherical
-/// by default. Copies share their table.
+/// Leaf inclination distribution of a plant, uniform in azimuth and equal for both sides. It gives G(direction), the
+/// mean projection of unit leaf area onto the plane across the direction (Ross 1981). The mean of G over all directions
+/// is 1/2 for any distribution. Spherical by default. Copies share their table.
 class LeafAngles {
  public:
   LeafAngles() = default;
@@ -34,7 +34,8 @@ class LeafAngles {
   /// Inclinations of a sphere's surface: G is 1/2 in all directions.
   [[nodiscard]] static LeafAngles spherical() { return {}; }
 
-  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965; closed forms: Goel & Strebel 1984.
+  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965; closed forms: Goel &
+  // Strebel 1984.
 
   /// Mostly horizontal.
   [[nodiscard]] static LeafAngles planophile() { return of_density({.second = 1}); }
@@ -47,8 +48,8 @@ class LeafAngles {
   /// Uniform in inclination.
   [[nodiscard]] static LeafAngles uniform() { return of_density({}); }
 
-  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one: spherical at 1, more vertical below, more
-  /// horizontal above. Source: Campbell 1986, with the exact surface of the ellipsoid.
+  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one: spherical at 1, more
+  /// vertical below, more horizontal above. Source: Campbell 1986, with the exact surface of the ellipsoid.
   /// @throws SettingError unless `chi` is from 1e-6 to 1e6
   [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
     require_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
@@ -58,12 +59,14 @@ class LeafAngles {
     if (chi == 1)
       made.half_surface_ = 2;
     else
-      made.half_surface_ = chi + (chi < 1 ? std::asin(eccentricity) / eccentricity : std::atanh(eccentricity) / (eccentricity * chi));
+      made.half_surface_ =
+          chi + (chi < 1 ? std::asin(eccentricity) / eccentricity : std::atanh(eccentricity) / (eccentricity * chi));
     made.find_upright();
     return made;
   }
 
-  /// G by zenith angle, in any order without duplicates; linear in between, constant before the first and after the last.
+  /// G by zenith angle, in any order without duplicates; linear in between, constant before the first and after the
+  /// last.
   /// @throws SettingError for values out of range, duplicates, or gaps of more than 10 degrees, also at the ends
   [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
@@ -88,8 +91,9 @@ class LeafAngles {
     return detail::interpolated(table_, std::atan2(level, steep), &LeafProjection::zenith, &LeafProjection::g);
   }
 
-  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per leaf area that the light meets, as the
-  /// leaves do: the mean squared cosine by the mean cosine, between light along a direction and normals of leaves. 2/3 for spherical ones.
+  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per leaf area that the
+  /// light meets, as the leaves do: the mean squared cosine by the mean cosine, between light along a direction and
+  /// normals of leaves. 2/3 for spherical ones.
   [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
     const double up = direction.z * direction.z / dot(direction, direction);
     const double mean = projection(direction), mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);
@@ -109,13 +113,16 @@ class LeafAngles {
   static constexpr std::size_t intervals = 2048;
 
   static void require_no_hole(double from, double to, double widest) {
-    if (to - from > widest) throw SettingError("LeafProjection::zenith", from, "rad", "followed by another within 0.1745 rad");
+    if (to - from > widest)
+      throw SettingError("LeafProjection::zenith", from, "rad", "followed by another within 0.1745 rad");
   }
 
   /// Density of the inclination t: 2 / pi (1 + second cos 2t + fourth cos 4t).
   struct Density {
     double second = 0, fourth = 0;
-    double operator()(double t) const noexcept { return 2 / pi * (1 + second * std::cos(2 * t) + fourth * std::cos(4 * t)); }
+    double operator()(double t) const noexcept {
+      return 2 / pi * (1 + second * std::cos(2 * t) + fourth * std::cos(4 * t));
+    }
   };
 
   static LeafAngles of_density(const Density& density) {
@@ -135,9 +142,9 @@ class LeafAngles {
     return made;
   }
 
-  /// Finds the mean squared vertical component of the leaves' normals from G, by Simpson's rule: 1/3 and 16/3 of the integral of G times
-  /// Legendre's polynomial of degree 2 over the cosine of the zenith angle. Source: Funk-Hecke theorem; the polynomial's integral with the
-  /// magnitude of the cosine is 1/8.
+  /// Finds the mean squared vertical component of the leaves' normals from G, by Simpson's rule: 1/3 and 16/3 of the
+  /// integral of G times Legendre's polynomial of degree 2 over the cosine of the zenith angle. Source: Funk-Hecke
+  /// theorem; the polynomial's integral with the magnitude of the cosine is 1/8.
   void find_upright() noexcept {
     constexpr int steps = 4096;
     double sum = 0;
@@ -182,7 +189,8 @@ class LeafAngles {
       const double lying = one_sided * u;
       sum += nodes.weight[i] * one_sided * density(lying) * c * std::cos(lying);
       if (s == 0) continue;
-      const double standing = one_sided + zenith * u * u;  // the integrand grows with the root of the distance from `one_sided`
+      const double standing =
+          one_sided + zenith * u * u;  // the integrand grows with the root of the distance from `one_sided`
       const double cos_t = std::cos(standing), sin_t = std::sin(standing);
       const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth of the leaf seen edge-on
       const double facing = c * cos_t * (1 - 2 / pi * turn) + 2 / pi * s * sin_t * std::sin(turn);

@@ -16,12 +16,13 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole. Without pixels, there is no hole. Where
-/// the two triangles of a quad meet, a ray along the border of two pixels may be told different ones: a mask and its complement may both
-/// answer it.
+/// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole. Without pixels, there
+/// is no hole. Where the two triangles of a quad meet, a ray along the border of two pixels may be told different ones:
+/// a mask and its complement may both answer it.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
-  std::vector<std::uint64_t> bits{};    ///< of the pixels, row by row from the top left; the first is the lowest bit of the first word
+  std::vector<std::uint64_t>
+      bits{};  ///< of the pixels, row by row from the top left; the first is the lowest bit of the first word
 
   /// Pixels of a picture whose channel, by number, is at least a share of its full value, in [0, 1].
   [[nodiscard]] static Mask of(const Image& image, std::uint32_t channel, double cutoff = 0.5) {
@@ -82,14 +83,17 @@ class MaskTable {
   [[nodiscard]] bool is_consistent() const {
     return std::all_of(frames_.begin(), frames_.end(), [&](const Frame& frame) {
       const std::size_t words = (std::size_t{frame.width} * frame.height + 63) / 64;
-      return frame.first <= bits_.size() && words <= bits_.size() - frame.first && (frame.width == 0) == (frame.height == 0);
+      return frame.first <= bits_.size() && words <= bits_.size() - frame.first &&
+             (frame.width == 0) == (frame.height == 0);
     });
   }
   [[nodiscard]] std::size_t memory() const noexcept { return frames_.memory() + bits_.memory(); }
 
   [[nodiscard]] bool empty() const noexcept { return frames_.empty(); }  ///< true if nothing has holes
   /// True if a material has holes.
-  [[nodiscard]] bool covers(std::uint32_t material) const noexcept { return material < frames_.size() && frames_[material].width > 0; }
+  [[nodiscard]] bool covers(std::uint32_t material) const noexcept {
+    return material < frames_.size() && frames_[material].width > 0;
+  }
   /// True if the surface of a material that has holes is solid at texture coordinates.
   [[nodiscard]] bool solid(std::uint32_t material, const Vec2& texture) const noexcept {
     const Frame& frame = frames_[material];

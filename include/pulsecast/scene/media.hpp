@@ -57,7 +57,8 @@ struct MediumRegion {
   }
 };
 
-/// Media in the air, in boxes of which each is inside another or apart from it: the innermost counts. Copies share their memory.
+/// Media in the air, in boxes of which each is inside another or apart from it: the innermost counts. Copies share
+/// their memory.
 class Media {
  public:
   /// Clear air.
@@ -79,10 +80,12 @@ class Media {
 
   /// True if there are particles in any region.
   [[nodiscard]] bool has_particles() const noexcept {
-    return !empty() && std::any_of(regions_->begin(), regions_->end(), [](const MediumRegion& r) { return r.particles.density > 0; });
+    return !empty() && std::any_of(regions_->begin(), regions_->end(),
+                                   [](const MediumRegion& r) { return r.particles.density > 0; });
   }
 
-  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium, in their order.
+  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium,
+  /// in their order.
   template <class Visitor>
   void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
     if (empty()) return;
@@ -152,14 +155,16 @@ class Media {
       for (std::size_t k = 0; k < 3; ++k) {
         const int axis = static_cast<int>(k);
         if (direction[axis] == 0) continue;
-        const double plane = region.bounds.min[axis] + edge[k] * static_cast<double>(cell[k] + (direction[axis] > 0 ? 1 : 0));
+        const double plane =
+            region.bounds.min[axis] + edge[k] * static_cast<double>(cell[k] + (direction[axis] > 0 ? 1 : 0));
         const double range = std::max(from, (plane - origin[axis]) / direction[axis]);
         if (range < end) {
           end = range;
           through = k;
         }
       }
-      const double density = static_cast<double>(region.densities[cell[0] + region.cells[0] * (cell[1] + region.cells[1] * cell[2])]);
+      const double density =
+          static_cast<double>(region.densities[cell[0] + region.cells[0] * (cell[1] + region.cells[1] * cell[2])]);
       if (end > from && density > 0) visit(from, end, region, density);
       from = end;
       if (through == 3) return;
@@ -178,13 +183,15 @@ class Media {
     for (int k = 0; k < 3; ++k)
       if (!(a.min[k] < b.max[k] && b.min[k] < a.max[k])) return;
     if (inside(a, b) == inside(b, a))
-      throw SettingError("Media (region)", static_cast<double>(number), "", "one that is inside another, around it, or apart from it");
+      throw SettingError("Media (region)", static_cast<double>(number), "",
+                         "one that is inside another, around it, or apart from it");
   }
   /// Sorts nested boxes, so that each comes after those that it is inside of.
   static void outermost_first(std::vector<MediumRegion>& regions) {
     std::vector<std::size_t> around(regions.size());
     for (std::size_t i = 0; i < regions.size(); ++i)
-      for (std::size_t k = 0; k < regions.size(); ++k) around[i] += inside(regions[i].bounds, regions[k].bounds) ? 1 : 0;
+      for (std::size_t k = 0; k < regions.size(); ++k)
+        around[i] += inside(regions[i].bounds, regions[k].bounds) ? 1 : 0;
     std::vector<MediumRegion> sorted;
     for (std::size_t depth = 0; depth <= regions.size(); ++depth)
       for (std::size_t i = 0; i < regions.size(); ++i)

@@ -27,7 +27,8 @@ struct Medium {
   [[nodiscard]] double extinction() const noexcept { return absorption + scattering; }
   /// Medium of two at the same place, with the index of the first: fog and rain.
   [[nodiscard]] Medium with(const Medium& other) const noexcept {
-    return {index, group_index, absorption + other.absorption, scattering + other.scattering, backscatter + other.backscatter};
+    return {index, group_index, absorption + other.absorption, scattering + other.scattering,
+            backscatter + other.backscatter};
   }
   /// Vacuum speed of light by that of a pulse.
   [[nodiscard]] double delay() const noexcept { return group_index > 0 ? group_index : index; }

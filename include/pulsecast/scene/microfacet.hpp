@@ -34,18 +34,20 @@ struct Microfacets {
   }
 
   /// Share of the light reflected at the mean normal, of unpolarised light.
-  [[nodiscard]] double reflected(double cos_incidence) const noexcept { return fresnel_split(cos_incidence, index).reflected; }
+  [[nodiscard]] double reflected(double cos_incidence) const noexcept {
+    return fresnel_split(cos_incidence, index).reflected;
+  }
 
-  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and what hides one on the way there hides
-  /// it on the way back. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
+  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and what hides one on
+  /// the way there hides it on the way back. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
   [[nodiscard]] double backscatter(double cos_incidence) const noexcept {
     if (!(cos_incidence > 0)) return 0;
     return pi * reflected(1) * density(cos_incidence) / (4 * cos_incidence * (1 + hidden(cos_incidence)));
   }
 
-  /// Radiance towards a direction by the irradiance from another, times the cosine of the first; unit vectors away from the surface [1/sr].
-  /// Its integral over the directions is at most the share that facets reflect. Source: Torrance & Sparrow 1967; height-correlated masking
-  /// and shadowing, Ross, Dion & Potvin 2005.
+  /// Radiance towards a direction by the irradiance from another, times the cosine of the first; unit vectors away from
+  /// the surface [1/sr]. Its integral over the directions is at most the share that facets reflect. Source: Torrance &
+  /// Sparrow 1967; height-correlated masking and shadowing, Ross, Dion & Potvin 2005.
   [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal) const noexcept {
     const double in = dot(from, normal), out = dot(to, normal);
     if (!(in > 0 && out > 0)) return 0;

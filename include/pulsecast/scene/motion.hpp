@@ -25,14 +25,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves along. A helix if the
-/// velocity is along the axis; rest if both are zero.
+/// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves
+/// along. A helix if the velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
-  Vec3 velocity{};               ///< [m/s]
-  Vec3 axis = axis::up;          ///< direction, of any non-zero length
-  double rate = 0;               ///< right-handed about the axis [rad/s]
-  std::optional<Vec3> centre{};  ///< point of the axis in the world at the motion's start [m]; empty for the body's own centre
-  std::optional<Vec3> spin{};    ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
+  Vec3 velocity{};       ///< [m/s]
+  Vec3 axis = axis::up;  ///< direction, of any non-zero length
+  double rate = 0;       ///< right-handed about the axis [rad/s]
+  std::optional<Vec3>
+      centre{};  ///< point of the axis in the world at the motion's start [m]; empty for the body's own centre
+  std::optional<Vec3>
+      spin{};  ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
   double duration = std::numeric_limits<double>::infinity();  ///< at least 1e-6 [s]
 
   void validate() const {
@@ -57,8 +59,8 @@ enum class AfterLastPose : std::uint8_t {
   start_again,  ///< jumps to its pose at the start of the survey and repeats from there
 };
 
-/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so that no digits are lost far from the
-/// world's origin.
+/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so that no digits are lost
+/// far from the world's origin.
 struct Displacement {
   Rotation rotation = no_rotation;  ///< unit quaternion
   Vec3 about{};                     ///< [m]
@@ -68,8 +70,9 @@ struct Displacement {
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return about + shift + rotation * (p - about); }
 };
 
-/// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds` [s]: a screw, the shorter way around.
-/// Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical Kinematics, ch. III.
+/// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds` [s]: a screw, the
+/// shorter way around. Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical
+/// Kinematics, ch. III.
 /// @throws SettingError unless `seconds` is positive, the position [m] finite and the rotation unit
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
   require_positive("steady_motion (seconds)", seconds, "s");
@@ -84,19 +87,22 @@ struct Displacement {
           .centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2))};
 }
 
-/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement. Times count from the start of the survey;
-/// before it, the part is as placed. "Its own centre" is the centre of its box as placed, and moves along.
+/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement. Times count from the
+/// start of the survey; before it, the part is as placed. "Its own centre" is the centre of its box as placed, and
+/// moves along.
 class PartMotion {
  public:
   /// Follows one motion, then rests at its end. @throws SettingError for values out of range
   explicit PartMotion(const SteadyMotion& motion) : PartMotion(std::vector<MotionSequence>{{.motions = {motion}}}) {}
 
-  /// Follows sequences in succession, then rests; or repeats them for ever from index `again_from` on. Only the very last motion may be
-  /// infinite. @throws SettingError for values out of range
-  explicit PartMotion(const std::vector<MotionSequence>& sequences, std::optional<std::size_t> again_from = std::nullopt) {
+  /// Follows sequences in succession, then rests; or repeats them for ever from index `again_from` on. Only the very
+  /// last motion may be infinite. @throws SettingError for values out of range
+  explicit PartMotion(const std::vector<MotionSequence>& sequences,
+                      std::optional<std::size_t> again_from = std::nullopt) {
     if (sequences.empty()) throw SettingError("PartMotion::sequences (number)", 0, "", "at least 1");
     if (again_from)
-      require_within("PartMotion::again_from", static_cast<double>(*again_from), 0, static_cast<double>(sequences.size()) - 1, "");
+      require_within("PartMotion::again_from", static_cast<double>(*again_from), 0,
+                     static_cast<double>(sequences.size()) - 1, "");
     for (std::size_t i = sequences.size(); i-- > 0;)
       for (const SteadyMotion& m : sequences[i].motions)
         if (m.centre) reference_ = *m.centre;
@@ -109,10 +115,12 @@ class PartMotion {
     again_from ? end_cycle(so_far.time, so_far.change) : end(so_far);
   }
 
-  /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis, the shorter way. Before the first pose the
-  /// body rests there. A pose applies on top of the placement: rotation about the world's origin, then a shift by `position`.
+  /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis, the shorter way.
+  /// Before the first pose the body rests there. A pose applies on top of the placement: rotation about the world's
+  /// origin, then a shift by `position`.
   /// @throws SettingError for values out of range, or times that do not ascend
-  explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest) : from_origin_(true) {
+  explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest)
+      : from_origin_(true) {
     if (poses.empty()) throw SettingError("PartMotion::poses (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::string field = "PartMotion::poses[" + std::to_string(i) + "]";
@@ -136,7 +144,8 @@ class PartMotion {
   template <class Archive>
   void archive(Archive& a) {
     detail::MotionTimeline& t = timeline_;
-    a(t.runs, t.pieces, t.cycle_first, t.cycle_start, t.cycle_before, t.cycle, t.cycle_duration, reference_, from_origin_);
+    a(t.runs, t.pieces, t.cycle_first, t.cycle_start, t.cycle_before, t.cycle, t.cycle_duration, reference_,
+      from_origin_);
   }
   [[nodiscard]] bool is_consistent() const noexcept { return timeline_.is_consistent(); }
 
@@ -150,26 +159,31 @@ class PartMotion {
     return {state.attitude, centre, state.centre - start};
   }
 
-  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that time [m]. Zero before the start; at a
-  /// change of motion that of the later one.
+  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that time [m]. Zero before
+  /// the start; at a change of motion that of the later one.
   [[nodiscard]] Vec3 velocity(const Tick& tick, const Vec3& own_centre, const Vec3& point) const noexcept {
     if (tick < Tick{}) return {};
     const Vec3 start = (from_origin_ ? Vec3{} : own_centre) - reference_;
     const detail::MotionPlace place = timeline_.place_of(tick);
     const Vec3 centre = detail::state_at(place, start).centre;
-    return detail::velocity_at(place, centre) + place.piece->attitude.rate * cross(place.piece->attitude.axis, point - reference_ - centre);
+    return detail::velocity_at(place, centre) +
+           place.piece->attitude.rate * cross(place.piece->attitude.axis, point - reference_ - centre);
   }
 
-  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its centre there as the
-  /// body's own. Tight for small rotations and few changes of motion in this time, loose otherwise. Empty for an empty box.
-  [[nodiscard]] Box swept(const Box& box, const Similarity& placement, const Tick& from, const Tick& to) const noexcept {
+  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its
+  /// centre there as the body's own. Tight for small rotations and few changes of motion in this time, loose otherwise.
+  /// Empty for an empty box.
+  [[nodiscard]] Box swept(const Box& box, const Similarity& placement, const Tick& from,
+                          const Tick& to) const noexcept {
     if (box.empty()) return {};
     const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;
-    const detail::SweptBody body{centre - reference_, middle - centre, placement.rotation, 0.5 * placement.scale * box.size()};
+    const detail::SweptBody body{centre - reference_, middle - centre, placement.rotation,
+                                 0.5 * placement.scale * box.size()};
     Box swept = detail::swept_box(timeline_, body, from, to);
     swept.min = swept.min + reference_;
     swept.max = swept.max + reference_;
-    return detail::grown(swept, 1e-12 * (max_norm(swept.min) + max_norm(swept.max)) + 1e-7 * body.radius());  // above rounding
+    return detail::grown(swept,
+                         1e-12 * (max_norm(swept.min) + max_norm(swept.max)) + 1e-7 * body.radius());  // above rounding
   }
 
  private:
@@ -192,15 +206,18 @@ class PartMotion {
   void add(const MotionSequence& sequence, const std::string& field, bool last, SoFar& so_far) {
     if (sequence.motions.empty()) throw SettingError(field + ".motions (number)", 0, "", "at least 1");
     require_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
-    detail::MotionRun run{so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), timeline_.pieces.size(), 0};
+    detail::MotionRun run{
+        so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), timeline_.pieces.size(), 0};
     for (std::size_t k = 0; k < sequence.motions.size(); ++k) {
       const SteadyMotion& m = sequence.motions[k];
       m.validate();
       const bool may_be_infinite = last && k + 1 == sequence.motions.size() && sequence.times == 1;
-      if (!may_be_infinite) require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
+      if (!may_be_infinite)
+        require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
       const detail::Turning orbit{normalize(m.axis), m.rate};
       detail::Turning attitude = orbit;
-      if (m.spin) attitude = length(*m.spin) > 0 ? detail::Turning{normalize(*m.spin), length(*m.spin)} : detail::Turning{};
+      if (m.spin)
+        attitude = length(*m.spin) > 0 ? detail::Turning{normalize(*m.spin), length(*m.spin)} : detail::Turning{};
       timeline_.pieces.push_back({.before = run.pass,
                                   .velocity = m.velocity,
                                   .orbit = orbit,
@@ -211,7 +228,8 @@ class PartMotion {
                                   .start = run.pass_duration,
                                   .duration = m.duration});
       run.pass_duration += m.duration;
-      if (std::isfinite(m.duration)) run.pass = detail::then(run.pass, change(timeline_.pieces.back(), Tick::of_seconds(m.duration)));
+      if (std::isfinite(m.duration))
+        run.pass = detail::then(run.pass, change(timeline_.pieces.back(), Tick::of_seconds(m.duration)));
     }
     run.pass = rounded(run.pass);
     run.end = timeline_.pieces.size();
@@ -253,8 +271,13 @@ class PartMotion {
   void end(const SoFar& so_far) {
     if (!so_far.endless) {
       timeline_.pieces.emplace_back();
-      timeline_.runs.push_back(
-          {so_far.change, so_far.time, {}, timeline_.pieces.back().duration, 1, timeline_.pieces.size() - 1, timeline_.pieces.size()});
+      timeline_.runs.push_back({so_far.change,
+                                so_far.time,
+                                {},
+                                timeline_.pieces.back().duration,
+                                1,
+                                timeline_.pieces.size() - 1,
+                                timeline_.pieces.size()});
     }
     timeline_.cycle_first = timeline_.runs.size();
     timeline_.shrink_to_fit();

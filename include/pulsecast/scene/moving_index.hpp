@@ -26,20 +26,24 @@ struct MovingIndexSettings {
 
   void validate() const {
     require_within("MovingIndexSettings::from", from, -1e15, 1e15, "s");
-    if (!(to > from && to <= 1e15)) throw SettingError("MovingIndexSettings::to", to, "s", "after `from`, at most 1e+15");
+    if (!(to > from && to <= 1e15))
+      throw SettingError("MovingIndexSettings::to", to, "s", "after `from`, at most 1e+15");
     require_within("MovingIndexSettings::boxes_max", static_cast<double>(boxes_max), 1, 4294967295.0, "");
   }
 };
 
-/// Index of moving bodies: the time span is divided into windows, each with a tree over the boxes swept in it. Faster bodies get shorter
-/// windows, halved per level until a body moves at most about its own size per window. If that takes too many boxes, the shortest windows
-/// are lengthened. Outside of the time span all bodies are tested: slow but correct.
+/// Index of moving bodies: the time span is divided into windows, each with a tree over the boxes swept in it. Faster
+/// bodies get shorter windows, halved per level until a body moves at most about its own size per window. If that takes
+/// too many boxes, the shortest windows are lengthened. Outside of the time span all bodies are tested: slow but
+/// correct.
 class MovingIndex {
  public:
-  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, and `size(i)` about its greatest side at rest [m], for
-  /// i < `things`. Both are called by the caller's thread; `workers` build the trees. @throws SettingError for a time span out of range
+  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, and `size(i)` about its greatest
+  /// side at rest [m], for i < `things`. Both are called by the caller's thread; `workers` build the trees. @throws
+  /// SettingError for a time span out of range
   template <class Swept, class Size>
-  MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept, const Size& size, const Workers& workers = {})
+  MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept, const Size& size,
+              const Workers& workers = {})
       : time_(validated(time)), span_(time.to - time.from) {
     std::array<std::vector<PrimitiveIndex>, max_level + 1> at_level;
     std::vector<Box> whole(things), boxes;  // in the window of all the time, the only one of most bodies; in one window
@@ -135,12 +139,13 @@ class MovingIndex {
   template <class Swept>
   Box box_in(PrimitiveIndex i, std::size_t window, std::size_t windows, const Swept& swept) const {
     const double width = span_ / static_cast<double>(windows), start = time_.from + static_cast<double>(window) * width;
-    const double overlap = 32 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(time_.from), std::fabs(time_.to));
+    const double overlap =
+        32 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(time_.from), std::fabs(time_.to));
     return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
   }
 
-  /// First level in whose windows a body moves at most about its own size, judged by samples; it is of this size [m] at first, and `whole`
-  /// is its box of all the time. Affects speed only.
+  /// First level in whose windows a body moves at most about its own size, judged by samples; it is of this size [m] at
+  /// first, and `whole` is its box of all the time. Affects speed only.
   template <class Swept>
   std::size_t level_of(PrimitiveIndex thing, double size, const Box& whole, const Swept& swept) const {
     constexpr std::size_t max_samples = 8;
@@ -151,7 +156,8 @@ class MovingIndex {
       double moving = 0, still = 0;
       for (std::size_t k = 0; k < samples; ++k) {
         const std::size_t window = (windows * k + windows / 2) / samples;
-        const Tick start = Tick::of_seconds(time_.from + span_ * static_cast<double>(window) / static_cast<double>(windows));
+        const Tick start =
+            Tick::of_seconds(time_.from + span_ * static_cast<double>(window) / static_cast<double>(windows));
         moving += max_norm(box_in(thing, window, windows, swept).size());
         still += std::max(small, max_norm(swept(thing, start, start).size()));
       }

@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part at its pose of the pulse's
-/// tick; a motion applies on top of the placement. Parts without a motion cost as much as in a `Scene`. Programs with `Scene` only contain
-/// none of this code.
+/// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part at its
+/// pose of the pulse's tick; a motion applies on top of the placement. Parts without a motion cost as much as in a
+/// `Scene`. Programs with `Scene` only contain none of this code.
 template <Geometry... Shapes>
 class MovingScene {
  public:
@@ -29,13 +29,15 @@ class MovingScene {
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
-  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same, but all moving
-  /// parts are tested. `workers` build the indices. @throws SettingError as `Scene` and `MovingIndexSettings`
+  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same,
+  /// but all moving parts are tested. `workers` build the indices. @throws SettingError as `Scene` and
+  /// `MovingIndexSettings`
   MovingScene(std::vector<Part> parts, const MovingIndexSettings& time, const Workers& workers = {})
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out, workers),
         movers_(movers(scene_.parts())),
         index_(
-            movers_.size(), time, [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); },
+            movers_.size(), time,
+            [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); },
             [this](PrimitiveIndex i) { return size(movers_[i]); }, workers) {
     bounds_ = scene_.bounds();
     bounds_.extend(index_.bounds());
@@ -66,7 +68,9 @@ class MovingScene {
   }
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
-  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { describe(rays, hits, detail::NotesNothing{}); }
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    describe(rays, hits, detail::NotesNothing{});
+  }
   /// As above, with the material and normal at each hit.
   void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
     describe(rays, hits, detail::NotesSurfaces{surfaces});
@@ -77,11 +81,14 @@ class MovingScene {
 
   /// True only if no ray of a cone meets anything at its tick, as of `Scene`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
-    return (movers_.size() == parts().size() || scene_.misses_cone(cone)) && (movers_.empty() || index_.misses_cone(cone));
+    return (movers_.size() == parts().size() || scene_.misses_cone(cone)) &&
+           (movers_.empty() || index_.misses_cone(cone));
   }
 
   /// Closest hit of a ray at its tick, as of `Scene`.
-  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
+    return detail::closest_hit(ray, searcher());
+  }
 
   /// True if the ray meets anything at its tick, as of `Scene`.
   [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
@@ -90,7 +97,8 @@ class MovingScene {
 
   /// All hits of a ray at its tick, as of `Scene`.
   template <class Visitor>
-  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const
+      noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
     return detail::visit_hits(ray, searcher(), visitor);
   }
 
@@ -105,7 +113,8 @@ class MovingScene {
   }
 
   /// Height of the ground at a place [m], as of `Scene`; moving parts are no ground.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
+  [[nodiscard]] std::optional<double> ground_height(
+      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     return scene_.ground_height(at, near);
   }
 
@@ -131,7 +140,9 @@ class MovingScene {
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
     scene_.search(rays, hits);
-    const auto test = [&](PrimitiveIndex i) noexcept { scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits); };
+    const auto test = [&](PrimitiveIndex i) noexcept {
+      scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits);
+    };
     index_.closest(rays, test, hits);
   }
   auto searcher() const noexcept {

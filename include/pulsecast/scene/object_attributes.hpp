@@ -22,7 +22,8 @@ namespace PULSECAST_NAMESPACE {
 class ObjectAttributes {
  public:
   ObjectAttributes() = default;
-  /// Those of parts, such as `scene.parts()`. Names come in order of first use. An object of several parts has all their attributes.
+  /// Those of parts, such as `scene.parts()`. Names come in order of first use. An object of several parts has all
+  /// their attributes.
   /// @throws SettingError if two parts of an object have different values of one name
   template <class PartOfScene>
   explicit ObjectAttributes(std::span<const PartOfScene> parts) {
@@ -33,8 +34,8 @@ class ObjectAttributes {
         if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
         const double known = all[part.object].emplace(name, value).first->second;
         if (!(known == value) && !(known != known && value != value))
-          throw_setting_error(("Part::attributes '" + name + "' of object " + std::to_string(part.object)).c_str(), value, "",
-                              "as of its other parts");
+          throw_setting_error(("Part::attributes '" + name + "' of object " + std::to_string(part.object)).c_str(),
+                              value, "", "as of its other parts");
       }
     }
     for (const auto& [object, values] : all) {
@@ -47,7 +48,9 @@ class ObjectAttributes {
     unknown_.assign(names_.size(), unknown);
   }
 
-  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }  ///< names, in order of the values
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept {
+    return names_;
+  }  ///< names, in order of the values
   [[nodiscard]] bool empty() const noexcept { return names_.empty(); }
 
   /// Values of an object, one a name; NaN where it has none.

@@ -16,7 +16,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box if it has none.
+/// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box
+/// if it has none.
 enum class GroundPlacement : std::uint8_t {
   origin,        ///< its own origin: for models whose origin is their foot
   lowest_point,  ///< its lowest point, or the middle of several: for a tree
@@ -47,10 +48,12 @@ void visit_points(const Shape& shape, const Similarity& placement, const Visit& 
 
 }  // namespace detail
 
-/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in question has ground above or below.
-/// Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying parts.
+/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in question has ground
+/// above or below. Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying
+/// parts.
 template <Geometry Shape>
-[[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement, const Ground auto& ground,
+[[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement,
+                                                     const Ground auto& ground,
                                                      GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   std::optional<double> lift;
   // least or greatest lift of the points in question
@@ -77,7 +80,8 @@ template <Geometry Shape>
     return lift;
   }
   Box lowest;
-  const double rounding = 1e-9 * box.size().z + 4 * std::numeric_limits<double>::epsilon() * max_norm(max(box.max, -box.min));
+  const double rounding =
+      1e-9 * box.size().z + 4 * std::numeric_limits<double>::epsilon() * max_norm(max(box.max, -box.min));
   detail::visit_points(shape, placement, [&](const Vec3& p) {
     if (p.z <= box.min.z + rounding) lowest.extend(p);
   });
@@ -86,11 +90,12 @@ template <Geometry Shape>
   return lift;
 }
 
-/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts there.
+/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts
+/// there.
 /// @throws SettingError for a placement out of range or a missing geometry
 template <Geometry... Shapes>
-[[nodiscard]] std::optional<Part<Shapes...>> on_ground(Part<Shapes...> part, const Ground auto& ground,
-                                                       GroundPlacement ground_placement = GroundPlacement::lowest_point) {
+[[nodiscard]] std::optional<Part<Shapes...>> on_ground(
+    Part<Shapes...> part, const Ground auto& ground, GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   part.placement = validated(part.placement);
   const auto lift_of = [&](const auto& shape) {
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");

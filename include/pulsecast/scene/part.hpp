@@ -27,7 +27,8 @@ namespace detail {
 
 [[nodiscard]] inline std::array<Vec3, 8> corners(const Box& b) noexcept {
   std::array<Vec3, 8> all;
-  for (std::size_t i = 0; i < 8; ++i) all[i] = {i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z};
+  for (std::size_t i = 0; i < 8; ++i)
+    all[i] = {i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z};
   return all;
 }
 
@@ -62,8 +63,10 @@ struct Similarity {
 
   void validate() const {
     require_rotation("Similarity::rotation", rotation);
-    require_within("Similarity::scale", scale, 1e-30, 1e30, "");  // keeps squared lengths finite in the part's own frame
-    if (!finite(translation)) throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
+    require_within("Similarity::scale", scale, 1e-30, 1e30,
+                   "");  // keeps squared lengths finite in the part's own frame
+    if (!finite(translation))
+      throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
   }
   void normalize() noexcept { rotation = unit(rotation); }
 
@@ -71,7 +74,9 @@ struct Similarity {
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return rotation * (scale * p) + translation; }
 
   /// True if nothing is rotated, scaled or shifted.
-  [[nodiscard]] bool identity() const noexcept { return rotation == no_rotation && scale == 1 && translation == Vec3{}; }
+  [[nodiscard]] bool identity() const noexcept {
+    return rotation == no_rotation && scale == 1 && translation == Vec3{};
+  }
 
   /// Box around a placed box [m].
   [[nodiscard]] Box box(const Box& b) const noexcept {
@@ -101,7 +106,8 @@ struct Similarity {
     local.origin = back * (ray.origin - translation);
     local.direction_length = ray.direction_length * per_metre;
     const Vec3 x = back[0], y = back[1], z = back[2], &d = ray.toward;
-    local.toward = {x.x * d.x + y.x * d.y + z.x * d.z, x.y * d.x + y.y * d.y + z.y * d.z, x.z * d.x + y.z * d.y + z.z * d.z};
+    local.toward = {x.x * d.x + y.x * d.y + z.x * d.z, x.y * d.x + y.y * d.y + z.y * d.z,
+                    x.z * d.x + y.z * d.y + z.z * d.z};
     return local;
   }
 
@@ -133,7 +139,8 @@ namespace detail {
   return {reach(0), reach(1), reach(2)};
 }
 
-/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty box.
+/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty
+/// box.
 [[nodiscard]] inline Box placed_box(const Similarity& placement, const Box& box) noexcept {
   if (box.empty()) return {};
   const Matrix3 turn = matrix_of(placement.rotation);
@@ -194,14 +201,15 @@ struct Attribute {
 /// Named numbers of a part, shareable among parts.
 using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 
-/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws SettingError for a name that is empty or comes
-/// twice
+/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws SettingError for a name that
+/// is empty or comes twice
 [[nodiscard]] inline Attributes attributes(std::vector<Attribute> all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& name = all[i].name;
     const auto before = all.begin() + static_cast<std::ptrdiff_t>(i);
     if (name.empty() || std::any_of(all.begin(), before, [&](const Attribute& other) { return other.name == name; }))
-      throw_setting_error("Attribute::name (number of '" + name + "')", static_cast<double>(i), "", "not empty, and each name once");
+      throw_setting_error("Attribute::name (number of '" + name + "')", static_cast<double>(i), "",
+                          "not empty, and each name once");
   }
   return std::make_shared<const std::vector<Attribute>>(std::move(all));
 }
@@ -214,8 +222,8 @@ struct Part {
   Similarity placement{};                          ///< placement in the world
   ObjectId object = 0;                             ///< object id of its points
   std::string name{};                              ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
-  Attributes attributes{};                         ///< what its points are told besides, as by `ObjectAttributes`
+  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
+  Attributes attributes{};                     ///< what its points are told besides, as by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -15,7 +15,8 @@ namespace PULSECAST_NAMESPACE {
 /// Temperature and salinity of water at atmospheric pressure.
 struct WaterState {
   double temperature_celsius = 20;  ///< temperature, from 0 to 30 [degrees Celsius]
-  double salinity_permille = 35;    ///< grams of salt per kilogram, from 0 to 35; 0 for fresh water, 35 for the mean of the oceans
+  double salinity_permille =
+      35;  ///< grams of salt per kilogram, from 0 to 35; 0 for fresh water, 35 for the mean of the oceans
 
   void validate() const {
     require_within("WaterState::temperature_celsius", temperature_celsius, 0, 30, "degrees Celsius");
@@ -80,8 +81,9 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
 }  // namespace detail
 
 /// Index of refraction of water relative to air, for a wavelength in vacuum, from 0.35 to 1.1 um [m].
-/// Source: Quan & Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated as by Huibers 1997. Relative to air: Zhang, Hu & He
-/// 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by 1e-3 at 1.06 um.
+/// Source: Quan & Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated as by Huibers 1997. Relative to
+/// air: Zhang, Hu & He 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by
+/// 1e-3 at 1.06 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);
@@ -90,8 +92,9 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
   return n.a + x * (n.b + x * (n.c + x * n.d));
 }
 
-/// Speed of a pulse in air by that in water: n - w dn/dw of `water_index` n over the wavelength w, by its exact derivative.
-/// Differs from that of Daimon & Masumura 2007 by at most 5e-4 in the visible (3e-5 at 0.532 um), by 5e-3 at 1.06 um.
+/// Speed of a pulse in air by that in water: n - w dn/dw of `water_index` n over the wavelength w, by its exact
+/// derivative. Differs from that of Daimon & Masumura 2007 by at most 5e-4 in the visible (3e-5 at 0.532 um), by 5e-3
+/// at 1.06 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_group_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);
@@ -100,13 +103,14 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
   return n.a + x * (2 * n.b + x * (3 * n.c + x * 4 * n.d));
 }
 
-/// Absorption coefficient of pure water [1/m] for a wavelength from 0.7 to 1.6 um [m]: 4 pi kappa / wavelength, kappa linear between the
-/// rows of the table. Varies by some per cent with temperature and salinity. Source: Segelstein 1981. @throws SettingError out of range
+/// Absorption coefficient of pure water [1/m] for a wavelength from 0.7 to 1.6 um [m]: 4 pi kappa / wavelength, kappa
+/// linear between the rows of the table. Varies by some per cent with temperature and salinity. Source: Segelstein
+/// 1981. @throws SettingError out of range
 [[nodiscard]] inline double pure_water_absorption(double wavelength) {
   require_within("pure_water_absorption (wavelength)", wavelength, 0.7e-6, 1.6e-6, "m");
   using detail::AbsorptiveIndex;
-  const double kappa =
-      detail::interpolated(detail::water_absorptive_index, wavelength * 1e6, &AbsorptiveIndex::micrometres, &AbsorptiveIndex::kappa);
+  const double kappa = detail::interpolated(detail::water_absorptive_index, wavelength * 1e6,
+                                            &AbsorptiveIndex::micrometres, &AbsorptiveIndex::kappa);
   return 4 * std::numbers::pi * kappa / wavelength;
 }
 

@@ -35,16 +35,20 @@ struct RasterGrid {
     return {first.x + column * pixel.x, first.y - row * pixel.y, static_cast<double>(height)};
   }
 
-  [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
+  [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept {
+    return std::size_t{row} * columns + column;
+  }
 
   /// Pixel that holds a place, edges of the raster included; empty outside.
   [[nodiscard]] std::optional<std::size_t> pixel_at(const Vec3& place) const noexcept {
     const double east = (place.x - first.x) / pixel.x + 0.5, south = (first.y - place.y) / pixel.y + 0.5;
     if (!(east >= 0 && east <= columns && south >= 0 && south <= rows)) return std::nullopt;
-    return index(std::min(static_cast<std::uint32_t>(east), columns - 1), std::min(static_cast<std::uint32_t>(south), rows - 1));
+    return index(std::min(static_cast<std::uint32_t>(east), columns - 1),
+                 std::min(static_cast<std::uint32_t>(south), rows - 1));
   }
 
-  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two triangles, about its centre.
+  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two triangles, about its
+  /// centre.
   [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, which = i % 2, cells = columns - 1;
     return index(cell % cells + which, cell / cells + which);
@@ -58,7 +62,8 @@ struct RasterCell {
 
   /// `all`: heights by pixel, `const float*` or `PackedPixels`.
   template <class Heights>
-  RasterCell(const RasterGrid& grid, const Heights& all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
+  RasterCell(const RasterGrid& grid, const Heights& all, std::uint32_t c, std::uint32_t r) noexcept
+      : column(c), row(r) {
     const std::size_t north = grid.index(c, r), south = north + grid.columns;
     heights[0] = all[north];
     heights[1] = all[south];
@@ -86,14 +91,15 @@ struct RasterCell {
 
 }  // namespace detail
 
-/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet along the
-/// south-west to north-east diagonal; a triangle with a missing corner is left out.
+/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet
+/// along the south-west to north-east diagonal; a triangle with a missing corner is left out.
 struct Raster {
   std::uint32_t columns = 0, rows = 0;  ///< pixels, from 2 to 2^27 each
   Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
-  Vec2 pixel{1, 1};                     ///< spacing of the centres, to the next column in the east and the next row in the south [m]
-  std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
-  /// Index of each pixel into the part's table of materials, for the two triangles with their right angle there; empty if all are 0.
+  Vec2 pixel{1, 1};  ///< spacing of the centres, to the next column in the east and the next row in the south [m]
+  std::vector<float> heights{};  ///< heights, row by row from the north [m]; NaN if missing
+  /// Index of each pixel into the part's table of materials, for the two triangles with their right angle there; empty
+  /// if all are 0.
   std::vector<std::uint8_t> materials{};
   PackedHeights packed{};  ///< heights in 16 bits, in place of `heights`
 
@@ -122,8 +128,8 @@ struct Raster {
   /// True if the heights are in 16 bits.
   [[nodiscard]] bool is_packed() const noexcept { return !packed.numbers.empty(); }
 
-  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a `std::vector<float>` or a value that is
-  /// indexed like it.
+  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a `std::vector<float>`
+  /// or a value that is indexed like it.
   template <class Work>
   decltype(auto) read(const Work& work) const {
     if (!is_packed()) return work(heights);
@@ -135,7 +141,8 @@ struct Raster {
   [[nodiscard]] Raster unpacked() const {
     validate();
     if (!is_packed()) return *this;
-    Raster wide{.columns = columns, .rows = rows, .first = first, .pixel = pixel, .heights = {}, .materials = materials};
+    Raster wide{
+        .columns = columns, .rows = rows, .first = first, .pixel = pixel, .heights = {}, .materials = materials};
     wide.heights.reserve(pixels());
     read([&](const auto& height) {
       for (std::size_t i = 0; i < pixels(); ++i) wide.heights.push_back(height[i]);
@@ -181,7 +188,8 @@ struct Raster {
  private:
   void check_heights() const {
     if (heights.size() != pixels())
-      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "", "as many as pixels, " + std::to_string(pixels()));
+      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
+                         "as many as pixels, " + std::to_string(pixels()));
     for (std::size_t i = 0; i < heights.size(); ++i)
       if (std::fabs(heights[i]) > 1e15F)
         throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
@@ -199,18 +207,21 @@ struct Raster {
 
 namespace detail {
 
-/// Column or row of a tile's first pixel, from that of a mosaic `offset` away [m]. @throws SettingError if it is between two pixels, or
-/// the tile's last one of `count` pixels of size `own` is
+/// Column or row of a tile's first pixel, from that of a mosaic `offset` away [m]. @throws SettingError if it is
+/// between two pixels, or the tile's last one of `count` pixels of size `own` is
 [[nodiscard]] inline std::uint32_t place_in_mosaic(double offset, double own, std::uint32_t count, double pixel) {
   const double place = offset / pixel, nearest = std::nearbyint(place), slip = std::fabs(own / pixel - 1) * count;
-  require_within("mosaic (shift of a tile's pixels against those of the first)", std::fabs(place - nearest) + slip, 0, 0.01, "pixel");
+  require_within("mosaic (shift of a tile's pixels against those of the first)", std::fabs(place - nearest) + slip, 0,
+                 0.01, "pixel");
   return static_cast<std::uint32_t>(nearest);
 }
 
 /// Number that no height of any raster has; empty if there is none, or if their heights are not packed alike.
 [[nodiscard]] inline std::optional<std::uint16_t> number_of_gaps(const std::vector<Raster>& tiles) {
   const PackedHeights& alike = tiles.front().packed;
-  if (!std::all_of(tiles.begin(), tiles.end(), [&](const Raster& r) { return r.is_packed() && r.packed.same_scale(alike); })) return {};
+  if (!std::all_of(tiles.begin(), tiles.end(),
+                   [&](const Raster& r) { return r.is_packed() && r.packed.same_scale(alike); }))
+    return {};
   if (alike.missing) return alike.missing;
   std::vector<bool> present(std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1, false);
   for (const Raster& tile : tiles)
@@ -221,10 +232,11 @@ namespace detail {
 
 }  // namespace detail
 
-/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are missing; where tiles overlap, the first
-/// one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one pixel between them. Its heights are packed
-/// where those of all tiles are, with one scale.
-/// @throws SettingError as `Raster::validate`; for no tile, pixels of different lattices, or tiles on less than a 64th of their extent
+/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are missing; where
+/// tiles overlap, the first one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one
+/// pixel between them. Its heights are packed where those of all tiles are, with one scale.
+/// @throws SettingError as `Raster::validate`; for no tile, pixels of different lattices, or tiles on less than a 64th
+/// of their extent
 [[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
   require_within("mosaic (number of tiles)", static_cast<double>(tiles.size()), 1, 1e6, "");
   const Vec2 pixel = tiles.front().pixel;
@@ -237,10 +249,13 @@ namespace detail {
     south = std::min(south, tile.first.y - (tile.rows - 1) * pixel.y);
     pixels += static_cast<double>(tile.pixels());
   }
-  const double columns = std::nearbyint((east - west) / pixel.x) + 1, rows = std::nearbyint((north - south) / pixel.y) + 1;
+  const double columns = std::nearbyint((east - west) / pixel.x) + 1,
+               rows = std::nearbyint((north - south) / pixel.y) + 1;
   require_within("mosaic (pixels)", columns * rows, 4, std::min(64 * pixels, 4294967296.0), "");
-  Raster all{
-      .columns = static_cast<std::uint32_t>(columns), .rows = static_cast<std::uint32_t>(rows), .first = {west, north}, .pixel = pixel};
+  Raster all{.columns = static_cast<std::uint32_t>(columns),
+             .rows = static_cast<std::uint32_t>(rows),
+             .first = {west, north},
+             .pixel = pixel};
   const detail::RasterGrid grid = all.grid();
   const std::optional<std::uint16_t> gap = detail::number_of_gaps(tiles);
   if (gap) {
@@ -278,10 +293,12 @@ struct CodeMaterial {
   std::uint8_t material = 0;  ///< index into the part's table of materials
 };
 
-/// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes the code of the pixel that its centre is
-/// in. `otherwise` is that of pixels without a code, or with one that is not listed; returns their number.
+/// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes the code of the pixel
+/// that its centre is in. `otherwise` is that of pixels without a code, or with one that is not listed; returns their
+/// number.
 /// @throws SettingError as `Raster::validate`, of both
-inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed, std::uint8_t otherwise = 0) {
+inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed,
+                                 std::uint8_t otherwise = 0) {
   ground.validate();
   codes.validate();
   const detail::RasterGrid grid = ground.grid();

@@ -40,19 +40,20 @@ struct RayHit {
 
 /// Surface of a scene at the hit of a ray, in the world.
 struct SurfacePoint {
-  Vec3 position{};                     ///< point of the hit [m]
-  Vec3 normal{};                       ///< unit, towards the side of the ray's origin; zero for a surface without direction, as of leaves
-  bool front = true;                   ///< true if the shape's own normal is towards that side, too, as for corners seen anticlockwise
+  Vec3 position{};  ///< point of the hit [m]
+  Vec3 normal{};    ///< unit, towards the side of the ray's origin; zero for a surface without direction, as of leaves
+  bool front = true;  ///< true if the shape's own normal is towards that side, too, as for corners seen anticlockwise
   const Material* material = nullptr;  ///< owned by the scene
   std::uint32_t material_index = 0;    ///< its index in the part's table of materials
   std::uint32_t part = 0;              ///< index of the part in the scene
   PrimitiveIndex primitive = 0;        ///< primitive of the part's geometry
-  std::optional<Vec3> weights{};       ///< barycentric weights of a triangle's corners, not negative, of sum one; empty for other shapes
-  std::optional<Vec2> texture{};       ///< texture coordinates; empty without
-  Vec3 velocity{};                     ///< velocity of the surface at the ray's tick; zero unless the part moves [m/s]
-  ObjectId object = 0;                 ///< object id of the part
-  std::uint16_t classification = 0;    ///< ASPRS class of the material
-  bool foliage = false;                ///< as in `Surface`
+  std::optional<Vec3>
+      weights{};  ///< barycentric weights of a triangle's corners, not negative, of sum one; empty for other shapes
+  std::optional<Vec2> texture{};     ///< texture coordinates; empty without
+  Vec3 velocity{};                   ///< velocity of the surface at the ray's tick; zero unless the part moves [m/s]
+  ObjectId object = 0;               ///< object id of the part
+  std::uint16_t classification = 0;  ///< ASPRS class of the material
+  bool foliage = false;              ///< as in `Surface`
 };
 
 /// World that tells the surface at the hit of a ray, as `Scene`, `MovingScene` and `Layered`.

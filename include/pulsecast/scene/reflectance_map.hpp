@@ -29,13 +29,16 @@ namespace PULSECAST_NAMESPACE {
   return table[sample];
 }
 
-/// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of their own; between
-/// these the reflectance is linear, beyond them constant. A grey picture is the same at all wavelengths.
+/// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
+/// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all
+/// wavelengths.
 struct ReflectanceMap {
-  Image image{};                                              ///< picture
-  std::array<double, 3> wavelengths{612e-9, 549e-9, 465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
-  /// If not zero, the mean of red, green and blue: the picture tells a pattern alone, and the reflectance is that of the material times the
-  /// ratio of a pixel to the mean, at most 1. For light that the picture does not show, as of 1064 nm.
+  Image image{};  ///< picture
+  std::array<double, 3> wavelengths{612e-9, 549e-9,
+                                    465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
+  /// If not zero, the mean of red, green and blue: the picture tells a pattern alone, and the reflectance is that of
+  /// the material times the ratio of a pixel to the mean, at most 1. For light that the picture does not show, as of
+  /// 1064 nm.
   Vec3 mean{};
 
   /// Map of a pattern: the mean is that of all pixels, and 1 for a channel that is black.
@@ -45,7 +48,8 @@ struct ReflectanceMap {
     const std::size_t pixels = std::size_t{map.image.width} * map.image.height;
     for (std::size_t k = 0; k < 3; ++k) {
       double sum = 0;
-      for (std::size_t i = 0; i < pixels; ++i) sum += linear_share(map.image.samples[i * map.image.channels + map.channel(k)]);
+      for (std::size_t i = 0; i < pixels; ++i)
+        sum += linear_share(map.image.samples[i * map.image.channels + map.channel(k)]);
       map.mean[static_cast<int>(k)] = sum > 0 ? sum / static_cast<double>(pixels) : 1;
     }
     return map;
@@ -54,7 +58,8 @@ struct ReflectanceMap {
   /// @throws SettingError for values out of range
   void validate() const {
     image.validate();
-    for (const double wavelength : wavelengths) require_within("ReflectanceMap::wavelengths", wavelength, 1e-8, 1e-3, "m");
+    for (const double wavelength : wavelengths)
+      require_within("ReflectanceMap::wavelengths", wavelength, 1e-8, 1e-3, "m");
     require_positive("ReflectanceMap::wavelengths (from green to red)", wavelengths[0] - wavelengths[1], "m");
     require_positive("ReflectanceMap::wavelengths (from blue to green)", wavelengths[1] - wavelengths[2], "m");
     for (int k = 0; k < 3; ++k) require_within("ReflectanceMap::mean", mean[k], 0, 1, "");

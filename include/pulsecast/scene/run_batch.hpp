@@ -20,34 +20,36 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along its direction, at its tick. A blocked
-/// slot has a ray whose `far` is 0, which meets nothing.
+/// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along its direction, at
+/// its tick. A blocked slot has a ray whose `far` is 0, which meets nothing.
 template <InstrumentSource Sensor>
 [[nodiscard]] std::vector<Ray> sensor_rays(const Sensor& sensor) {
   std::vector<Ray> rays(static_cast<std::size_t>(sensor.size()));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (const auto pulse = sensor.pulse(i))
-      rays[i] = {.origin = pulse->pose.position, .direction = pulse->pose.direction(axis::forward), .tick = pulse->tick};
+      rays[i] = {
+          .origin = pulse->pose.position, .direction = pulse->pose.direction(axis::forward), .tick = pulse->tick};
     else
       rays[i].far = 0;
   }
   return rays;
 }
 
-/// Ranges that equal sensors at many poses measure in one world [m], without echoes, noise or energy: for learning and planning. The range
-/// of ray j at pose p is `ranges[p * rays.size() + j]`, in single precision (6e-8 relative); infinite without a hit. `rays` are in the
-/// sensor's frame. A ray's `pulse` is replaced by that index: together with its `seed`, it is the key of leaves that are met at random.
-/// The ranges do not depend on the number of threads. Allocates nothing.
+/// Ranges that equal sensors at many poses measure in one world [m], without echoes, noise or energy: for learning and
+/// planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in single precision (6e-8 relative);
+/// infinite without a hit. `rays` are in the sensor's frame. A ray's `pulse` is replaced by that index: together with
+/// its `seed`, it is the key of leaves that are met at random. The ranges do not depend on the number of threads.
+/// Allocates nothing.
 /// @throws SettingError if `ranges` has another size, or for a pose that is not rigid
 template <GivesRanges World>
-void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame::World>> poses, std::span<const Ray> rays,
-               std::span<float> ranges, const Workers& workers = {}) {
+void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame::World>> poses,
+               std::span<const Ray> rays, std::span<float> ranges, const Workers& workers = {}) {
   const double asked = static_cast<double>(poses.size()) * static_cast<double>(rays.size());
   require_within("run_batch: ranges (number)", static_cast<double>(ranges.size()), asked, asked, "");
   for (std::size_t p = 0; p < poses.size(); ++p)
     if (!poses[p].rigid())
-      throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)", length(poses[p].rotation), "",
-                         "1, with a finite position");
+      throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)",
+                         length(poses[p].rotation), "", "1, with a finite position");
   constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
   for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
     std::array<Ray, block> asked_rays;
@@ -56,7 +58,8 @@ void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame
     for (std::size_t k = first; k < first + count;) {
       const std::size_t p = k / rays.size();
       const Matrix3 turn = matrix_of(poses[p].rotation);
-      for (const Ray& in_sensor : rays.subspan(k % rays.size(), std::min(first + count - k, (p + 1) * rays.size() - k))) {
+      for (const Ray& in_sensor :
+           rays.subspan(k % rays.size(), std::min(first + count - k, (p + 1) * rays.size() - k))) {
         Ray& ray = asked_rays[k - first] = in_sensor;
         ray.origin = turn * in_sensor.origin + poses[p].position;
         ray.direction = turn * in_sensor.direction;

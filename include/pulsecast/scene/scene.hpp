@@ -27,13 +27,15 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
+/// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene`
+/// moves parts.
 ///
-/// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes between repetitions of
-/// a survey (leaves fall, a car is gone), make one scene each from the same geometries.
+/// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes
+/// between repetitions of a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) && (detail::KeylessConstantCheck<Shapes>::passed && ...) &&
+  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) &&
+                (detail::KeylessConstantCheck<Shapes>::passed && ...) &&
                 (detail::TimedConstantCheck<Shapes>::passed && ...));
 
  public:
@@ -43,17 +45,21 @@ class Scene {
   using Part = pulsecast::Part<Shapes...>;
 
   /// `workers` build the index over the parts; the scene is the same for any.
-  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
-  explicit Scene(std::vector<Part> parts, const Workers& workers = {}) : Scene(std::move(parts), Motions::refused, workers) {}
+  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of
+  /// range
+  explicit Scene(std::vector<Part> parts, const Workers& workers = {})
+      : Scene(std::move(parts), Motions::refused, workers) {}
 
-  /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is refitted, and made anew
-  /// where it would be too slow; hits are those of a scene made of these parts. @throws SettingError for another number of placements, or
-  /// one out of range
+  /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is
+  /// refitted, and made anew where it would be too slow; hits are those of a scene made of these parts. @throws
+  /// SettingError for another number of placements, or one out of range
   [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, const Workers& workers = {}) const {
     return with_placements(placements, Scene(std::vector<Part>()), workers);
   }
-  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its second tick.
-  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused, const Workers& workers = {}) const {
+  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its
+  /// second tick.
+  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused,
+                                      const Workers& workers = {}) const {
     const auto count = static_cast<double>(parts_.size());
     require_within("Scene::with_placements (number)", static_cast<double>(placements.size()), count, count, "");
     unused.parts_ = parts_;
@@ -92,7 +98,8 @@ class Scene {
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
-    std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
+    std::size_t bytes =
+        index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
     detail::SharedMemorySum shared;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
@@ -135,18 +142,23 @@ class Scene {
   }
 
   /// Closest hit of a ray; empty for a miss. The same as of `closest`, for a ray alone.
-  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
+    return detail::closest_hit(ray, searcher());
+  }
 
-  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at the first hit found.
+  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at the first hit
+  /// found.
   [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
     return detail::occluded(ray, range, searcher());
   }
 
-  /// Calls `visitor(hit)` with every `RayHit` of a ray, by range and then by part and primitive, until it returns false; it may return
-  /// nothing. Each triangle counts once, a solid voxel where the ray enters it or leaves for the open, and of leaves those that the light
-  /// of the ray's key meets first. Shapes of one's own count by `closest` from each hit on. Allocates nothing. Returns the number of calls.
+  /// Calls `visitor(hit)` with every `RayHit` of a ray, by range and then by part and primitive, until it returns
+  /// false; it may return nothing. Each triangle counts once, a solid voxel where the ray enters it or leaves for the
+  /// open, and of leaves those that the light of the ray's key meets first. Shapes of one's own count by `closest` from
+  /// each hit on. Allocates nothing. Returns the number of calls.
   template <class Visitor>
-  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const
+      noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
     return detail::visit_hits(ray, searcher(), visitor);
   }
 
@@ -155,12 +167,14 @@ class Scene {
     return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
   }
 
-  /// Height of the surface of a ground material at a place that is nearest to a height; by default of the highest [m]. Empty if there is
-  /// none.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
+  /// Height of the surface of a ground material at a place that is nearest to a height; by default of the highest [m].
+  /// Empty if there is none.
+  [[nodiscard]] std::optional<double> ground_height(
+      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const Ray down{.origin = {at.x, at.y, bounds().max.z + 1}, .direction = -axis::up};
-    std::optional<double> height;  // nearest so far; all hits are asked, as another part may lie on the ground, at the same range
+    std::optional<double>
+        height;  // nearest so far; all hits are asked, as another part may lie on the ground, at the same range
     all_hits(down, [&](const RayHit& hit) noexcept {
       if (!surface(hit, down).material->ground) return true;
       const double next = down.origin.z - hit.range;
@@ -185,8 +199,11 @@ class Scene {
   void note_parts() noexcept {
     alone_ = parts_.size() == 1 && !parts_[0].motion;
     in_place_ = alone_ && parts_[0].placement.identity();
-    const auto keyless = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept { return KeylessGeometry<Shape>; };
-    keyless_ = std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return visit_shape(keyless, part.geometry); });
+    const auto keyless = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept {
+      return KeylessGeometry<Shape>;
+    };
+    keyless_ = std::all_of(parts_.begin(), parts_.end(),
+                           [&](const Part& part) { return visit_shape(keyless, part.geometry); });
   }
 
   static std::vector<Part> placed(std::vector<Part> parts) {
@@ -203,7 +220,8 @@ class Scene {
       const auto box_of = [&](const auto& shape) {
         if (!shape) throw_setting_error("Part::geometry (number)", 0, "", "1");
         const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
-        require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
+        require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()),
+                       4294967295.0, "");
         return part.motion ? Box{} : part.placement.box(shape->bounds());
       };
       boxes[i] = visit_shape(box_of, part.geometry);
@@ -230,7 +248,8 @@ class Scene {
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
     if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, BundleOfOne, ClosestHit> && ...))
-      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
+      if (rays.size == 1)
+        return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
@@ -263,7 +282,8 @@ class Scene {
     std::optional<Vec2> texture{};  ///< texture coordinates, for a material with a map
   };
 
-  SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
+  SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local,
+                               std::size_t j) const noexcept {
     const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> SurfaceSample {
       const Surface surface = shape->surface(primitive, local, j);
       SurfaceSample sample{.normal = surface.normal / local.direction_length,
@@ -274,7 +294,8 @@ class Scene {
       if constexpr (Textured<Shape>)
         if (sample.material->reflectance_map) [[unlikely]] {
           sample.flat = false;
-          sample.texture = shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
+          sample.texture =
+              shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
         }
       return sample;
     };
@@ -312,7 +333,8 @@ class Scene {
       for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
         const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
         const Vec3& n = sample.normal;
-        const simd::Doubles projections = simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
+        const simd::Doubles projections =
+            simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
         const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
         simd::Doubles values = law.reflectance * (law.cosine * cosines + law.even);
         if (law.lobe != 0) [[unlikely]]

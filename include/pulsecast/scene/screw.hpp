@@ -27,7 +27,8 @@ struct Periods {
   /// Exact, as fmod is: the phase of a period after a year is that of the first second.
   Periods(const Tick& time, double period) noexcept {
     const double second = static_cast<double>(time.second);
-    const double of_seconds = std::fmod(second, period), sum = of_seconds + time.fraction, last = std::fmod(sum, period);
+    const double of_seconds = std::fmod(second, period), sum = of_seconds + time.fraction,
+                 last = std::fmod(sum, period);
     whole = std::llround((second - of_seconds) / period) + std::llround((sum - last) / period);
     rest = Tick::of_seconds(last);
   }
@@ -59,14 +60,18 @@ struct RotationParts {
 };
 
 /// Replaces a rotation of less than 1e-15 rad, a rounding, by none, so that repetitions do not amplify it.
-[[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept { return RotationParts(r).angle < 1e-15 ? no_rotation : r; }
+[[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept {
+  return RotationParts(r).angle < 1e-15 ? no_rotation : r;
+}
 
 /// An angle [rad] times n, modulo whole turns.
-[[nodiscard]] inline double multiple(double angle, std::int64_t n) noexcept { return 2 * pi * Tick{n, 0}.phase(angle / (2 * pi)); }
+[[nodiscard]] inline double multiple(double angle, std::int64_t n) noexcept {
+  return 2 * pi * Tick{n, 0}.phase(angle / (2 * pi));
+}
 
-/// A rigid motion repeated n times: a screw of n times the angle and n times the glide. Across the axis, the n equal steps sum up as the
-/// sides of a regular polygon.
-/// Source: Chasles 1830, every rigid motion is a screw; sum of sin(k a): Gradshteyn & Ryzhik, 1.341.
+/// A rigid motion repeated n times: a screw of n times the angle and n times the glide. Across the axis, the n equal
+/// steps sum up as the sides of a regular polygon. Source: Chasles 1830, every rigid motion is a screw; sum of sin(k
+/// a): Gradshteyn & Ryzhik, 1.341.
 [[nodiscard]] inline Screw repeated(const Screw& once, std::int64_t n) noexcept {
   if (n == 0) return {};
   if (once.turn == no_rotation) return {no_rotation, static_cast<double>(n) * once.shift};
@@ -74,7 +79,8 @@ struct RotationParts {
   if (turn.angle == 0) return {no_rotation, static_cast<double>(n) * once.shift};
   const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;
   const double half = multiple(turn.angle / 2, n);
-  const Vec3 sum = std::sin(half) / std::sin(turn.angle / 2) * (rotation_about(turn.axis, half - turn.angle / 2) * across);
+  const Vec3 sum =
+      std::sin(half) / std::sin(turn.angle / 2) * (rotation_about(turn.axis, half - turn.angle / 2) * across);
   return {rotation_about(turn.axis, multiple(turn.angle, n)), static_cast<double>(n) * along + sum};
 }
 

@@ -21,7 +21,8 @@ struct SpectralSample {
   double reflectance = 0;  ///< reflectance, in [0, 1]
 };
 
-/// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the samples.
+/// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the
+/// samples.
 class Spectrum {
  public:
   /// Takes at least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise
@@ -51,11 +52,12 @@ class Spectrum {
   [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
   [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
   [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
-  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< memory of the samples [byte]
+  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }  ///< memory of the samples [byte]
 
   /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {
-    const auto [i, k] = detail::neighbours(samples_.size(), [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
+    const auto [i, k] = detail::neighbours(samples_.size(),
+                                           [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
     if (i == k) return samples_[i].reflectance;
     const SpectralSample &below = samples_[i], &above = samples_[k];
     const double share = (wavelength - below.wavelength) / (above.wavelength - below.wavelength);

@@ -25,21 +25,23 @@ namespace PULSECAST_NAMESPACE {
 
 /// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
 ///
-/// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and consumes it from
-/// voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws are independent between parts. A ray
-/// that begins inside counts its path from there. Density and paths are in metres of the part's own frame: scaling a plant keeps its
-/// transmittance. G is taken in that frame too, z being the vertical. Leaves send back as tilted surfaces do: the cosine of incidence is
-/// their mean squared cosine by their mean cosine.
+/// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and
+/// consumes it from voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws
+/// are independent between parts. A ray that begins inside counts its path from there. Density and paths are in metres
+/// of the part's own frame: scaling a plant keeps its transmittance. G is taken in that frame too, z being the
+/// vertical. Leaves send back as tilted surfaces do: the cosine of incidence is their mean squared cosine by their mean
+/// cosine.
 ///
-/// Leaves without an area are as small as the subrays: each ray draws for itself, so that echoes depend on the number of subrays. With an
-/// area, rays that pass as close to each other as a leaf is wide share their draws; echoes and their deviation are then as of facets of
-/// that area, and leaves stay from pulse to pulse, each with an incidence of its own. Source: North 1996; Ross 1981; Nilson 1971 for
-/// clumping.
+/// Leaves without an area are as small as the subrays: each ray draws for itself, so that echoes depend on the number
+/// of subrays. With an area, rays that pass as close to each other as a leaf is wide share their draws; echoes and
+/// their deviation are then as of facets of that area, and leaves stay from pulse to pulse, each with an incidence of
+/// its own. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
 struct TransmissiveVoxels {
   LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
   bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
-  double leaf_area = 0;       ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
-  double clumping = 1;        ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; from 0.01 to 10
+  double leaf_area = 0;  ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
+  double clumping =
+      1;  ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; from 0.01 to 10
 
   void validate() const {
     require_within("TransmissiveVoxels::leaf_area", leaf_area, 0, 100, "m^2");
@@ -57,7 +59,8 @@ struct TransmissiveVoxels {
    public:
     explicit Columns(DeserializeTag) {}
     /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
-    Columns(const VoxelData& data, std::span<const std::uint32_t> order) : densities_(detail::reordered<float>(data.densities, order)) {
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : densities_(detail::reordered<float>(data.densities, order)) {
       if (densities_.empty())
         throw SettingError("VoxelData::densities", 0, "",
                            "as many as cells, " + std::to_string(data.cells.size()) + ", for transmissive voxels");
@@ -70,7 +73,8 @@ struct TransmissiveVoxels {
     class Meeting {
      public:
       /// Ray j of a bundle; `nearest` gets its hit.
-      Meeting(const Columns& columns, const TransmissiveVoxels& leaves, const Rays& rays, std::size_t j, Hits& nearest) noexcept
+      Meeting(const Columns& columns, const TransmissiveVoxels& leaves, const Rays& rays, std::size_t j,
+              Hits& nearest) noexcept
           : columns_(columns), leaves_(leaves), rays_(rays), j_(j), nearest_(nearest) {}
 
       /// Passes a voxel; returns the range limit of the walk [m].
@@ -131,24 +135,26 @@ struct TransmissiveVoxels {
     };
 
     template <class Rays, class Hits>
-    [[nodiscard]] Meeting<Rays, Hits> meeting(const TransmissiveVoxels& settings, const LatticeRay&, const Rays& rays, std::size_t j,
-                                              Hits& nearest) const noexcept {
+    [[nodiscard]] Meeting<Rays, Hits> meeting(const TransmissiveVoxels& settings, const LatticeRay&, const Rays& rays,
+                                              std::size_t j, Hits& nearest) const noexcept {
       return {*this, settings, rays, j, nearest};
     }
 
     template <class Rays>
-    [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t number, const VoxelIndex& index, const Rays& rays,
-                              std::size_t j) const noexcept {
+    [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
       if (!settings.tilted_leaves) return {};
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
-      if (settings.leaf_area > 0) {  // a leaf's own, of that mean: as of spherical leaves if 2/3, whose squared cosine is uniform
+      if (settings.leaf_area >
+          0) {  // a leaf's own, of that mean: as of spherical leaves if 2/3, whose squared cosine is uniform
         const LatticeRay::Passage passage = index.ray(rays, j).through(index.cell(number));
         const detail::LeafColumns columns(rays.origin, direction, settings.leaf_area);
         const detail::LeafColumn column = columns.at(0.5 * (passage.in.range + passage.out.range)).column;
         cosine = std::pow(uniform({rays.seed, column.layer, column.place, Purpose::leaf_tilt, 0}), 1 / cosine - 1);
       }
-      const Vec3 aside = pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
+      const Vec3 aside =
+          pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
       return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
     }
 

@@ -39,12 +39,12 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 };
 }  // namespace detail
 
-/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit, nor those
-/// so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their numbers but are stored in the index's order,
-/// in blocks with vertices of their own for 16-bit indices. A triangle takes 10 bytes plus its index and its vertices of 24 bytes each, and
-/// one byte more for several materials. A ray that comes to a hole of a mask goes on; meshes without masks pay nothing for them.
-/// `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are
-/// tested in double.
+/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are
+/// never hit, nor those so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their
+/// numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle
+/// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray that
+/// comes to a hole of a mask goes on; meshes without masks pay nothing for them. `Bvh<float>` is Pareto-optimal in
+/// docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
@@ -54,7 +54,8 @@ class TriangleMesh {
   /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
     arrange(data, workers);
-    for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
+    for (const std::uint32_t m : data.materials)
+      material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
     if (material_count_ > 256)
       materials_ = numbers<std::uint32_t>(data.materials);
     else if (material_count_ > 1)
@@ -66,16 +67,19 @@ class TriangleMesh {
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, masks_, index_, material_count_);
+    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, masks_, index_,
+      material_count_);
   }
   [[nodiscard]] bool is_consistent() const {
-    if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::chunk_count(triangles_.size())) return false;
+    if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::chunk_count(triangles_.size()))
+      return false;
     for (std::size_t place = 0; place < triangles_.size(); ++place) {
       const std::uint64_t first = first_corners_[place / detail::chunk_size];
       for (const std::uint16_t corner : triangles_[place])
         if (first >= corners_.size() || corner >= corners_.size() - first) return false;
     }
-    if (!std::all_of(places_.begin(), places_.end(), [&](std::uint32_t place) { return place < triangles_.size(); })) return false;
+    if (!std::all_of(places_.begin(), places_.end(), [&](std::uint32_t place) { return place < triangles_.size(); }))
+      return false;
     const auto in_table = [&](const auto& materials) {
       return (materials.empty() || materials.size() == size()) &&
              std::all_of(materials.begin(), materials.end(), [&](std::uint32_t m) { return m < material_count_; });
@@ -109,7 +113,8 @@ class TriangleMesh {
       Limit limit{nearest};
       index_.closest(rays, test, limit);
       if (limit.spent())
-        detail::closest_one_by_one(rays, nearest, [this](const auto& ray, auto& hit) noexcept { this->closest(ray, hit); });
+        detail::closest_one_by_one(rays, nearest,
+                                   [this](const auto& ray, auto& hit) noexcept { this->closest(ray, hit); });
     } else if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {
@@ -124,7 +129,9 @@ class TriangleMesh {
   }
 
   /// True only if no ray of a cone comes near a triangle.
-  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept requires MissesCones<Index> { return index_.misses_cone(cone); }
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept requires MissesCones<Index> {
+    return index_.misses_cone(cone);
+  }
 
   /// Texture coordinates where the corners have these weights; empty without a column of them.
   [[nodiscard]] std::optional<Vec2> texture(PrimitiveIndex i, const Vec3& weights) const noexcept {
@@ -151,7 +158,8 @@ class TriangleMesh {
   template <class Rays>
   [[nodiscard]] bool solid(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     const std::uint32_t masked = material(i);
-    return !masks_.covers(masked) || masks_.solid(masked, *texture(i, triangle(i).weights(rays.origin, rays.direction(j))));
+    return !masks_.covers(masked) ||
+           masks_.solid(masked, *texture(i, triangle(i).weights(rays.origin, rays.direction(j))));
   }
 
   using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
@@ -191,7 +199,8 @@ class TriangleMesh {
       const Corners* const triangles = mesh.triangles_.data() + place;
       const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
       if (!mesh.masks_.empty()) [[unlikely]]
-        return test(primitives, triangle_of, [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
+        return test(primitives, triangle_of,
+                    [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
       test(primitives, triangle_of, SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
@@ -205,7 +214,8 @@ class TriangleMesh {
     /// Tests up to `room` primitives of one block at a time.
     [[gnu::noinline]] void in_pieces(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
       while (!primitives.empty()) {
-        const std::size_t count = std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
+        const std::size_t count =
+            std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
         (*this)(primitives.first(count));
         if constexpr (EndsEarly<Hits>)
           if (nearest.done()) return;
@@ -261,18 +271,21 @@ class TriangleMesh {
   static SharedBuffer<TextureCorners> texture_of(const MeshData& data) {
     const SharedBuffer<TextureCorners> all(data.texture.size());
     for (std::size_t i = 0; i < all.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) all[i][k] = {static_cast<float>(data.texture[i][k].x), static_cast<float>(data.texture[i][k].y)};
+      for (std::size_t k = 0; k < 3; ++k)
+        all[i][k] = {static_cast<float>(data.texture[i][k].x), static_cast<float>(data.texture[i][k].y)};
     return all;
   }
 
   /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, const Workers& workers) {
     const auto order = index_.order();
-    const bool once = order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last one wins
+    const bool once =
+        order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last one wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (!once) {
       std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
-      for (std::size_t place = 0; place < order.size(); ++place) places[order[place]] = static_cast<std::uint32_t>(place);
+      for (std::size_t place = 0; place < order.size(); ++place)
+        places[order[place]] = static_cast<std::uint32_t>(place);
     }
     const SharedBuffer<Corners> triangles(order.size());
     std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
@@ -292,8 +305,9 @@ class TriangleMesh {
       count += parts[block].size();
     }
     const SharedBuffer<Vec3> corners(count);
-    for_each_index(parts.size(), workers,
-                   [&](std::size_t block) { std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]); });
+    for_each_index(parts.size(), workers, [&](std::size_t block) {
+      std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]);
+    });
     corners_ = corners;
     first_corners_ = first_corners;
     triangles_ = triangles;
@@ -304,10 +318,11 @@ class TriangleMesh {
   SharedArray<std::uint64_t> first_corners_;  ///< first corner of each block
   SharedArray<Corners> triangles_;            ///< corners of the triangles, in the order of the index
   SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
-  SharedArray<std::uint8_t> few_materials_;   ///< material of each triangle; empty if all are 0, or if an index exceeds 255
-  SharedArray<std::uint32_t> materials_;      ///< material of each triangle if an index exceeds 255, else empty
-  SharedArray<TextureCorners> texture_;       ///< texture coordinates of each triangle's corners; empty without
-  MaskTable masks_;                           ///< holes by material
+  SharedArray<std::uint8_t>
+      few_materials_;                     ///< material of each triangle; empty if all are 0, or if an index exceeds 255
+  SharedArray<std::uint32_t> materials_;  ///< material of each triangle if an index exceeds 255, else empty
+  SharedArray<TextureCorners> texture_;   ///< texture coordinates of each triangle's corners; empty without
+  MaskTable masks_;                       ///< holes by material
   Index index_;
   std::size_t material_count_ = 1;
 };

@@ -15,15 +15,16 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/material.hpp>
 
-/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its copies with a table of materials each.
+/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its copies with a table of
+/// materials each.
 namespace PULSECAST_NAMESPACE {
 
-/// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum, by a uniform random
-/// amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same variants; `variants`
-/// only sets their number.
+/// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum,
+/// by a uniform random amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same
+/// variants; `variants` only sets their number.
 /// @throws SettingError for a bad material or a `range` outside [0, 1]
-[[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants, double range,
-                                                            std::uint64_t seed) {
+[[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants,
+                                                            double range, std::uint64_t seed) {
   material.validate();
   require_within("vary_reflectance (range)", range, 0, 1, "");
   std::vector<Material> all(variants, material);
@@ -40,8 +41,8 @@ namespace PULSECAST_NAMESPACE {
   return all;
 }
 
-/// Material indices of primitives in turn: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like. @throws SettingError
-/// for no materials
+/// Material indices of primitives in turn: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like.
+/// @throws SettingError for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_round_robin(std::size_t primitives, std::uint32_t materials) {
   require_within("assign_round_robin (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
@@ -49,8 +50,10 @@ namespace PULSECAST_NAMESPACE {
   return all;
 }
 
-/// Uniform random material indices of primitives. The same seed gives the same draws. @throws SettingError for no materials
-[[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials, std::uint64_t seed) {
+/// Uniform random material indices of primitives. The same seed gives the same draws. @throws SettingError for no
+/// materials
+[[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials,
+                                                                std::uint64_t seed) {
   require_within("assign_randomly (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
   for (std::size_t i = 0; i < primitives; ++i) {

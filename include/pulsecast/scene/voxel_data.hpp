@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below `cells` have one
-/// entry per cell, or none.
+/// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below
+/// `cells` have one entry per cell, or none.
 struct VoxelData {
   Vec3 corner{};                                      ///< lower corner of the cell (0, 0, 0) [m]
   double edge = 1;                                    ///< edge of a cell [m]
@@ -30,19 +30,23 @@ struct VoxelData {
   std::vector<std::uint16_t> materials{};             ///< index into the part's table
 
   /// Least edge of a lattice at a place [m]: coordinates there round by an eighth of it.
-  [[nodiscard]] static double min_edge(const Vec3& place) noexcept { return 4 * std::numeric_limits<double>::epsilon() * max_norm(place); }
+  [[nodiscard]] static double min_edge(const Vec3& place) noexcept {
+    return 4 * std::numeric_limits<double>::epsilon() * max_norm(place);
+  }
 
   /// Refuses invalid data, except for duplicate cells, which the grid finds when it sorts them. @throws SettingError
   void validate() const {
     constexpr double max_coordinate = 1e18;
     for (int k = 0; k < 3; ++k)
-      if (!(std::fabs(corner[k]) <= max_coordinate)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
+      if (!(std::fabs(corner[k]) <= max_coordinate))
+        throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
     require_positive("VoxelData::edge", edge, "m");
     if (!(edge >= min_edge(corner)))
       throw SettingError("VoxelData::edge", edge, "m",
                          "at least " + detail::to_text(min_edge(corner)) + " at this distance from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
-    if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
+    if (cells.size() > 4294967294)
+      throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (int k = 0; k < 3; ++k)
         if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= max_coordinate))
@@ -54,7 +58,8 @@ struct VoxelData {
     }
     require_entries("densities", densities);
     for (std::size_t i = 0; i < densities.size(); ++i)
-      if (!(densities[i] >= 0) || !std::isfinite(densities[i])) reject("densities", densities[i], "finite and at least 0", i);
+      if (!(densities[i] >= 0) || !std::isfinite(densities[i]))
+        reject("densities", densities[i], "finite and at least 0", i);
     require_entries("scales", scales);
     for (std::size_t i = 0; i < scales.size(); ++i)
       if (!(scales[i] > 0 && scales[i] <= 1)) reject("scales", scales[i], "greater than 0 and at most 1", i);
@@ -62,7 +67,8 @@ struct VoxelData {
     for (std::size_t i = 0; i < shifts.size(); ++i) {
       const double room = (1 - (scales.empty() ? 1.0 : static_cast<double>(scales[i]))) / 2;
       for (const float shift : shifts[i])
-        if (!(std::fabs(shift) <= room + 1e-6)) reject("shifts", shift, "small enough that the cube is inside its cell", i);
+        if (!(std::fabs(shift) <= room + 1e-6))
+          reject("shifts", shift, "small enough that the cube is inside its cell", i);
     }
     require_entries("materials", materials);
   }
@@ -74,7 +80,8 @@ struct VoxelData {
   }
 
   [[noreturn]] static void reject(const char* field, double value, std::string allowed, std::size_t cell) {
-    throw SettingError(std::string("VoxelData::") + field, value, "", std::move(allowed) + "; see entry " + std::to_string(cell));
+    throw SettingError(std::string("VoxelData::") + field, value, "",
+                       std::move(allowed) + "; see entry " + std::to_string(cell));
   }
 
   template <class Column>

@@ -35,8 +35,8 @@ enum class Incidence : std::uint8_t {
   perpendicular,  ///< always towards the scanner
 };
 
-/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far side, as with any
-/// closed surface.
+/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far
+/// side, as with any closed surface.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 
@@ -61,13 +61,14 @@ struct OpaqueVoxels {
     }
 
     template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j, Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
+                               Hits& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
     template <class Rays>
-    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index, const Rays& rays,
-                              std::size_t j) const noexcept {
+    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       if (settings.incidence == Incidence::normal && !normals_.empty()) {
         const Vec3 kept = normals_[number].unpacked();
@@ -87,8 +88,8 @@ struct OpaqueVoxels {
   };
 };
 
-/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser et al. 2021.
-/// Requires scales; normals are not kept, so `Incidence::normal` means the face.
+/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser
+/// et al. 2021. Requires scales; normals are not kept, so `Incidence::normal` means the face.
 struct ScaledVoxels {
   Incidence incidence = Incidence::face;  ///< surface direction of all voxels
 
@@ -103,15 +104,17 @@ struct ScaledVoxels {
     explicit Columns(DeserializeTag) {}
     /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
-        : scales_(detail::reordered<float>(data.scales, order)), shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
+        : scales_(detail::reordered<float>(data.scales, order)),
+          shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
       if (scales_.empty())
-        throw SettingError("VoxelData::scales", 0, "", "as many as cells, " + std::to_string(data.cells.size()) + ", for scaled voxels");
+        throw SettingError("VoxelData::scales", 0, "",
+                           "as many as cells, " + std::to_string(data.cells.size()) + ", for scaled voxels");
     }
 
     [[nodiscard]] std::size_t memory() const noexcept { return scales_.memory() + shifts_.memory(); }
 
-    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay& ray, std::uint32_t number, const LatticeCell& cell, const Crossing&,
-                                              const Crossing&) const noexcept {
+    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay& ray, std::uint32_t number, const LatticeCell& cell,
+                                              const Crossing&, const Crossing&) const noexcept {
       const double half = static_cast<double>(scales_[number]) / 2;
       const Vec3 shift = shifts_.empty() ? Vec3{} : shifts_[number].unpacked();
       std::array<double, 3> low, high;
@@ -124,13 +127,14 @@ struct ScaledVoxels {
     }
 
     template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j, Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
+                               Hits& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
     template <class Rays>
-    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index, const Rays& rays,
-                              std::size_t j) const noexcept {
+    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       const LatticeRay ray = index.ray(rays, j);
       return detail::face_normal(ray, passage(ray, number, index.cell(number), {}, {}), rays.near);
@@ -147,14 +151,14 @@ struct ScaledVoxels {
   };
 };
 
-/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data. Keeps only the data
-/// that the filling needs, in at most 40 bytes per voxel plus 16.
-/// `Filling`: `OpaqueVoxels`, `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
+/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data.
+/// Keeps only the data that the filling needs, in at most 40 bytes per voxel plus 16. `Filling`: `OpaqueVoxels`,
+/// `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
   static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;  ///< true if its surfaces are foliage
-  static constexpr bool keyless = !of_leaves;                                   ///< as the concept KeylessGeometry describes
+  static constexpr bool keyless = !of_leaves;  ///< as the concept KeylessGeometry describes
 
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
@@ -166,7 +170,9 @@ class VoxelGrid {
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
 
   /// Memory held [byte], without the table of leaf angles, which grids may share.
-  [[nodiscard]] std::size_t memory() const noexcept { return index_.memory() + columns_.memory() + materials_.memory(); }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return index_.memory() + columns_.memory() + materials_.memory();
+  }
 
   /// Cell of a voxel, which contains its hits [m].
   [[nodiscard]] Box cell(PrimitiveIndex i) const noexcept {
@@ -179,12 +185,14 @@ class VoxelGrid {
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
-    const auto span = BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
+    const auto span =
+        BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
     if (span.empty() || span.entry > nearest.limit(rays)) return;
     for (std::size_t j = 0; j < rays.size; ++j) {
       const LatticeRay ray = index_.ray(rays, j);
       auto meeting = columns_.meeting(filling_, ray, rays, j, nearest);
-      index_.walk(ray, rays.near, nearest.limit_of(j), [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
+      index_.walk(ray, rays.near, nearest.limit_of(j),
+                  [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
       meeting.finish();
     }
   }
@@ -216,7 +224,8 @@ class VoxelGrid {
         index_(validated_data(data), order),
         columns_(data, order),
         materials_(detail::reordered<std::uint16_t>(data.materials, order)) {
-    for (const std::uint16_t m : materials_) material_count_ = std::max<std::uint64_t>(material_count_, std::uint64_t{m} + 1);
+    for (const std::uint16_t m : materials_)
+      material_count_ = std::max<std::uint64_t>(material_count_, std::uint64_t{m} + 1);
   }
 
   static const VoxelData& validated_data(const VoxelData& data) {
@@ -231,7 +240,8 @@ class VoxelGrid {
   std::uint64_t material_count_ = 1;
 };
 
-static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> && Geometry<VoxelGrid<TransmissiveVoxels>>);
+static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> &&
+              Geometry<VoxelGrid<TransmissiveVoxels>>);
 
 }  // namespace PULSECAST_NAMESPACE
 

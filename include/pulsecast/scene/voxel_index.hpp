@@ -25,10 +25,9 @@ namespace detail {
 class VoxelIndexBuilder;
 }
 
-/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks are bits of blocks of
-/// as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the whole lattice lets rays leap over empty
-/// cubes.
-/// Takes at most 26 bytes per occupied cell at any positions, plus 16.
+/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks
+/// are bits of blocks of as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the
+/// whole lattice lets rays leap over empty cubes. Takes at most 26 bytes per occupied cell at any positions, plus 16.
 /// Source: Amanatides & Woo 1987 (traversal).
 class VoxelIndex {
  public:
@@ -37,7 +36,8 @@ class VoxelIndex {
 
   explicit VoxelIndex(DeserializeTag) {}
 
-  /// Sets `order` to the data's cell index of each number. `scene/voxel_grid.hpp` defines this; it takes no part in tracing.
+  /// Sets `order` to the data's cell index of each number. `scene/voxel_grid.hpp` defines this; it takes no part in
+  /// tracing.
   /// @throws SettingError for a duplicate cell, or an extent above `longest`
   VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order);
 
@@ -66,8 +66,8 @@ class VoxelIndex {
     return {corner_, edge_, rays, j};
   }
 
-  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order. Stops at a cell
-  /// beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
+  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order.
+  /// Stops at a cell beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
   template <class Visit>
   void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
     detail::LatticeWalker at(ray, near, extent_);
@@ -85,7 +85,8 @@ class VoxelIndex {
         const unsigned bit = detail::cell_bit(at.cell, 0);
         const int axis = detail::LatticeWalker::first_of(at.next);
         if (mask >> bit & 1) {
-          const auto number = brick_first_[place.brick] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+          const auto number = brick_first_[place.brick] +
+                              static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
           const Crossing out{at.next[static_cast<std::size_t>(axis)], axis};
           limit = std::min<double>(limit, visit(number, at.cell, at.in, out));
         }
@@ -123,7 +124,8 @@ class VoxelIndex {
   }
 
   std::uint32_t root(std::uint64_t key) const noexcept {
-    for (std::size_t s = detail::hash_slot(key, slots_.size()); slots_[s] != nothing; s = s + 1 == slots_.size() ? 0 : s + 1)
+    for (std::size_t s = detail::hash_slot(key, slots_.size()); slots_[s] != nothing;
+         s = s + 1 == slots_.size() ? 0 : s + 1)
       if (keys_[slots_[s]] == key) return slots_[s];
     return nothing;
   }
@@ -163,7 +165,8 @@ class VoxelIndex {
     const std::uint64_t mask = block_masks_[place.root];
     const unsigned bit = detail::cell_bit(c, 2);
     if (!(mask >> bit & 1)) return {2, mask};
-    place.brick = block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+    place.brick =
+        block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
     return {};
   }
 

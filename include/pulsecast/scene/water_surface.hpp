@@ -34,11 +34,12 @@ struct WaterArea {
 };
 
 /// Surface of water with the waves that it has when a pulse leaves; two-sided. Without waves it is a plane.
-/// Hits lie within 1e-10 m of the surface along the ray, and a rounding of the ray's coordinates. A ray that dips into a crest, or leaves
-/// the water in a trough, for less than 1e-10 m may miss both hits.
-/// Primitives number places along a ray: one is the share of 2^32 of the ray's way between the bounds of the waves, at which it is hit.
-/// Search: along steps that a bound of slope and curvature proves to be free of hits. Of short waves the bound is their height, until the
-/// ray is near them. Source: Kalra & Barr 1989, Guaranteed ray intersections with implicit surfaces (bounds of the first derivative).
+/// Hits lie within 1e-10 m of the surface along the ray, and a rounding of the ray's coordinates. A ray that dips into
+/// a crest, or leaves the water in a trough, for less than 1e-10 m may miss both hits. Primitives number places along a
+/// ray: one is the share of 2^32 of the ray's way between the bounds of the waves, at which it is hit. Search: along
+/// steps that a bound of slope and curvature proves to be free of hits. Of short waves the bound is their height, until
+/// the ray is near them. Source: Kalra & Barr 1989, Guaranteed ray intersections with implicit surfaces (bounds of the
+/// first derivative).
 class WaterSurface {
  public:
   static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
@@ -47,7 +48,8 @@ class WaterSurface {
   /// @throws SettingError as `WaterArea::validate`
   explicit WaterSurface(const WaterArea& area, WaveField waves = {}) : waves_(std::move(waves)), level_(area.level) {
     area.validate();
-    bounds_ = {{area.min.x, area.min.y, level_ - waves_.highest()}, {area.max.x, area.max.y, level_ + waves_.highest()}};
+    bounds_ = {{area.min.x, area.min.y, level_ - waves_.highest()},
+               {area.max.x, area.max.y, level_ + waves_.highest()}};
   }
 
   [[nodiscard]] const WaveField& waves() const noexcept { return waves_; }  ///< waves about the mean level
@@ -142,13 +144,15 @@ class WaterSurface {
   [[nodiscard]] double only_root(const detail::WaveProfile& profile, const Line& line) const noexcept {
     const std::size_t all = profile.groups();
     const double sense = line.climb < 0 ? -1 : 1, least = std::fabs(line.climb) - profile.steepest(all);
-    double t = -line.start / line.climb, half = waves_.highest() / std::fabs(line.climb), low = t - half, high = t + half;
+    double t = -line.start / line.climb, half = waves_.highest() / std::fabs(line.climb), low = t - half,
+           high = t + half;
     double slack = 0.125 * waves_.highest();
     for (int step = 0;; ++step) {
       const double z = line.at(t);
       const auto sample = profile.at(t, z, slack);
       const double above = z - sample.height, newton = -above / (line.climb - sample.rate);
-      if (sample.groups == all && (profile.curviest(all) * newton * newton <= 2 * tolerance * least || step == 64)) return t + newton;
+      if (sample.groups == all && (profile.curviest(all) * newton * newton <= 2 * tolerance * least || step == 64))
+        return t + newton;
       if (std::fabs(above) > sample.rest) (above * sense < 0 ? low : high) = t;
       const double next = t + newton;
       t = next > low && next < high && step < 16 ? next : 0.5 * (low + high);
@@ -158,7 +162,8 @@ class WaterSurface {
 
   /// Offers each place where a ray passes the surface, in order, up to the end of its span and to a limit [m].
   template <class Offer>
-  void find_roots(const detail::WaveProfile& profile, const Line& line, const Span& span, double limit, const Offer& offer) const noexcept {
+  void find_roots(const detail::WaveProfile& profile, const Line& line, const Span& span, double limit,
+                  const Offer& offer) const noexcept {
     double t = span.begin, side = 0;
     while (true) {
       const double z = line.at(t);

@@ -20,8 +20,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension [rad/s]; `wavenumber` in rad/m.
-/// Source: Lamb 1932, Hydrodynamics, article 267; surface tension: IAPWS R1-76(2014), over the density of water, 998.2 kg/m^3.
+/// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension [rad/s]; `wavenumber`
+/// in rad/m. Source: Lamb 1932, Hydrodynamics, article 267; surface tension: IAPWS R1-76(2014), over the density of
+/// water, 998.2 kg/m^3.
 [[nodiscard]] inline double wave_frequency(double wavenumber) noexcept {
   constexpr double tension = 72.74e-3 / 998.2;  // per density [m^3/s^2]
   return std::sqrt(wavenumber * (standard_gravity + tension * wavenumber * wavenumber));
@@ -32,7 +33,8 @@ struct SineWave {
   double amplitude = 0;   ///< half of the height from trough to crest [m], from 0 to 100
   double wavelength = 1;  ///< distance between crests [m], from 1 mm to 1000 km
   double toward = 0;      ///< direction that the wave travels to, from east towards north [rad]
-  double phase = 0;       ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter of a wavelength ahead
+  double phase =
+      0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter of a wavelength ahead
 
   void validate() const {
     require_within("SineWave::amplitude", amplitude, 0, 100, "m");
@@ -63,7 +65,8 @@ class WaveSum {
   simd::Doubles parts_[count]{};
 };
 
-/// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it belongs to.
+/// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it
+/// belongs to.
 template <class Add>
 [[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const Add& add) noexcept {
   // unrolled, so that the sums stay in registers
@@ -87,14 +90,16 @@ struct WaveSine {
         (3.1415926535897927 +
          z * (-5.1677127800497855 +
               z * (2.5501640398618677 +
-                   z * (-0.599264528825224 + z * (0.08214587881631043 + z * (-0.0073703643265304155 +
-                                                                             z * (0.0004659870158043378 - z * 2.113362735205297e-05)))))));
+                   z * (-0.599264528825224 +
+                        z * (0.08214587881631043 + z * (-0.0073703643265304155 +
+                                                        z * (0.0004659870158043378 - z * 2.113362735205297e-05)))))));
     const simd::Doubles c =
         0.9999999999999981 +
         z * (-4.934802200543686 +
              z * (4.058712126333295 +
                   z * (-1.3352627661817635 +
-                       z * (0.23533058831317874 + z * (-0.025806531975921563 + z * (0.0019278700526981333 - z * 0.0001004164642205389))))));
+                       z * (0.23533058831317874 +
+                            z * (-0.025806531975921563 + z * (0.0019278700526981333 - z * 0.0001004164642205389))))));
     sin = simd::Doubles(simd::Ids(s) ^ sign);
     cos = simd::Doubles(simd::Ids(c) ^ sign);
   }
@@ -109,8 +114,9 @@ class WaveProfile;
 
 }  // namespace detail
 
-/// Waves on a water surface about its mean level, as a sum of sine waves: a closed form in place and time. Copies share the waves.
-/// Its laws are those of linear waves: heights add up, crests and troughs are alike. Places are within 1e9 m of the origin.
+/// Waves on a water surface about its mean level, as a sum of sine waves: a closed form in place and time. Copies share
+/// the waves. Its laws are those of linear waves: heights add up, crests and troughs are alike. Places are within 1e9 m
+/// of the origin.
 class WaveField {
  public:
   static constexpr std::size_t max_size = detail::max_waves;  ///< greatest number of waves
@@ -120,11 +126,13 @@ class WaveField {
 
   /// Of at most `max_size` waves. @throws SettingError for a wave out of range, or too many of them
   explicit WaveField(std::vector<SineWave> waves) {
-    require_within("WaveField::waves (number)", static_cast<double>(waves.size()), 0, static_cast<double>(max_size), "");
+    require_within("WaveField::waves (number)", static_cast<double>(waves.size()), 0, static_cast<double>(max_size),
+                   "");
     for (const SineWave& wave : waves) wave.validate();
     std::erase_if(waves, [](const SineWave& wave) { return wave.amplitude == 0; });
     if (waves.empty()) return;
-    std::stable_sort(waves.begin(), waves.end(), [](const SineWave& a, const SineWave& b) { return a.wavelength > b.wavelength; });
+    std::stable_sort(waves.begin(), waves.end(),
+                     [](const SineWave& a, const SineWave& b) { return a.wavelength > b.wavelength; });
     size_ = (waves.size() + detail::wave_group - 1) / detail::wave_group * detail::wave_group;
     std::vector<double> columns(column_count * size_), rest(size_ / detail::wave_group + 1);
     for (std::size_t i = waves.size(); i-- > 0;) {
@@ -147,7 +155,9 @@ class WaveField {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if the surface is flat
   [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of the magnitude of heights [m]
   [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of the magnitude of slopes
-  [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }  ///< memory held [byte]
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return columns_.memory() + rest_.memory();
+  }  ///< memory held [byte]
 
   /// Height above the mean level at a place [m east, m north] [m].
   [[nodiscard]] double height(const Vec2& place, const Tick& t) const noexcept {
@@ -176,11 +186,14 @@ class WaveField {
  private:
   friend class detail::WaveProfile;
 
-  /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half turns/s], phase [half turns].
+  /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half turns/s], phase
+  /// [half turns].
   enum Column : std::size_t { amplitude, east, north, frequency, phase, column_count };
 
   [[nodiscard]] const double* column(Column c) const noexcept { return columns_.data() + c * size_; }
-  [[nodiscard]] simd::Doubles lanes(Column c, std::size_t i) const noexcept { return simd::load<simd::Doubles>(column(c)[i]); }
+  [[nodiscard]] simd::Doubles lanes(Column c, std::size_t i) const noexcept {
+    return simd::load<simd::Doubles>(column(c)[i]);
+  }
 
   /// Whole turns over whole seconds are removed exactly, as by `Tick::phase`.
   void set_phases(const Vec2& place, const Tick& t, detail::WavePhases& phases) const noexcept {
@@ -190,13 +203,15 @@ class WaveField {
       const simd::Doubles lost = detail::product_error(speed, tick.second, half_turns);
       const simd::Doubles left = half_turns - 2.0 * simd::round(simd::Doubles(0.5 * half_turns));
       const simd::Doubles travelled = left + (speed * tick.fraction + lost);
-      simd::store(simd::Doubles(lanes(east, i) * place.x + lanes(north, i) * place.y + (lanes(phase, i) - travelled)), phases.at[i]);
+      simd::store(simd::Doubles(lanes(east, i) * place.x + lanes(north, i) * place.y + (lanes(phase, i) - travelled)),
+                  phases.at[i]);
     }
   }
 
   std::size_t size_ = 0;  ///< waves, with idle ones to a whole number of groups
   double highest_ = 0, steepest_ = 0;
-  SharedArray<double> columns_, rest_;  ///< numbers of the waves, the longest first; amplitudes of each group and all after it [m]
+  SharedArray<double> columns_,
+      rest_;  ///< numbers of the waves, the longest first; amplitudes of each group and all after it [m]
 };
 
 namespace detail {
@@ -224,7 +239,8 @@ class WaveProfile {
     for (std::size_t g = 0; g < groups_; ++g) {
       WaveSum slopes, curvatures;
       each_wave(g * wave_group, (g + 1) * wave_group, [&](std::size_t i, std::size_t part) noexcept {
-        const simd::Doubles speed = field.lanes(WaveField::east, i) * direction.x + field.lanes(WaveField::north, i) * direction.y;
+        const simd::Doubles speed =
+            field.lanes(WaveField::east, i) * direction.x + field.lanes(WaveField::north, i) * direction.y;
         const simd::Doubles rise = field.lanes(WaveField::amplitude, i) * speed;
         simd::store(speed, speeds_[i]);
         slopes.add(part, simd::detail::magnitude(rise));
@@ -237,9 +253,12 @@ class WaveProfile {
 
   [[nodiscard]] std::size_t groups() const noexcept { return groups_; }                           ///< number of groups
   [[nodiscard]] double steepest(std::size_t groups) const noexcept { return steepest_[groups]; }  ///< bound of |rate|
-  [[nodiscard]] double curviest(std::size_t groups) const noexcept { return curviest_[groups]; }  ///< bound of |second derivative|
+  [[nodiscard]] double curviest(std::size_t groups) const noexcept {
+    return curviest_[groups];
+  }  ///< bound of |second derivative|
 
-  /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of the distance of the sum from `z` [m].
+  /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of the distance of the
+  /// sum from `z` [m].
   [[nodiscard]] Sample at(double t, double z, double slack) const noexcept {
     WaveSum heights, rates;
     double height = 0;

@@ -18,10 +18,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Slopes of a clean sea surface under wind, of waves of all lengths down to the shortest: a normal distribution about the level, with
-/// independent slopes along and across the wind.
-/// Source: Cox & Munk 1954, Measurement of the roughness of the sea surface from photographs of the sun's glitter, J. Opt. Soc. Am. 44;
-/// observed at 1 to 14 m/s. Limits: without the skewness and peakedness of their Gram-Charlier series.
+/// Slopes of a clean sea surface under wind, of waves of all lengths down to the shortest: a normal distribution about
+/// the level, with independent slopes along and across the wind. Source: Cox & Munk 1954, Measurement of the roughness
+/// of the sea surface from photographs of the sun's glitter, J. Opt. Soc. Am. 44; observed at 1 to 14 m/s. Limits:
+/// without the skewness and peakedness of their Gram-Charlier series.
 struct SlopeDistribution {
   double along = 0;   ///< variance of the slope upwind and downwind
   double across = 0;  ///< variance of the slope crosswind
@@ -32,7 +32,8 @@ struct SlopeDistribution {
     return {0.00316 * wind_speed, 0.003 + 0.00192 * wind_speed, toward};
   }
 
-  /// Probability density of a slope, the derivatives of the height by x and y; infinite or not a number if a variance is zero.
+  /// Probability density of a slope, the derivatives of the height by x and y; infinite or not a number if a variance
+  /// is zero.
   [[nodiscard]] double density(const Vec2& slope) const noexcept {
     const double c = std::cos(toward), s = std::sin(toward);
     const double u = c * slope.x + s * slope.y, v = c * slope.y - s * slope.x;
@@ -42,8 +43,8 @@ struct SlopeDistribution {
 
 /// Waves raised by a steady wind on deep water.
 struct WindWaves {
-  double wind_speed = 5;                                   ///< 10 to 12.5 m above the mean level, from 0, a flat surface, to 30 [m/s]
-  double toward = 0;                                       ///< direction that the wind blows to, from east towards north [rad]
+  double wind_speed = 5;  ///< 10 to 12.5 m above the mean level, from 0, a flat surface, to 30 [m/s]
+  double toward = 0;      ///< direction that the wind blows to, from east towards north [rad]
   double fetch = std::numeric_limits<double>::infinity();  ///< distance from the windward shore, at least 1 [m]
   double shortest = 3e-3;                                  ///< least wavelength, from 2 mm to 0.1 m [m]
   std::size_t components = 96;                             ///< number of sine waves, from 16 to `WaveField::max_size`
@@ -54,13 +55,14 @@ struct WindWaves {
     require_angle("WindWaves::toward", toward);
     require_within("WindWaves::fetch", fetch, 1, std::numeric_limits<double>::infinity(), "m");
     require_within("WindWaves::shortest", shortest, 2e-3, 0.1, "m");
-    require_within("WindWaves::components (number)", static_cast<double>(components), 16, static_cast<double>(WaveField::max_size), "");
+    require_within("WindWaves::components (number)", static_cast<double>(components), 16,
+                   static_cast<double>(WaveField::max_size), "");
   }
 };
 
 /// Spectrum of wind waves over wavenumbers [rad/m] and directions, from the longest waves to capillary waves.
-/// Source: Elfouhaily, Chapron, Katsaros & Vandemark 1997, A unified directional spectrum for long and short wind-driven waves, J. Geophys.
-/// Res. 102; friction velocity by the drag coefficient of Wu 1982, J. Geophys. Res. 87.
+/// Source: Elfouhaily, Chapron, Katsaros & Vandemark 1997, A unified directional spectrum for long and short
+/// wind-driven waves, J. Geophys. Res. 102; friction velocity by the drag coefficient of Wu 1982, J. Geophys. Res. 87.
 /// Limits: of winds below 0.5 m/s it is that of 0.5 m/s, and of waves younger than an inverse wave age of 5 that of 5.
 class WindSpectrum {
  public:
@@ -79,10 +81,12 @@ class WindSpectrum {
 
   [[nodiscard]] double peak() const noexcept { return peak_; }  ///< wavenumber of the highest waves [rad/m]
 
-  /// Variance of the slope per unit of the logarithm of the wavenumber [rad/m]; that of the height [m^2] is k^2 times less.
+  /// Variance of the slope per unit of the logarithm of the wavenumber [rad/m]; that of the height [m^2] is k^2 times
+  /// less.
   [[nodiscard]] double curvature(double k) const noexcept {
     const double root = std::sqrt(k / peak_) - 1, speed = phase_speed(k), ratio = peak_ / k;
-    const double peaked = std::exp(-1.25 * ratio * ratio) * std::pow(overshoot_, std::exp(-root * root / (2 * width_ * width_)));
+    const double peaked =
+        std::exp(-1.25 * ratio * ratio) * std::pow(overshoot_, std::exp(-root * root / (2 * width_ * width_)));
     const double from_long = long_ * peak_speed_ * std::exp(-age_ / std::sqrt(10.0) * root);
     const double capillary = k / least_speed_wavenumber - 1;
     const double from_short = short_ * least_speed * std::exp(-0.25 * capillary * capillary);
@@ -143,12 +147,15 @@ struct SlopeVariance {
 class SlopeMap {
  public:
   SlopeMap(const SlopeVariance& from, const SlopeVariance& to) noexcept {
-    const double from_side = std::sqrt(from.determinant() / from.along), to_side = std::sqrt(to.determinant() / to.along);
+    const double from_side = std::sqrt(from.determinant() / from.along),
+                 to_side = std::sqrt(to.determinant() / to.along);
     along_ = std::sqrt(to.along / from.along);
     across_ = to_side / from_side;
     mixed_ = (to.mixed / std::sqrt(to.along) - across_ * from.mixed / std::sqrt(from.along)) / std::sqrt(from.along);
   }
-  [[nodiscard]] Vec2 operator()(const Vec2& slope) const noexcept { return {along_ * slope.x, mixed_ * slope.x + across_ * slope.y}; }
+  [[nodiscard]] Vec2 operator()(const Vec2& slope) const noexcept {
+    return {along_ * slope.x, mixed_ * slope.x + across_ * slope.y};
+  }
 
  private:
   double along_, mixed_, across_;
@@ -164,11 +171,12 @@ class SlopeMap {
   return 0.5 * (low + high);
 }
 
-/// Draws waves of a spectrum: intervals of wavenumber in which half of the sums is of heights and half of slopes, with drawn ends, and
-/// in each a wave with the interval's variances of height and slope, in a drawn direction.
+/// Draws waves of a spectrum: intervals of wavenumber in which half of the sums is of heights and half of slopes, with
+/// drawn ends, and in each a wave with the interval's variances of height and slope, in a drawn direction.
 [[nodiscard]] inline std::vector<DrawnWave> draw_waves(const WindWaves& settings, const WindSpectrum& spectrum) {
   constexpr std::size_t cells = 1 << 14;
-  const double first = std::log(0.25 * spectrum.peak()), last = std::log(2 * pi / settings.shortest), step = (last - first) / cells;
+  const double first = std::log(0.25 * spectrum.peak()), last = std::log(2 * pi / settings.shortest),
+               step = (last - first) / cells;
   std::vector<double> slopes(cells), heights(cells);
   double slope = 0, height = 0;
   for (std::size_t n = 0; n < cells; ++n) {
@@ -181,7 +189,9 @@ class SlopeMap {
   std::size_t n = 0;
   for (std::size_t i = 0; i < settings.components; ++i) {
     const double drawn = uniform({settings.seed, i, 1});
-    const double end = i + 1 < settings.components ? (static_cast<double>(i) + 0.5 + drawn) / static_cast<double>(settings.components) : 2;
+    const double end = i + 1 < settings.components
+                           ? (static_cast<double>(i) + 0.5 + drawn) / static_cast<double>(settings.components)
+                           : 2;
     slope_here = height_here = 0;
     for (; n < cells && sum < end; ++n) {
       slope_here += slopes[n];
@@ -189,7 +199,8 @@ class SlopeMap {
       sum += 0.5 * (slopes[n] / slope + heights[n] / height);
     }
     if (!(slope_here > 0)) continue;
-    const double k = std::sqrt(slope_here / height_here), angle = angle_to_wind(spectrum.spread(k), uniform({settings.seed, i, 2}));
+    const double k = std::sqrt(slope_here / height_here),
+                 angle = angle_to_wind(spectrum.spread(k), uniform({settings.seed, i, 2}));
     waves.push_back({k, std::sqrt(2 * slope_here) * Vec2{std::cos(angle), std::sin(angle)}});
   }
   return waves;
@@ -197,9 +208,10 @@ class SlopeMap {
 
 }  // namespace detail
 
-/// Sine waves drawn for a wind: their heights are those of the `WindSpectrum`, and the variances of their slopes exactly those of the
-/// `SlopeDistribution`, without correlation. To that end slopes of the waves shorter than a tenth of those at the peak are mapped to
-/// others. Where that would leave them less than a quarter of their variance, as in winds below some 2 m/s, slopes of all waves are mapped.
+/// Sine waves drawn for a wind: their heights are those of the `WindSpectrum`, and the variances of their slopes
+/// exactly those of the `SlopeDistribution`, without correlation. To that end slopes of the waves shorter than a tenth
+/// of those at the peak are mapped to others. Where that would leave them less than a quarter of their variance, as in
+/// winds below some 2 m/s, slopes of all waves are mapped.
 /// @throws SettingError as `WindWaves::validate`
 [[nodiscard]] inline std::vector<SineWave> waves_of(const WindWaves& settings) {
   settings.validate();
@@ -221,7 +233,8 @@ class SlopeMap {
     const detail::DrawnWave& wave = waves[i];
     const Vec2 slope = room && wave.wavenumber <= limit ? wave.slope : map(wave.slope);
     const double toward = std::remainder(settings.toward + std::atan2(slope.y, slope.x), 2 * pi);
-    drawn.push_back({length(slope) / wave.wavenumber, 2 * pi / wave.wavenumber, toward, 2 * pi * uniform({settings.seed, i, 3})});
+    drawn.push_back(
+        {length(slope) / wave.wavenumber, 2 * pi / wave.wavenumber, toward, 2 * pi * uniform({settings.seed, i, 3})});
   }
   return drawn;
 }

@@ -11,11 +11,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ouster OS1 with 64 evenly spaced lasers, the uppermost first, which fire together. It measures 512, 1024 or 2048 columns a turn. The
-/// origin is that of the sensor's frame in its manual, whose forward is ours: the head starts backwards, at encoder 0.
-/// Source: Ouster, OS1 data sheet, rev. 7, 2023, and software user manual, 2.x, lidar coordinate frame: lenses 15.806 mm from the axis,
-/// 36.180 mm above the base. Noise of 1 cm of the 0.5 to 3 cm published; pulse length not published, typical of its class; each unit's
-/// azimuth offsets are its own, and left out: set `SensorLaser::azimuth`.
+/// Ouster OS1 with 64 evenly spaced lasers, the uppermost first, which fire together. It measures 512, 1024 or 2048
+/// columns a turn. The origin is that of the sensor's frame in its manual, whose forward is ours: the head starts
+/// backwards, at encoder 0. Source: Ouster, OS1 data sheet, rev. 7, 2023, and software user manual, 2.x, lidar
+/// coordinate frame: lenses 15.806 mm from the axis, 36.180 mm above the base. Noise of 1 cm of the 0.5 to 3 cm
+/// published; pulse length not published, typical of its class; each unit's azimuth offsets are its own, and left out:
+/// set `SensorLaser::azimuth`.
 [[nodiscard]] inline SpinningSensor ouster_os1_64(std::size_t columns = 1024, double turns_per_second = 10) {
   using namespace literals;
   require_within("ouster_os1_64 (columns)", static_cast<double>(columns), 512, 2048, "");

@@ -33,8 +33,9 @@ struct SensorLaser {
 /// Pulse source of a spinning sensor.
 using SpinningSource = Deflector<RotatingHead, Channels<Deflector<FixedBeam, Scanner>>>;
 
-/// Data sheet of a lidar with a column of lasers on a head that spins about the sensor's up axis. All lasers fire once in each firing
-/// sequence. Of n lasers, slot i of its source is laser `i % n` in sequence `i / n`, and the number of the laser is the shot's channel.
+/// Data sheet of a lidar with a column of lasers on a head that spins about the sensor's up axis. All lasers fire once
+/// in each firing sequence. Of n lasers, slot i of its source is laser `i % n` in sequence `i / n`, and the number of
+/// the laser is the shot's channel.
 struct SpinningSensor {
   std::string name{};                 ///< model
   std::vector<SensorLaser> lasers{};  ///< lasers in the order of firing
@@ -75,15 +76,17 @@ struct SpinningSensor {
     return lasers.size() * Scanner{.pulse_rate = sequence_rate, .pulses = PulseIndex{1} << 52}.slot_from(t);
   }
 
-  /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError for settings out of range
+  /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError for settings out of
+  /// range
   [[nodiscard]] SpinningSource source(double duration) const {
     validate();
     require_not_negative("SpinningSensor::source (duration)", duration, "s");
     const auto sequences = static_cast<PulseIndex>(std::ceil(duration * sequence_rate * (1 - 1e-15)));
     std::vector<Deflector<FixedBeam, Scanner>> emitters;
     for (const SensorLaser& laser : lasers)
-      emitters.push_back({FixedBeam{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})},
-                          Scanner{.pulse_rate = sequence_rate, .pulses = sequences, .delay = laser.delay, .laser = beam}});
+      emitters.push_back(
+          {FixedBeam{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})},
+           Scanner{.pulse_rate = sequence_rate, .pulses = sequences, .delay = laser.delay, .laser = beam}});
     return {RotatingHead{.rate = -2 * pi * turns_per_second, .start = -start}, Channels{std::move(emitters)}};
   }
 
@@ -96,8 +99,8 @@ struct SpinningSensor {
   [[nodiscard]] std::vector<std::uint16_t> rings() const {
     std::vector<std::uint16_t> rings;
     for (const SensorLaser& laser : lasers)
-      rings.push_back(static_cast<std::uint16_t>(
-          std::count_if(lasers.begin(), lasers.end(), [&](const SensorLaser& other) { return other.elevation < laser.elevation; })));
+      rings.push_back(static_cast<std::uint16_t>(std::count_if(
+          lasers.begin(), lasers.end(), [&](const SensorLaser& other) { return other.elevation < laser.elevation; })));
     return rings;
   }
 };

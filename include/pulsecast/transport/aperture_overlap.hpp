@@ -20,10 +20,12 @@ namespace PULSECAST_NAMESPACE {
 
 /// Place and view of a receiver's aperture beside that of the beam.
 struct ApertureGeometry {
-  double separation = 0;        ///< distance of the two axes at the instrument: 0 for coaxial apertures [m]
-  double inclination = 0;       ///< angle at which the receiver's axis approaches the beam's: 0 for parallel ones, from -0.1 to 0.1 [rad]
+  double separation = 0;  ///< distance of the two axes at the instrument: 0 for coaxial apertures [m]
+  double inclination =
+      0;  ///< angle at which the receiver's axis approaches the beam's: 0 for parallel ones, from -0.1 to 0.1 [rad]
   double field_of_view = 2e-3;  ///< full angle of the receiver's view, from 1e-6 to 1 [rad]
-  double obstruction = 0;       ///< diameter of what stands in the middle of the receiver's aperture, as a mirror for the beam [m]
+  double obstruction =
+      0;  ///< diameter of what stands in the middle of the receiver's aperture, as a mirror for the beam [m]
 
   void validate() const {
     require_within("ApertureGeometry::separation", separation, 0, 1e3, "m");
@@ -46,9 +48,9 @@ struct ApertureGeometry {
   return segment(a, from_a) + segment(b, from_b);
 }
 
-/// Share of a beam's cross section, to the 1/e^2 radius, that is in the view of a receiver at a range [m]; of an ellipse, that of the disc
-/// of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc 1978; Measures 1984, for an even
-/// beam.
+/// Share of a beam's cross section, to the 1/e^2 radius, that is in the view of a receiver at a range [m]; of an
+/// ellipse, that of the disc of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc
+/// 1978; Measures 1984, for an even beam.
 [[nodiscard]] inline double aperture_overlap(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
                                              double range) noexcept {
   const Vec2 axes = beam_radius(laser, range);
@@ -60,10 +62,11 @@ struct ApertureGeometry {
   return (shared_area(beam, view, apart) - shared_area(beam, std::min(shadow, view), apart)) / (pi * beam * beam);
 }
 
-/// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range, and of a hundredth of `near` [m] before
-/// ten times that. @throws SettingError
-[[nodiscard]] inline SharedArray<OverlapAtRange> overlap_table(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
-                                                               double near = 0.1, double far = 1000) {
+/// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range, and of a hundredth
+/// of `near` [m] before ten times that. @throws SettingError
+[[nodiscard]] inline SharedArray<OverlapAtRange> overlap_table(const ApertureGeometry& g, const Receiver& receiver,
+                                                               const Laser& laser, double near = 0.1,
+                                                               double far = 1000) {
   g.validate();
   receiver.validate();
   laser.validate();

@@ -19,7 +19,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
 struct DirectLight {
-  bool spread_planes = true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`
+  bool spread_planes =
+      true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`
 
   /// Scratch memory of one worker.
   struct Workspace {
@@ -36,15 +37,17 @@ struct DirectLight {
     return {.hits = {}, .slope = spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
   }
 
-  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one often meets nothing, too. Others pay
-  /// no test, nor do single rays, which cost as little. Sets velocities, too, if `with_velocity`: the rays that return are then asked again
-  /// one by one.
-  // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140 instructions a pulse
+  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one often meets
+  /// nothing, too. Others pay no test, nor do single rays, which cost as little. Sets velocities, too, if
+  /// `with_velocity`: the rays that return are then asked again one by one.
+  // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140
+  // instructions a pulse
   template <bool with_velocity = false, Target Map>
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
-    const bool may_spread = !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
+    const bool may_spread =
+        !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
     if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() && misses(map, light)) {
       result.energy.sent = light.energy();
       result.energy.missed = light.beam.share_sum * result.energy.sent;
@@ -74,7 +77,8 @@ struct DirectLight {
 
   template <bool with_velocity, Target Map>
   [[gnu::always_inline]] static void trace_subrays(const Map& map, const Illumination& light, Workspace& w,
-                                                   std::span<Reflection> reflections, TransportResult& result) noexcept {
+                                                   std::span<Reflection> reflections,
+                                                   TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
     RayBundle rays;
     rays.origin = light.pulse.origin();
@@ -137,7 +141,8 @@ struct DirectLight {
     constexpr double not_quite_unit = 1.01;  // factor for rotations that are unit within a thousandth
     const Pose<frame::Beam, frame::World>& pose = light.pulse.pose;
     const Vec3 direction = matrix_of(pose.rotation)[1];
-    return detail::misses_cone(map, RayCone{pose.position, direction, not_quite_unit * light.beam.spread, light.pulse.tick});
+    return detail::misses_cone(map,
+                               RayCone{pose.position, direction, not_quite_unit * light.beam.spread, light.pulse.tick});
   }
 };
 

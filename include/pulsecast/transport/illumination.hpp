@@ -33,7 +33,9 @@ struct Illumination {
   /// Energy of the pulse [J].
   [[nodiscard]] double energy() const noexcept { return emitter.laser.energy(); }
   /// Pose of the beam as known to the instrument.
-  [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept { return pulse.reported ? *pulse.reported : pulse.pose; }
+  [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept {
+    return pulse.reported ? *pulse.reported : pulse.pose;
+  }
 };
 
 /// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.

@@ -17,23 +17,23 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform, footprint, scene, LightPaths{}, receiver,
-/// detector}`. Every surface that it meets on its way sends light back along the same way, which an instrument reports in the direction of
-/// its beam, at half the optical path.
+/// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform, footprint, scene,
+/// LightPaths{}, receiver, detector}`. Every surface that it meets on its way sends light back along the same way,
+/// which an instrument reports in the direction of its beam, at half the optical path.
 ///
-/// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the ledger, a surface's share of the light is
-/// scattered, and the rest is absorbed.
+/// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the ledger, a surface's share
+/// of the light is scattered, and the rest is absorbed.
 ///
-/// Mirrors and panes that are plane pass subrays on together; bodies refract them one by one. Light spreads by the plane that each ray
-/// meets. Left out: polarisation from one surface to the next, interference, diffraction.
+/// Mirrors and panes that are plane pass subrays on together; bodies refract them one by one. Light spreads by the
+/// plane that each ray meets. Left out: polarisation from one surface to the next, interference, diffraction.
 struct LightPaths {
   std::size_t passages = 8;         ///< greatest number of surfaces that pass light on, from 0 to 32
   double least_share = 1e-4;        ///< least share of a subray's light that is followed, one way, in [0, 1]
   bool spread_planes = true;        ///< as in `DirectLight`
   MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
-  /// Number of stretches, beside whole cells, by which what media in the air send back is told exactly, and that of bodies, from 4 to 1e6:
-  /// where there are more, their ends are blurred by a twelfth of their range.
+  /// Number of stretches, beside whole cells, by which what media in the air send back is told exactly, and that of
+  /// bodies, from 4 to 1e6: where there are more, their ends are blurred by a twelfth of their range.
   std::size_t volume_cells = 8192;
 
   void validate() const {
@@ -66,7 +66,8 @@ struct LightPaths {
     detail::PathTracer<with_velocity, Map> tracer(map, light, settings, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
-      if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections))); span > 1)
+      if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections)));
+          span > 1)
         spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
           TransportResult other;
           detail::PathTracer<with_velocity, Map>(map, again, settings, w, reflections, other).trace();

@@ -42,10 +42,12 @@ class MetPlane {
   }
 
   /// Greatest distance of a reflection from the plane, along its ray [m]; NaN without a plane.
-  [[nodiscard]] double farthest_from(const SubrayDirections& beam, std::span<const Reflection> reflections) const noexcept {
+  [[nodiscard]] double farthest_from(const SubrayDirections& beam,
+                                     std::span<const Reflection> reflections) const noexcept {
     double most = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double off = std::fabs(range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]}) - reflections[j].range);
+      const double off =
+          std::fabs(range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]}) - reflections[j].range);
       if (!(off <= most)) most = off;
     }
     return most;
@@ -67,12 +69,15 @@ class MetPlane {
   }
 
  private:
-  static Vec3 exit_of(const SubrayDirections& beam, std::size_t j) noexcept { return beam.from_a_point() ? Vec3{} : beam.exits[j]; }
+  static Vec3 exit_of(const SubrayDirections& beam, std::size_t j) noexcept {
+    return beam.from_a_point() ? Vec3{} : beam.exits[j];
+  }
   static Vec3 point(const SubrayDirections& beam, std::span<const Reflection> reflections, std::size_t j) noexcept {
     return exit_of(beam, j) + reflections[j].range * Vec3{beam.x[j], beam.y[j], beam.z[j]};
   }
   [[nodiscard]] double range_of(const Vec3& exit, const Vec3& direction) const noexcept {
-    return (ahead_ + across_ * exit.x + up_ * exit.z - exit.y) / (direction.y - across_ * direction.x - up_ * direction.z);
+    return (ahead_ + across_ * exit.x + up_ * exit.z - exit.y) /
+           (direction.y - across_ * direction.x - up_ * direction.z);
   }
 
   double ahead_ = 0, across_ = 0, up_ = 0;  ///< place on the axis [m], and its slopes
@@ -83,7 +88,9 @@ inline constexpr std::size_t slope_subrays_max = 32'768;  ///< greatest number o
 namespace detail {
 
 /// Time constant of a pulse, as of a `PulseShape`, in metres of range.
-[[nodiscard]] inline double pulse_constant(const Laser& laser) noexcept { return 0.5 * speed_of_light * laser.pulse_length / 3.4; }
+[[nodiscard]] inline double pulse_constant(const Laser& laser) noexcept {
+  return 0.5 * speed_of_light * laser.pulse_length / 3.4;
+}
 
 /// First reflections of a pulse, from surfaces that the beam met directly.
 [[nodiscard]] inline std::span<const Reflection> direct_ones(std::span<const Reflection> reflections) noexcept {
@@ -94,25 +101,30 @@ namespace detail {
 
 /// Smooth surface that a pulse met obliquely.
 struct Slope {
-  double spread = 0;   ///< deviation of the ranges at which it scatters the light of a Gaussian beam; 0 if there is none [m]
+  double spread =
+      0;  ///< deviation of the ranges at which it scatters the light of a Gaussian beam; 0 if there is none [m]
   Vec2 farther{1, 0};  ///< direction across the footprint in which ranges grow, as a unit offset
   double range = 0;    ///< range on the axis of a plane; 0 for another surface [m]
 };
 
 /// Plane that all subrays met, within a tenth of the pulse's deviation.
-[[nodiscard, gnu::noinline]] inline Slope met_plane(const Illumination& light, std::span<const Reflection> met) noexcept {
+[[nodiscard, gnu::noinline]] inline Slope met_plane(const Illumination& light,
+                                                    std::span<const Reflection> met) noexcept {
   if (met.size() != light.subrays) return {};
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
   const Vec2 farther = plane.farther(light.emitter);
-  const double begin = plane.range_at(-2.0 * farther, light.emitter), end = plane.range_at(2.0 * farther, light.emitter);  // 4 deviations
+  const double begin = plane.range_at(-2.0 * farther, light.emitter),
+               end = plane.range_at(2.0 * farther, light.emitter);  // 4 deviations
   if (!(begin > 0 && end > begin)) return {};
   return {(end - begin) / 8, farther, plane.range_at({}, light.emitter)};
 }
 
-/// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that one plane of that
-/// incidence would spread their light by more than the pulse's time constant, successive ones met it alike: a tenth of all subrays or more.
-[[nodiscard, gnu::noinline]] inline Slope met_facets(const Illumination& light, std::span<const Reflection> met) noexcept {
+/// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that
+/// one plane of that incidence would spread their light by more than the pulse's time constant, successive ones met it
+/// alike: a tenth of all subrays or more.
+[[nodiscard, gnu::noinline]] inline Slope met_facets(const Illumination& light,
+                                                     std::span<const Reflection> met) noexcept {
   const double tau = pulse_constant(light.emitter.laser);
   std::size_t pairs = 0;
   const Reflection* last = nullptr;
@@ -122,7 +134,8 @@ struct Slope {
     const double cosine = r.cos_incidence, wide = 0.5 * light.emitter.footprint_scale * std::max(radius.x, radius.y),
                  spread = wide * std::sqrt(1 - cosine * cosine) / cosine;
     if (!(spread > tau)) continue;
-    if (last && std::fabs(cosine - last->cos_incidence) < 2 * light.beam.spread && std::fabs(r.range - last->range) < 8 * spread) {
+    if (last && std::fabs(cosine - last->cos_incidence) < 2 * light.beam.spread &&
+        std::fabs(r.range - last->range) < 8 * spread) {
       ++pairs;
       slope.spread = std::max(slope.spread, spread);
     }
@@ -131,7 +144,8 @@ struct Slope {
   return pairs < 2 || 10 * pairs < light.subrays ? Slope{} : slope;
 }
 
-/// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the light.
+/// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the
+/// light.
 [[nodiscard, gnu::noinline]] inline bool alike(const Illumination& light, std::span<const Reflection> met) noexcept {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t j = 0; j < met.size(); ++j) {
@@ -148,11 +162,14 @@ struct RowPlace {
   double along, width;
 };
 
-/// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples of the golden ratio, so that neighbours
-/// lie anywhere. Those off the row are longer ways off: on a plane, they lie as much nearer along it.
+/// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples of the golden
+/// ratio, so that neighbours lie anywhere. Those off the row are longer ways off: on a plane, they lie as much nearer
+/// along it.
 template <class Place>
-void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope, const Place& place) noexcept {
-  const Vec2 deviation = 0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
+void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope,
+             const Place& place) noexcept {
+  const Vec2 deviation =
+      0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
   const Vec2 farther = slope.farther, aside{-farther.y, farther.x};
   const auto square = [&](const Vec2& at) noexcept { return dot(at * deviation, at * deviation); };
   const auto share = [&](const RowPlace& at) noexcept { return std::exp(-0.5 * at.along * at.along) * at.width; };
@@ -160,20 +177,22 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
   for (std::size_t j = 0; j < size; ++j) sum += share(place(static_cast<double>(j)));
   row.assign(size, emitter, [&](std::size_t j) noexcept -> SubrayDirections::Subray {
     const RowPlace at = place(static_cast<double>(j));
-    const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1), across = normal_quantile(m - std::floor(m));
+    const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1),
+                 across = normal_quantile(m - std::floor(m));
     const Vec2 on = at.along * farther, off = on + across * aside;
     const double longer = 0.5 * slope.range * (square(off) - square(on));
     return {0.5 * (off - longer / slope.spread * farther), share(at) / sum};
   });
 }
 
-/// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and `number` of them; returns how many there
-/// should be.
+/// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and `number` of them;
+/// returns how many there should be.
 [[nodiscard, gnu::noinline]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane,
                                                         const Emitter& emitter) noexcept {
-  constexpr double reach = 4, smooth = 2;                                         // deviations; places over which the distances settle
+  constexpr double reach = 4, smooth = 2;  // deviations; places over which the distances settle
   const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;  // variances [tau^2]
-  const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;          // place whose pulse begins at the maximum [deviations]
+  const double most =
+      (3 - 3 / ss) / r - 5 * plane.spread / plane.range;  // place whose pulse begins at the maximum [deviations]
   const double half = reach + std::fabs(most), wanted = std::sqrt(half * ss * r / (3 * 0.55 * 0.55));
   const double side = std::floor(std::clamp(wanted, 128.0, 0.5 * slope_subrays_max - 1)), step = half / (side * side);
   number = static_cast<std::size_t>(2 * side + 1);
@@ -199,7 +218,8 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 }  // namespace detail
 
 /// Span of the ranges of reflections from surfaces that subrays met directly, in deviations of the pulse.
-[[nodiscard]] inline double span_of_ranges(const Illumination& light, std::span<const Reflection> reflections) noexcept {
+[[nodiscard]] inline double span_of_ranges(const Illumination& light,
+                                           std::span<const Reflection> reflections) noexcept {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (const Reflection& r : reflections) {
     nearest = r.range < nearest ? r.range : nearest;
@@ -208,21 +228,22 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
   return (farthest - nearest) / (std::sqrt(3.0) * detail::pulse_constant(light.emitter.laser));
 }
 
-/// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they did: the pulse is traced again, by as many
-/// subrays as make one echo of a plane. `span` is that of the ranges. `trace(light)` sets the reflections anew, and returns their result;
-/// `row` is memory.
+/// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they did: the pulse is
+/// traced again, by as many subrays as make one echo of a plane. `span` is that of the ranges. `trace(light)` sets the
+/// reflections anew, and returns their result; `row` is memory.
 ///
-/// On a plane, only the place of a subray along the slope matters. The subrays are in a row along it, and anywhere across. Derived for
-/// pulses of a `PulseShape`, with lengths in units of its tau, and s the echo's deviation. Each pulse begins as the square of time, so the
-/// slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of its height (Source: formula of Euler and Maclaurin). The slope of
-/// the echo is x / s^2 of its height at a distance x from its maximum. If d grows as the root of 12 x / s^2, there is no other maximum.
+/// On a plane, only the place of a subray along the slope matters. The subrays are in a row along it, and anywhere
+/// across. Derived for pulses of a `PulseShape`, with lengths in units of its tau, and s the echo's deviation. Each
+/// pulse begins as the square of time, so the slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of its
+/// height (Source: formula of Euler and Maclaurin). The slope of the echo is x / s^2 of its height at a distance x from
+/// its maximum. If d grows as the root of 12 x / s^2, there is no other maximum.
 ///
-/// Where neighbours in the row send back other powers or labels, or the surface is not one plane, the row is even, and longer, as the paint
-/// across the slope is then a sum over neighbours. Its errors were measured: docs/physics.md. Beyond its room, false echoes are left, and
-/// the pulse is unresolved.
+/// Where neighbours in the row send back other powers or labels, or the surface is not one plane, the row is even, and
+/// longer, as the paint across the slope is then a sum over neighbours. Its errors were measured: docs/physics.md.
+/// Beyond its room, false echoes are left, and the pulse is unresolved.
 template <class Trace>
-void spread_over_plane(const Illumination& light, double span, std::span<const Reflection> reflections, SubrayDirections& row,
-                       TransportResult& result, const Trace& trace) noexcept {
+void spread_over_plane(const Illumination& light, double span, std::span<const Reflection> reflections,
+                       SubrayDirections& row, TransportResult& result, const Trace& trace) noexcept {
   const double tau = detail::pulse_constant(light.emitter.laser);
   // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
   const bool part = span > std::min(2.0, 0.38 * static_cast<double>(light.subrays - 1));
@@ -235,22 +256,32 @@ void spread_over_plane(const Illumination& light, double span, std::span<const R
   const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
   if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
   const auto trace_row = [&](std::size_t size) noexcept {
-    result = trace(
-        Illumination{light.pulse, light.index, light.seed, light.emitter, row, size, light.budget, light.white_target, light.gate, {}});
+    result = trace(Illumination{light.pulse,
+                                light.index,
+                                light.seed,
+                                light.emitter,
+                                row,
+                                size,
+                                light.budget,
+                                light.white_target,
+                                light.gate,
+                                {}});
     result.spread = true;
   };
   if (plane && part) {
     std::size_t size = 0;
-    const bool room = detail::set_even_row(row, size, slope, light.emitter) < 1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
+    const bool room = detail::set_even_row(row, size, slope, light.emitter) <
+                      1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
     trace_row(size);
     result.unresolved = !room || 16 * slope.spread > slope.range;
     if (detail::sends_evenly(row, size, met(), std::min(0.1, 0.5 / (s * std::sqrt(s))))) return;
   }
   constexpr double most = slope_subrays_max;
   const double size = std::ceil(std::min(1024 * r * s, most)), width = 8 / size;
-  detail::set_row(row, static_cast<std::size_t>(size), light.emitter, slope, [&](double j) noexcept -> detail::RowPlace {
-    return {width * (j + 0.5) - 4, width};
-  });
+  detail::set_row(row, static_cast<std::size_t>(size), light.emitter, slope,
+                  [&](double j) noexcept -> detail::RowPlace {
+                    return {width * (j + 0.5) - 4, width};
+                  });
   trace_row(static_cast<std::size_t>(size));
   result.unresolved = s > 16;
 }

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A survey for tests of the Python bindings: a beam that sweeps over a floor, whose southern half is object 1, red, with the attributes
-// age and species, and whose northern half is object 2, of a blue picture, with the attribute species only.
+// A survey for tests of the Python bindings: a beam that sweeps over a floor, whose southern half is object 1, red,
+// with the attributes age and species, and whose northern half is object 2, of a blue picture, with the attribute
+// species only.
 
 #include <cstdint>
 #include <memory>
@@ -21,7 +22,8 @@ using World = Scene<TriangleMesh<>>;
 
 /// Half of a floor 10 m below, from one northing to another.
 World::Part half(double from, double to, ObjectId object, Material material, Attributes attributes) {
-  MeshData mesh{.vertices = {{-20, from, -10}, {20, from, -10}, {20, to, -10}, {-20, to, -10}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  MeshData mesh{.vertices = {{-20, from, -10}, {20, from, -10}, {20, to, -10}, {-20, to, -10}},
+                .triangles = {{0, 1, 2}, {0, 2, 3}}};
   mesh.texture.assign(2, {Vec2(0.5), Vec2(0.5), Vec2(0.5)});
   World::Part part{.geometry = std::make_shared<const TriangleMesh<>>(std::move(mesh)), .object = object};
   part.materials = material_table({std::move(material)});
@@ -31,8 +33,9 @@ World::Part half(double from, double to, ObjectId object, Material material, Att
 
 const World& floor() {
   static const auto blue = std::make_shared<const Image>(Image{1, 1, 3, std::vector<std::uint8_t>{0, 51, 255}});
-  static const World scene({half(-20, 0, 1, {.reflectance = 0.2, .colour = {1, 0, 0}}, attributes({{"age", 80.5}, {"species", 3}})),
-                            half(0, 20, 2, {.reflectance = 0.4, .picture = blue}, attributes({{"species", 7}}))});
+  static const World scene(
+      {half(-20, 0, 1, {.reflectance = 0.2, .colour = {1, 0, 0}}, attributes({{"age", 80.5}, {"species", 3}})),
+       half(0, 20, 2, {.reflectance = 0.4, .picture = blue}, attributes({{"species", 7}}))});
   return scene;
 }
 
@@ -60,7 +63,8 @@ PYBIND11_MODULE(painted, m) {
   python::bind_survey<Sweep>(m, "Sweep", [](const Sweep&) {
     return python::extras_of(floor());
   }).def(pybind11::init([](PulseIndex pulses) { return over(floor(), SingleRay{}, pulses); }), "pulses"_a);
-  python::bind_survey<MisnamedSweep>(m, "MisnamedSweep", [](const MisnamedSweep&) {
-    return python::extras_of(misnamed_floor());
-  }).def(pybind11::init([](PulseIndex pulses) { return over(misnamed_floor(), SunflowerFootprint{1}, pulses); }), "pulses"_a);
+  python::bind_survey<MisnamedSweep>(m, "MisnamedSweep",
+                                     [](const MisnamedSweep&) { return python::extras_of(misnamed_floor()); })
+      .def(pybind11::init([](PulseIndex pulses) { return over(misnamed_floor(), SunflowerFootprint{1}, pulses); }),
+           "pulses"_a);
 }

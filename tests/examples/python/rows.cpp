@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What the Python module does, in C++: reads a survey, runs it and keeps its points in memory. The tests hold the module's arrays
-// against its rows, and bench/python.sh its time against the module's. Says the processors' time of the run, in user mode [s].
-// Usage: rows SURVEY.xml SEED THREADS OUT [ASSETS]..., where an empty OUT stands for no file.
+// What the Python module does, in C++: reads a survey, runs it and keeps its points in memory. The tests hold the
+// module's arrays against its rows, and bench/python.sh its time against the module's. Says the processors' time of the
+// run, in user mode [s]. Usage: rows SURVEY.xml SEED THREADS OUT [ASSETS]..., where an empty OUT stands for no file.
 
 #include <sys/resource.h>
 
@@ -48,7 +48,8 @@ int main(int count, char** arguments) try {
   const auto threads = static_cast<unsigned>(std::atoi(arguments[3]));
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[2]));
   const helios::SurveyDocument document = helios::read_survey(arguments[1], {.assets = assets});
-  const std::unique_ptr<helios::Simulation> simulation = load(document.survey, {.seed = seed, .assets = assets, .threads = threads});
+  const std::unique_ptr<helios::Simulation> simulation =
+      load(document.survey, {.seed = seed, .assets = assets, .threads = threads});
   Cloud cloud;
   const double start = user_seconds();
   simulation->run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });

@@ -21,7 +21,8 @@ namespace {
 /// Two folders of assets, one beside the other, and a secret outside.
 struct Folders {
   Folders() {
-    for (const char* name : {"a/x.obj", "b/x.obj", "b/y.obj", "b/sub/z.obj", "secret.obj", "b/tree1.obj", "a/tree2.obj", "a/tree2.mtl"}) {
+    for (const char* name :
+         {"a/x.obj", "b/x.obj", "b/y.obj", "b/sub/z.obj", "secret.obj", "b/tree1.obj", "a/tree2.obj", "a/tree2.mtl"}) {
       std::filesystem::create_directories((root / name).parent_path());
       std::ofstream(root / name) << "v 0 0 0\n";
     }

@@ -30,7 +30,8 @@ TEST_CASE("a formula is worked out as on paper") {
 }
 
 TEST_CASE("what is no formula is refused with its place") {
-  for (const char* text : {"", "1 +", "(1", "1)", "sin", "sin 2", "sine(2)", "2 t", "atan2(1)", "t..2", "*t", "1e400x", "THETA"}) {
+  for (const char* text :
+       {"", "1 +", "(1", "1)", "sin", "sin 2", "sine(2)", "2 t", "atan2(1)", "t..2", "*t", "1e400x", "THETA"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(Formula(text, "t"), std::invalid_argument);
   }

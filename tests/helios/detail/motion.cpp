@@ -10,7 +10,9 @@ namespace pulsecast::helios {
 namespace {
 
 /// Where a step takes a place.
-Vec3 moved(const MotionStep& step, const Vec3& place) { return step.move.position + step.sign * (step.move.rotation * place); }
+Vec3 moved(const MotionStep& step, const Vec3& place) {
+  return step.move.position + step.sign * (step.move.rotation * place);
+}
 
 constexpr Vec3 centre{10, 20, 30};
 
@@ -30,7 +32,8 @@ TEST_CASE("a reflection leaves its plane where it is, and two are a way") {
   CHECK(motion_step({mirror}, centre).sign == -1);
   const RotoreflectionMotion flip{.axis = axis::up, .angle = pi / 2};
   CHECK(length(moved(motion_step({flip, false, 1}, centre), Vec3{1, 0, 5}) - Vec3{0, 1, -5}) < 1e-12);
-  MotionSequenceSettings twice{.motions = {{mirror}, {ReflectionMotion{.normal = axis::right, .shift = Vec3{0, 2, 0}}}}};
+  MotionSequenceSettings twice{
+      .motions = {{mirror}, {ReflectionMotion{.normal = axis::right, .shift = Vec3{0, 2, 0}}}}};
   const MotionSteps steps = motion_steps(twice, centre);
   REQUIRE(steps.all);
   CHECK_FALSE(steps.own);
@@ -49,7 +52,8 @@ TEST_CASE("steps one after the other are those of each") {
     const MotionSettings c{TranslationMotion{vector()}};
     const Vec3 place = vector();
     const MotionSteps all = motion_steps({.motions = {a, b, c}}, centre);
-    const Vec3 expected = moved(motion_step(c, centre), moved(motion_step(b, centre), moved(motion_step(a, centre), place)));
+    const Vec3 expected =
+        moved(motion_step(c, centre), moved(motion_step(b, centre), moved(motion_step(a, centre), place)));
     CHECK(length(moved(*all.all, place) - expected) < 1e-12);
   }
 }

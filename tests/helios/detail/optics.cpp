@@ -39,8 +39,8 @@ TEST_CASE("a polygon mirror sweeps all its facet, begins in the middle of it, an
   CHECK_FALSE(optic.open(Tick::of(170, rate)));
   CHECK_FALSE(optic.open(Tick::of(600, rate)));
 
-  const SurveyOptic limited =
-      survey_optic(c, {.scan_frequency = 20, .vertical_angle_min = radians(-10), .vertical_angle_max = radians(50)}, rate);
+  const SurveyOptic limited = survey_optic(
+      c, {.scan_frequency = 20, .vertical_angle_min = radians(-10), .vertical_angle_max = radians(50)}, rate);
   CHECK(limited.open(Tick::of(200, rate)));
   CHECK_FALSE(limited.open(Tick::of(950, rate)));
 }
@@ -59,7 +59,8 @@ TEST_CASE("an oscillating mirror makes cycles of whole pulses, from its lower en
   CHECK(mirror.cycles_per_second == relative(rate / 985, 1e-9));
   const auto made = [&](double product_max_deg, double pulse_rate) {
     const ChannelSettings limited = channel(OscillatingOptic{.scan_product_max = radians(product_max_deg)}, 30);
-    return std::get<OscillatingMirror>(survey_optic(limited, {.scan_frequency = 20, .scan_angle = radians(20)}, pulse_rate).optic);
+    return std::get<OscillatingMirror>(
+        survey_optic(limited, {.scan_frequency = 20, .scan_angle = radians(20)}, pulse_rate).optic);
   };
   CHECK(made(310, 15e3).cycles_per_second == relative(15e3 / 967, 1e-9));
   CHECK(made(1000, 15e3).turning_time == relative(100 / 15e3, 1e-9));
@@ -79,32 +80,43 @@ TEST_CASE("rates and gates that a device rounds or cuts get a note, in any chann
     scanner.channels = {channel(optic, 50)};
     return detail::limit_notes(scanner, 0, leg, pulse_rate);
   };
-  const auto swings = [&](double f, double pulse_rate) { return notes(OscillatingOptic{}, {.scan_frequency = f}, pulse_rate); };
+  const auto swings = [&](double f, double pulse_rate) {
+    return notes(OscillatingOptic{}, {.scan_frequency = f}, pulse_rate);
+  };
   CHECK(swings(50, 100e3).empty());
   CHECK(swings(100, 33e3).empty());
   REQUIRE(swings(400, 1000).size() == 1);
-  CHECK(swings(400, 1000)[0].find("scanFreq_hz of 400 is taken as 500, for a cycle is a whole number of pulses, here 2") !=
+  CHECK(swings(400, 1000)[0].find(
+            "scanFreq_hz of 400 is taken as 500, for a cycle is a whole number of pulses, here 2") !=
         std::string::npos);
   CHECK(swings(70, 33e3)[0].find("is taken as 70.064") != std::string::npos);
   CHECK(swings(3e3, 10e3)[0].find("is taken as 3333.333") != std::string::npos);
   const OscillatingOptic heavy{.scan_product_max = radians(500)};
-  CHECK(notes(heavy, {.scan_frequency = 20}, 1000)[0].find("is taken as 10, for the scanner's scanProduct") != std::string::npos);
+  CHECK(notes(heavy, {.scan_frequency = 20}, 1000)[0].find("is taken as 10, for the scanner's scanProduct") !=
+        std::string::npos);
 
   const auto gate = [&](double low, double high) {
-    return notes(RotatingOptic{}, {.scan_frequency = 10, .vertical_angle_min = radians(low), .vertical_angle_max = radians(high)}, 1000);
+    return notes(RotatingOptic{},
+                 {.scan_frequency = 10, .vertical_angle_min = radians(low), .vertical_angle_max = radians(high)}, 1000);
   };
   CHECK(gate(-50, 50).empty());
   CHECK(gate(-10, 20).empty());
   REQUIRE(gate(-40, 60).size() == 1);
-  CHECK(gate(-40, 60)[0].find("beyond the mirror's sweep, -50 to 50 deg: pulses leave from -40 to 50 deg") != std::string::npos);
+  CHECK(gate(-40, 60)[0].find("beyond the mirror's sweep, -50 to 50 deg: pulses leave from -40 to 50 deg") !=
+        std::string::npos);
   CHECK(gate(-70, 0)[0].find("from -50 to 0 deg") != std::string::npos);
   CHECK(gate(-90, 90).empty());  // the document tells of a gate that is too wide
 
   ScannerSettings two;
   two.channels = {channel(RotatingOptic{}, 120), channel(RotatingOptic{}, 30)};
   two.channels[1].head_speed_max = radians(10);
-  const std::vector<std::string> second = detail::limit_notes(
-      two, 1, {.scan_frequency = 10, .scan_angle = radians(40), .vertical_angle_min = -1, .vertical_angle_max = 1, .head_speed = 1}, 1000);
+  const std::vector<std::string> second = detail::limit_notes(two, 1,
+                                                              {.scan_frequency = 10,
+                                                               .scan_angle = radians(40),
+                                                               .vertical_angle_min = -1,
+                                                               .vertical_angle_max = 1,
+                                                               .head_speed = 1},
+                                                              1000);
   REQUIRE(second.size() == 3);
   CHECK(second[0] == "channel 1: verticalAngleMin_deg and verticalAngleMax_deg are limited to -30 to 30 deg");
   CHECK(second[1] == "channel 1: scanAngle_deg is limited to 30");
@@ -112,7 +124,8 @@ TEST_CASE("rates and gates that a device rounds or cuts get a note, in any chann
 }
 
 TEST_CASE("fibres stand at the lower ends of equal shares of the scan angle") {
-  const SurveyOptic optic = survey_optic(channel(LineOptic{.fibers = 64}, 20), {.scan_frequency = 10, .scan_angle = radians(15)}, rate);
+  const SurveyOptic optic =
+      survey_optic(channel(LineOptic{.fibers = 64}, 20), {.scan_frequency = 10, .scan_angle = radians(15)}, rate);
   for (const PulseIndex i : {0U, 1U, 31U, 63U, 64U, 1000U})
     CHECK(angle_deg(optic, i) == relative(-15 + 30.0 * static_cast<double>(i % 64) / 64, 1e-9));
   const SurveyOptic one = survey_optic(channel(LineOptic{}, 20), {.scan_frequency = 10}, rate);
@@ -120,8 +133,8 @@ TEST_CASE("fibres stand at the lower ends of equal shares of the scan angle") {
 }
 
 TEST_CASE("a Palmer mirror turns as often as the leg asks for, on from where the leg before left it") {
-  const SurveyOptic optic =
-      survey_optic(channel(ConicOptic{}, 20), {.scan_frequency = 10, .scan_angle = radians(15)}, rate, no_rotation, {0.025});
+  const SurveyOptic optic = survey_optic(channel(ConicOptic{}, 20), {.scan_frequency = 10, .scan_angle = radians(15)},
+                                         rate, no_rotation, {0.025});
   const Vec3 d = optic.at({}).direction(axis::forward);  // a quarter of a turn on
   CHECK(d.x == relative(std::sin(radians(15)), 1e-9));
   CHECK(std::fabs(d.z) < 1e-9);
@@ -224,7 +237,8 @@ TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   c.errors = {};
   c.errors.head = "0.1";
   const SurveyOptic head = survey_optic(c, {.scan_frequency = 20}, rate);
-  CHECK(length(head.at(t).direction(axis::forward) - rotation_about(axis::up, 0.1) * head.reported(t).direction(axis::forward)) < 1e-12);
+  CHECK(length(head.at(t).direction(axis::forward) -
+               rotation_about(axis::up, 0.1) * head.reported(t).direction(axis::forward)) < 1e-12);
   c.errors = {.head = "THETA", .head_zero_threshold = 0.2};
   const SurveyOptic kept_off = survey_optic(c, {.scan_frequency = 20}, rate);
   for (const PulseIndex slot : {PulseIndex{10}, PulseIndex{100}}) {

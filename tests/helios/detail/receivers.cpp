@@ -48,7 +48,8 @@ ReceiverUnit<RingFootprint, FullWaveform<>> receiver_of(const ChannelSettings& c
 }
 
 auto build(const SurveySettings& survey, const Wall& wall) {
-  return Survey(compile_survey(survey, no_ground).source, ReceiverGroups(survey.scanner).units(survey.scanner, receiver_of), wall, 3);
+  return Survey(compile_survey(survey, no_ground).source,
+                ReceiverGroups(survey.scanner).units(survey.scanner, receiver_of), wall, 3);
 }
 
 ChannelSettings ahead() {
@@ -59,7 +60,8 @@ ChannelSettings ahead() {
   return channel;
 }
 
-TEST_CASE("each channel has its own aperture, efficiency, range gate, threshold, noise, number of returns and subrays") {
+TEST_CASE(
+    "each channel has its own aperture, efficiency, range gate, threshold, noise, number of returns and subrays") {
   const ChannelSettings usual = ahead();
   std::vector<ChannelSettings> channels(8, usual);
   channels[1].receiver_diameter = 2 * usual.receiver_diameter;
@@ -84,7 +86,8 @@ TEST_CASE("each channel has its own aperture, efficiency, range gate, threshold,
     REQUIRE(shot(slot, 0).echoes.size() == 2);
     const double near = shot(slot, 0).echoes[0].amplitude, far = shot(slot, 0).echoes[1].amplitude;
     CHECK(shot(slot, 0).echoes[1].range == relative(100, 1e-4));
-    const double square = 0.25 * usual.receiver_diameter * usual.receiver_diameter, disc = (60 * 60 + square) / (60 * 60 + 4 * square);
+    const double square = 0.25 * usual.receiver_diameter * usual.receiver_diameter,
+                 disc = (60 * 60 + square) / (60 * 60 + 4 * square);
     CHECK(shot(slot, 1).echoes[0].amplitude == relative(4 * disc * near, 1e-9));
     CHECK(shot(slot, 2).echoes[1].amplitude == relative(0.5 * far, 1e-9));
     REQUIRE(shot(slot, 3).echoes.size() == 1);

@@ -21,7 +21,9 @@ struct Folder : TemporaryFolder {
   explicit Folder(const std::vector<std::string>& names) {
     for (const std::string& name : names) put(name, "something\n");
   }
-  void put(const std::string& name, const std::string& text) const { std::ofstream(*this / name, std::ios::binary) << text; }
+  void put(const std::string& name, const std::string& text) const {
+    std::ofstream(*this / name, std::ios::binary) << text;
+  }
 
   [[nodiscard]] std::set<std::string> files(const PartSource& source) const {
     SceneSettings scene;
@@ -77,11 +79,15 @@ TEST_CASE("a scene has ground if any of its MTL files says so") {
 
 TEST_CASE("sources bring the files that their settings name, there or not, each once") {
   const Folder folder({"a.tif", "b.tif", "c.asc", "m.mtl", "v.vox", "l.txt", "p.xyz", "y.obj"});
-  CHECK(folder.files(GeoTiffSource{{folder / "a.tif", folder / "b.tif"}, {folder / "m.mtl", {}}}) == Names{"a.tif", "b.tif", "m.mtl"});
-  CHECK(folder.files(GeoTiffSource{.files = {folder / "a.tif"}, .classes = folder / "c.asc"}) == Names{"a.tif", "c.asc"});
+  CHECK(folder.files(GeoTiffSource{{folder / "a.tif", folder / "b.tif"}, {folder / "m.mtl", {}}}) ==
+        Names{"a.tif", "b.tif", "m.mtl"});
+  CHECK(folder.files(GeoTiffSource{.files = {folder / "a.tif"}, .classes = folder / "c.asc"}) ==
+        Names{"a.tif", "c.asc"});
   CHECK(folder.files(XyzSource{.files = {folder / "p.xyz", folder / "q.xyz"}}) == Names{"p.xyz", "q.xyz"});
-  CHECK(folder.files(VoxelSource{.files = {folder / "v.vox"}, .leaf_angles = folder / "l.txt"}) == Names{"v.vox", "l.txt"});
-  CHECK(folder.files(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) == Names{"a.gltf", "m.mtl"});
+  CHECK(folder.files(VoxelSource{.files = {folder / "v.vox"}, .leaf_angles = folder / "l.txt"}) ==
+        Names{"v.vox", "l.txt"});
+  CHECK(folder.files(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) ==
+        Names{"a.gltf", "m.mtl"});
   SceneSettings scene;
   scene.parts.resize(3, {.source = ObjSource{{folder / "y.obj"}}});
   scene.parts[1].source = XyzSource{.files = {folder / "p.xyz"}};

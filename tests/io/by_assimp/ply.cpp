@@ -39,7 +39,8 @@ TEST_CASE("Assimp reads the points of a PLY file, in double and in single precis
       for (const Echo& echo : pulses.batch().echoes_of(shot)) {
         const Vec3 at = point_of(shot, echo);
         const aiVector3D& vertex = mesh.mVertices[i++];
-        wrong += vertex.x != static_cast<float>(at.x) || vertex.y != static_cast<float>(at.y) || vertex.z != static_cast<float>(at.z);
+        wrong += vertex.x != static_cast<float>(at.x) || vertex.y != static_cast<float>(at.y) ||
+                 vertex.z != static_cast<float>(at.z);
       }
     CHECK(wrong == 0);
   }
@@ -69,7 +70,9 @@ TEST_CASE("Assimp reads the colours of points, of 8 and of 16 bits") {
       for (const Echo& echo : pulses.batch().echoes_of(shot)) {
         const PointColour expected = colour(pulses.batch(), shot, echo);
         const aiColor4D& read = mesh.mColors[0][i++];
-        const auto is = [](float share, std::uint16_t level) { return std::fabs(share - static_cast<float>(level) / 65535) < 1e-6F; };
+        const auto is = [](float share, std::uint16_t level) {
+          return std::fabs(share - static_cast<float>(level) / 65535) < 1e-6F;
+        };
         wrong += !is(read.r, expected.red) || !is(read.g, expected.green) || !is(read.b, expected.blue);
       }
     CHECK(i == pulses.echoes.size());

@@ -36,10 +36,13 @@ std::size_t differences(const pcl::PCLPointCloud2& cloud, const PointBuffer& poi
   REQUIRE(std::size_t{cloud.width} * cloud.height == points.size());
   std::size_t wrong = 0;
   for (std::size_t k = 0; k < fields.size(); ++k) {
-    wrong += cloud.fields[k].name != fields[k].name || cloud.fields[k].datatype != static_cast<std::uint8_t>(fields[k].type);
+    wrong +=
+        cloud.fields[k].name != fields[k].name || cloud.fields[k].datatype != static_cast<std::uint8_t>(fields[k].type);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto* const at = reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
-      const double number = detail::visit_field_type(fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
+      const auto* const at =
+          reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
+      const double number =
+          detail::visit_field_type(fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
       const double expected = points.number(i, fields[k]);
       wrong += !(number == expected || (std::isnan(number) && std::isnan(expected)));
     }
@@ -47,9 +50,12 @@ std::size_t differences(const pcl::PCLPointCloud2& cloud, const PointBuffer& poi
   return wrong;
 }
 
-/// Labels without part and material, which are infinite as long as surfaces are unknown, and NaN for the velocity of most.
+/// Labels without part and material, which are infinite as long as surfaces are unknown, and NaN for the velocity of
+/// most.
 PointLayout labelled() {
-  return layouts::velodyne().with(layouts::labels()).with({{"radial", FieldType::float32, PointQuantity::radial_velocity}});
+  return layouts::velodyne()
+      .with(layouts::labels())
+      .with({{"radial", FieldType::float32, PointQuantity::radial_velocity}});
 }
 
 TEST_CASE("PCL reads the same numbers from all encodings, with labels and NaN") {

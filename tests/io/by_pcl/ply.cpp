@@ -52,10 +52,11 @@ TEST_CASE("PCL reads the same numbers from PLY, of all types") {
         CHECK(cloud.fields[k].name == layout.fields[k].name);
         CHECK(cloud.fields[k].datatype == static_cast<std::uint8_t>(layout.fields[k].type));
         for (std::size_t i = 0; i < points.size(); ++i) {
-          const auto* const at = reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
+          const auto* const at =
+              reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
           const double expected = points.number(i, layout.fields[k]);
-          const double number =
-              detail::visit_field_type(layout.fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
+          const double number = detail::visit_field_type(
+              layout.fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
           wrong += !(number == expected || (std::isnan(number) && std::isnan(expected)));
         }
       }

@@ -19,9 +19,9 @@
 #include "support/packets.hpp"
 #include "support/temporary_folder.hpp"
 
-// PCL's grabber of VLP-16 packets differs from the manual: it knows no heights of lasers; all firings of a sequence have one azimuth, that
-// of the sequence's begin; and the azimuth of the second sequence of a block is half a gap later, by the packet's first gap, cut to 0.01
-// degree. It tells a sweep when azimuths wrap, and so never the last one.
+// PCL's grabber of VLP-16 packets differs from the manual: it knows no heights of lasers; all firings of a sequence
+// have one azimuth, that of the sequence's begin; and the azimuth of the second sequence of a block is half a gap
+// later, by the packet's first gap, cut to 0.01 degree. It tells a sweep when azimuths wrap, and so never the last one.
 
 namespace pulsecast::io {
 namespace {
@@ -30,8 +30,8 @@ using support::SensorEchoes;
 
 using Sweep = pcl::PointCloud<pcl::PointXYZI>::ConstPtr;
 
-/// First sweeps of a capture file, as many. The grabber runs in threads of its own, and does not say when it has come to the end of the
-/// file.
+/// First sweeps of a capture file, as many. The grabber runs in threads of its own, and does not say when it has come
+/// to the end of the file.
 std::vector<Sweep> sweeps_of(const std::filesystem::path& path, std::size_t count) {
   std::mutex mutex;
   std::condition_variable changed;

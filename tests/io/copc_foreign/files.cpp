@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Writes the same points as LAS and as COPC, in pairs of files, for other programs to read and compare. Usage: files FOLDER.
+// Writes the same points as LAS and as COPC, in pairs of files, for other programs to read and compare. Usage: files
+// FOLDER.
 
 #include <algorithm>
 #include <cmath>
@@ -29,11 +30,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Sizes at which a survey of some ten thousand points takes many runs, blocks and pages.
-constexpr io::detail::CopcSizes small{.leaf_points = 50, .block_points = 2000, .run_bytes = 200'000, .most_cells = 1000, .page_nodes = 1};
+constexpr io::detail::CopcSizes small{
+    .leaf_points = 50, .block_points = 2000, .run_bytes = 200'000, .most_cells = 1000, .page_nodes = 1};
 
 /// Hills with leaves above, from an airplane.
-void write_survey(const fs::path& folder, const std::string& name, PulseIndex pulses, const io::detail::CopcSizes& sizes = {},
-                  const LasSettings& settings = {}) {
+void write_survey(const fs::path& folder, const std::string& name, PulseIndex pulses,
+                  const io::detail::CopcSizes& sizes = {}, const LasSettings& settings = {}) {
   support::Generator random(1);
   MeshData mesh = support::net(100, [](double x, double y) { return 8 * std::sin(x / 9) * std::cos(y / 7); });
   for (std::size_t i = 0; i < 30'000; ++i) {
@@ -52,8 +54,10 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
   const Platform airplane{line, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
   LasWriter las(folder / (name + ".las"), settings);
-  io::detail::LasFileWriter<io::detail::CopcRecords> copc(folder / (name + ".copc.laz"), settings, io::detail::CopcRecords(2, sizes));
-  run(Survey{airplane, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{{.record_length = 20_ns}}}, {}, las, copc);
+  io::detail::LasFileWriter<io::detail::CopcRecords> copc(folder / (name + ".copc.laz"), settings,
+                                                          io::detail::CopcRecords(2, sizes));
+  run(Survey{airplane, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{{.record_length = 20_ns}}}, {}, las,
+      copc);
   las.close();
   copc.close();
 }

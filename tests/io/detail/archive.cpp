@@ -119,7 +119,8 @@ TEST_CASE("an array keeps the file in memory") {
 }
 
 TEST_CASE("what is shared is put once, and nothing where there is nothing") {
-  const auto one = std::make_shared<const std::vector<double>>(1000, 1.5), other = std::make_shared<const std::vector<double>>(*one);
+  const auto one = std::make_shared<const std::vector<double>>(1000, 1.5),
+             other = std::make_shared<const std::vector<double>>(*one);
   const std::vector<std::shared_ptr<const std::vector<double>>> all{one, other, nullptr, one, one};
   const auto file = archived(all);
   CHECK(file->bytes().size() < 2 * 8000 + 1000);
@@ -172,7 +173,8 @@ TEST_CASE("a choice that is not offered, a truth that is neither, and something 
   std::shared_ptr<const std::vector<double>> numbers = std::make_shared<const std::vector<double>>();
   std::shared_ptr<const std::vector<float>> others = std::make_shared<const std::vector<float>>();
   const auto file = archived(numbers, others);
-  const std::vector<std::byte> crossed = forged(file, 24 + 16 + 16, std::byte{0});  // the number of the second, behind the first's
+  const std::vector<std::byte> crossed =
+      forged(file, 24 + 16 + 16, std::byte{0});  // the number of the second, behind the first's
   REQUIRE(crossed[24 + 16] != std::byte{0xff});
   CHECK_NOTHROW(take(file, numbers, others));
   CHECK_THROWS_AS(ArchiveReader(crossed, nullptr)(numbers, others), ArchiveError);

@@ -92,7 +92,8 @@ TEST_CASE("a child has no network, and its parent keeps it") {
 }
 
 TEST_CASE("the death of a child is explained") {
-  CHECK(contains(error_of([](ChildOutput&) { std::raise(SIGKILL); }).problem(), "was killed, as the system does when memory runs out"));
+  CHECK(contains(error_of([](ChildOutput&) { std::raise(SIGKILL); }).problem(),
+                 "was killed, as the system does when memory runs out"));
   CHECK(contains(error_of([](ChildOutput&) { std::raise(SIGSEGV); }).problem(), "ended by signal 11"));
   CHECK(contains(error_of([](ChildOutput&) { std::abort(); }).problem(), "ended by signal 6"));
   CHECK(contains(error_of([](ChildOutput& to) {

@@ -19,7 +19,9 @@ namespace {
 
 const TemporaryFolder folder;
 
-void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 Fingerprint of_bytes(std::string_view text, std::size_t at_once) {
   Digest digest;

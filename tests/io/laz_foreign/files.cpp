@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Writes the same points as LAS and as LAZ, in pairs of files, for other programs to read and compare. Usage: files FOLDER. With the
-// environment variable PULSECAST_LAZ_POINTS, only a survey of about so many points.
+// Writes the same points as LAS and as LAZ, in pairs of files, for other programs to read and compare. Usage: files
+// FOLDER. With the environment variable PULSECAST_LAZ_POINTS, only a survey of about so many points.
 
 #include <cmath>
 #include <cstddef>
@@ -71,7 +71,8 @@ void change_time(std::span<std::uint8_t> record, support::Generator& random, std
   else if (kind < 0.5)
     time += 1000 * random.whole(1200) - 20'000 + random.whole(3);
   else if (kind < 0.55)
-    time += static_cast<std::uint64_t>(static_cast<std::int64_t>(random.log_uniform(1, 1e18) * (random.coin() ? 1 : -1)));
+    time +=
+        static_cast<std::uint64_t>(static_cast<std::int64_t>(random.log_uniform(1, 1e18) * (random.coin() ? 1 : -1)));
   else if (kind < 0.56)
     time = random.whole(std::uint64_t{1} << 52) << 12;
   std::memcpy(record.data() + 22, &time, sizeof time);
@@ -124,9 +125,10 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(std::move(mesh))}});
   const Laser laser{.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 3_ns, .divergence = 1_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser};
-  const Platform airplane{StraightLine{.from = {50, 10, 300}, .to = {50, 90, 300}, .speed = 80 / scanner.duration().seconds()},
-                          Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
+  const Platform airplane{
+      StraightLine{.from = {50, 10, 300}, .to = {50, 90, 300}, .speed = 80 / scanner.duration().seconds()},
+      Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
+      Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
   LasWriter las(folder / (name + ".las"), settings);
   LazWriter laz(folder / (name + ".laz"), settings);
   run(Survey{airplane, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{{.record_length = 20_ns}}}, {}, las, laz);
@@ -167,7 +169,8 @@ int main(int count, char** words) {
     const std::string by = std::to_string(channels);
     for (const double chance : {1.0, 0.1, 0.001}) {
       write_random(folder, "colours_" + by + '_' + std::to_string(chance), 20'000, chance, channels, colours);
-      write_random(folder, "near_infrared_" + by + '_' + std::to_string(chance), 20'000, chance, channels, near_infrared);
+      write_random(folder, "near_infrared_" + by + '_' + std::to_string(chance), 20'000, chance, channels,
+                   near_infrared);
     }
   }
   write_survey(folder, "survey_colours", 20'000, of_heights());

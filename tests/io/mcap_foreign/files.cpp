@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Writes MCAP files, and beside each what others should read in it, a JSON object a line: first the channels, then every message in the
-// order of their times, with its bytes in hexadecimal digits, and with the numbers of its points if it is a scan. Usage: files FOLDER.
+// Writes MCAP files, and beside each what others should read in it, a JSON object a line: first the channels, then
+// every message in the order of their times, with its bytes in hexadecimal digits, and with the numbers of its points
+// if it is a scan. Usage: files FOLDER.
 
 #include <algorithm>
 #include <cmath>
@@ -59,15 +60,17 @@ class Twin {
     told_ << '[';
     for (std::size_t i = 0; i < channels_.size(); ++i) {
       const McapChannel& c = channels_[i];
-      told_ << (i > 0 ? "," : "") << R"({"topic":")" << c.topic << R"(","schemaName":")" << c.schema_name << R"(","schemaEncoding":")"
-            << c.schema_encoding << R"(","schema":")" << hex(std::as_bytes(std::span(c.schema))) << R"(","messageEncoding":")"
-            << c.message_encoding << R"(","messages":)" << sequences_[i] << R"(,"metadata":{)";
+      told_ << (i > 0 ? "," : "") << R"({"topic":")" << c.topic << R"(","schemaName":")" << c.schema_name
+            << R"(","schemaEncoding":")" << c.schema_encoding << R"(","schema":")"
+            << hex(std::as_bytes(std::span(c.schema))) << R"(","messageEncoding":")" << c.message_encoding
+            << R"(","messages":)" << sequences_[i] << R"(,"metadata":{)";
       for (auto pair = c.metadata.begin(); pair != c.metadata.end(); ++pair)
         told_ << (pair != c.metadata.begin() ? "," : "") << '"' << pair->first << R"(":")" << pair->second << '"';
       told_ << "}}";
     }
     told_ << "]\n";
-    std::stable_sort(messages_.begin(), messages_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(messages_.begin(), messages_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [time, line] : messages_) told_ << line;
     told_.close();
     if (!told_) throw FileError("the file of what is written", "", "cannot be written");
@@ -104,7 +107,8 @@ void write_random(const fs::path& path, std::uint64_t seed, std::size_t messages
     }
     std::vector<std::byte> data(static_cast<std::size_t>(any.log_uniform(1, 3000)) - 1);
     for (std::byte& b : data) b = static_cast<std::byte>(any.whole(256));
-    twin.write(channels[any.whole(channels.size())], 1'700'000'000'000'000'000 + 1000 * i + any.whole(100'000), any.whole(1'000'000), data);
+    twin.write(channels[any.whole(channels.size())], 1'700'000'000'000'000'000 + 1000 * i + any.whole(100'000),
+               any.whole(1'000'000), data);
   }
   twin.close();
 }
@@ -137,7 +141,8 @@ void write_survey(const fs::path& path, const PointLayout& layout) {
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(std::move(mesh))}});
   SpinningSensor sensor = velodyne_vlp_16();
   sensor.sequence_rate = 900;  // for a short test
-  const Platform platform{StraightLine{.from = {10, 5, 2}, .to = {10, 15, 2}, .speed = 20}, Mount{}, sensor.source(0.5)};
+  const Platform platform{StraightLine{.from = {10, 5, 2}, .to = {10, 15, 2}, .speed = 20}, Mount{},
+                          sensor.source(0.5)};
   const Survey survey{platform, SingleRay{}, scene, sensor.receiver(), FirstHit{}};
   const PointSettings settings{.sensor = [&](Tick t) { return platform.instrument_at(t); },
                                .axes = PointAxes::forward_left_up,
@@ -146,8 +151,10 @@ void write_survey(const fs::path& path, const PointLayout& layout) {
                                .surfaces = surfaces_of(scene)};
 
   Twin bag(path, {});
-  const auto points = bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type, .schema = point_cloud2_definition});
-  const auto log = bag.add_channel({.topic = "/log", .schema_encoding = "", .message_encoding = "json", .metadata = {}});
+  const auto points =
+      bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type, .schema = point_cloud2_definition});
+  const auto log =
+      bag.add_channel({.topic = "/log", .schema_encoding = "", .message_encoding = "json", .metadata = {}});
   std::vector<std::byte> message;
   ScanSplitter scans(PointBuffer(layout, settings), 10, [&](const PointBuffer& scan) {
     serialize_point_cloud2(scan, "lidar", message);

@@ -38,13 +38,15 @@ TEST_CASE("messages arrive in the order of sending, from all at all") {
       ++all;
     });
   CHECK(!channel.poll([](int, int, const MpiChannel::Bytes&) {}));
-  CHECK(channel.traffic().messages == static_cast<std::uint64_t>(each * (channel.size() - 1)));  // what one says to itself is none
+  CHECK(channel.traffic().messages ==
+        static_cast<std::uint64_t>(each * (channel.size() - 1)));  // what one says to itself is none
 }
 
 TEST_CASE("what the first says, all say; what all say, the first hears") {
   mpi_group();
   MpiChannel channel(MPI_COMM_WORLD);
-  CHECK(channel.from_first(channel.first() ? std::string("a folder") : std::string("another, which is longer")) == "a folder");
+  CHECK(channel.from_first(channel.first() ? std::string("a folder") : std::string("another, which is longer")) ==
+        "a folder");
   CHECK(channel.from_first(channel.rank() + 5.5) == 5.5);
   const std::vector<int> ranks = channel.gather(channel.rank());
   CHECK(ranks.size() == (channel.first() ? static_cast<std::size_t>(channel.size()) : 0));

@@ -27,6 +27,7 @@ int main() {
   std::size_t points = 0;
   std::size_t points_before = 0;
   const bool same = scan(io::read_obj(obj).mesh, points) == scan_before_rooms(obj, points_before);
-  std::cout << points << " points after, " << points_before << " before, files " << (same ? "are the same\n" : "differ\n");
+  std::cout << points << " points after, " << points_before << " before, files "
+            << (same ? "are the same\n" : "differ\n");
   return same && points > 0 ? 0 : 1;
 }

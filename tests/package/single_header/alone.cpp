@@ -13,6 +13,7 @@
 
 int main() {
   std::size_t points = 0;
-  const std::string files = scan({.vertices = {{-4, 10, -3}, {4, 10, -3}, {4, 10, 5}}, .triangles = {{0, 1, 2}}}, points);
+  const std::string files =
+      scan({.vertices = {{-4, 10, -3}, {4, 10, -3}, {4, 10, 5}}, .triangles = {{0, 1, 2}}}, points);
   std::cout << points << " points, " << files.size() << " bytes\n";
 }

@@ -15,4 +15,6 @@
 
 #include "scan.hpp"
 
-std::string scan_before_rooms(const std::filesystem::path& obj, std::size_t& points) { return scan(io::read_obj(obj).mesh, points); }
+std::string scan_before_rooms(const std::filesystem::path& obj, std::size_t& points) {
+  return scan(io::read_obj(obj).mesh, points);
+}

@@ -22,7 +22,8 @@ std::string scan(const MeshData& mesh, std::size_t& points) {
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}});
   const Deflector sweeping{PolygonMirror{.lines_per_second = 100_Hz}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}};
   const Platform platform{Tripod{}, Mount{}, Deflector{RotatingHead{.rate = 360_deg}, sweeping}};
-  const Survey survey{platform, WithSubrayRecord{LatticeFootprint{7}}, scene, Receiver{}, FullWaveform{{.record_length = 20_ns}}};
+  const Survey survey{platform, WithSubrayRecord{LatticeFootprint{7}}, scene, Receiver{},
+                      FullWaveform{{.record_length = 20_ns}}};
   const support::TemporaryFolder folder;
   io::LasWriter las(folder / "a.las", {.waveforms = true});
   io::LazWriter laz(folder / "a.laz");

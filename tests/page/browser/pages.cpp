@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Makes pages for check.mjs. Usage: `pages FOLDER` leaves page.html and points.json, which has what should be read from the page; with a
-// number of shots behind it, only the page, of all their echoes, 5 for 4 shots; `pages live SHOTS` serves a page of so many shots, says
-// where, and says at the end whether it was stopped.
+// Makes pages for check.mjs. Usage: `pages FOLDER` leaves page.html and points.json, which has what should be read from
+// the page; with a number of shots behind it, only the page, of all their echoes, 5 for 4 shots; `pages live SHOTS`
+// serves a page of so many shots, says where, and says at the end whether it was stopped.
 
 #include <chrono>
 #include <cmath>
@@ -30,7 +30,8 @@ const std::string evil = "</script><img src=x onerror=\"window.hurt=1\">";
 page::PageSurvey survey() {
   page::PageSurvey out{.name = evil + "survey", .scanner = evil + "scanner", .platform = "Tripod & car"};
   out.legs.push_back(page::page_leg(evil + "leg", Tripod{.position = {0, 0, 15}}, {}, Tick{1, 0}));
-  out.legs.push_back(page::page_leg("drive", StraightLine{.from = {-20, -10, 2}, .to = {20, -10, 2}, .speed = 40}, Tick{1, 0}, Tick{1, 0}));
+  out.legs.push_back(page::page_leg("drive", StraightLine{.from = {-20, -10, 2}, .to = {20, -10, 2}, .speed = 40},
+                                    Tick{1, 0}, Tick{1, 0}));
   out.objects[2] = evil + "object";
   return out;
 }
@@ -42,7 +43,8 @@ struct Shots {
 
   Shots(PulseIndex first, PulseIndex end, PulseIndex all) {
     for (PulseIndex i = first; i < end; ++i) {
-      const double u = std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0), v = static_cast<double>(i) / static_cast<double>(all);
+      const double u = std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0),
+                   v = static_cast<double>(i) / static_cast<double>(all);
       const Vec3 at{40 * u - 20, 40 * v - 20, 4 * std::sin(6 * u) * std::cos(5 * v)};
       const auto leg = static_cast<std::uint16_t>(i * 2 >= all ? 1 : 0);
       const Vec3 from = leg == 0 ? Vec3{0, 0, 15} : Vec3{40 * (2 * v - 1) - 20, -10, 15};
@@ -85,10 +87,12 @@ void write_truth(const std::string& path, std::span<const page::PagePoint> point
   out << '[';
   for (const page::PagePoint& p : points) {
     if (&p != points.data()) out << ",\n";
-    out << '[' << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.time << ',' << p.pulse << ',' << p.amplitude << ','
-        << p.reflectance << ',' << p.width * 1e9f << ',' << p.incidence * 180 / pi << ',' << p.scan_angle * 180 / pi << ',' << p.object
-        << ',' << p.classification << ',' << p.leg << ',' << int{p.number} << ',' << int{p.returns} << ',' << int{p.channel} << ','
-        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind) << ',';
+    out << '[' << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.time << ',' << p.pulse << ','
+        << p.amplitude << ',' << p.reflectance << ',' << p.width * 1e9f << ',' << p.incidence * 180 / pi << ','
+        << p.scan_angle * 180 / pi << ',' << p.object << ',' << p.classification << ',' << p.leg << ',' << int{p.number}
+        << ',' << int{p.returns} << ',' << int{p.channel} << ','
+        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind)
+        << ',';
     const auto& [red, green, blue] = p.colour;
     out << (p.coloured ? std::to_string(65536 * red + 256 * green + blue) : "null") << ']';
   }
@@ -102,7 +106,8 @@ int live(PulseIndex all) {
   PulseIndex done = 0;
   for (constexpr PulseIndex a_batch = 500; done < all && !server.stop_requested(); done += a_batch) {
     server(Shots(done, std::min(all, done + a_batch), all).batch());
-    server.tell({.done = done + a_batch, .total = all, .echoes = done, .seconds = 0.05 * static_cast<double>(done) / a_batch});
+    server.tell(
+        {.done = done + a_batch, .total = all, .echoes = done, .seconds = 0.05 * static_cast<double>(done) / a_batch});
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   server.finish(done >= all);

@@ -50,8 +50,8 @@ TEST_CASE("the parts of the page are one document, without a mark left or a lice
     CAPTURE(mark);
     CHECK(html.find(mark) == std::string::npos);
   }
-  for (const char* piece :
-       {"\n:root {", "class Points", "class GlPainter", "`#version 300 es\nprecision", "class Camera", "class Colouring"}) {
+  for (const char* piece : {"\n:root {", "class Points", "class GlPainter", "`#version 300 es\nprecision",
+                            "class Camera", "class Colouring"}) {
     CAPTURE(piece);
     CHECK(html.find(piece) != std::string::npos);
   }
@@ -75,7 +75,8 @@ TEST_CASE("the script can stand in HTML, and makes no HTML or script of texts") 
   const std::string all = script();
   CHECK(all.size() > 50'000);
   CHECK(all.find("</script") == all.rfind("</script>\n</body>"));
-  for (const char* word : {"<!--", "innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function", "http:"}) {
+  for (const char* word :
+       {"<!--", "innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function", "http:"}) {
     CAPTURE(word);
     CHECK(all.find(word) == std::string::npos);
   }

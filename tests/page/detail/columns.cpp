@@ -56,7 +56,8 @@ Decoded decoded(const std::string& bytes, std::size_t count) {
     const std::size_t planes_of = std::stoul(field(column, "planes"));
     const bool differences = field(column, "differences") == "true";
     const bool scaled = kind == "\"linear\"" || kind == "\"logarithmic\"";
-    const double offset = scaled ? std::stod(field(column, "offset")) : 0, step = scaled ? std::stod(field(column, "step")) : 0;
+    const double offset = scaled ? std::stod(field(column, "offset")) : 0,
+                 step = scaled ? std::stod(field(column, "step")) : 0;
     const std::string per_pulse = field(column, "per_pulse");
     const double each = per_pulse.empty() ? 0 : std::stod(per_pulse);
     std::vector<double> listed;
@@ -70,7 +71,8 @@ Decoded decoded(const std::string& bytes, std::size_t count) {
       std::uint64_t code = 0;
       for (std::size_t k = 0; k < planes_of; ++k) code |= std::uint64_t{planes[(plane + k) * count + i]} << 8 * k;
       auto now = static_cast<std::int64_t>(code);
-      if (differences) now = before += code % 2 == 1 ? -static_cast<std::int64_t>(code / 2) - 1 : static_cast<std::int64_t>(code / 2);
+      if (differences)
+        now = before += code % 2 == 1 ? -static_cast<std::int64_t>(code / 2) - 1 : static_cast<std::int64_t>(code / 2);
       double value = std::numeric_limits<double>::quiet_NaN();
       if (now > 0 && kind == "\"linear\"") value = offset + static_cast<double>(now - 1) * step;
       if (now > 0 && kind == "\"logarithmic\"") value = offset * std::exp(static_cast<double>(now - 1) * step);
@@ -185,7 +187,9 @@ TEST_CASE("colours are told to the bit, those that are unknown as such, and none
   auto points = random_points(3000, 8);
   CHECK_FALSE(decoded(page_columns(points), points.size()).columns.contains("colour"));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto draw = [&](std::uint32_t k) { return static_cast<std::uint8_t>(256 * uniform({.seed = 9, .pulse = i, .subray = k})); };
+    const auto draw = [&](std::uint32_t k) {
+      return static_cast<std::uint8_t>(256 * uniform({.seed = 9, .pulse = i, .subray = k}));
+    };
     points[i].coloured = i % 5 != 0;
     points[i].colour = {draw(0), draw(1), draw(2)};
   }
@@ -204,7 +208,8 @@ TEST_CASE("colours are told to the bit, those that are unknown as such, and none
 TEST_CASE("no points, one point, and points far away can be told") {
   CHECK(decoded(page_columns({}), 0).columns.at("x").empty());
   auto points = random_points(1, 4);
-  CHECK(decoded(page_columns(points), 1).columns.at("pulse")[0] == 1e12 + static_cast<double>(points[0].pulse - 1'000'000'000'000));
+  CHECK(decoded(page_columns(points), 1).columns.at("pulse")[0] ==
+        1e12 + static_cast<double>(points[0].pulse - 1'000'000'000'000));
   points = random_points(3, 5);
   points[0].position = {1e300, 1e300, -1e300};
   CHECK(decoded(page_columns(points), 3).columns.at("leg")[1] == points[1].leg);

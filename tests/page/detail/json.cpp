@@ -27,7 +27,8 @@ TEST_CASE("commas stand between items and members, and nowhere else") {
 
 TEST_CASE("texts are JSON that may stand in HTML") {
   CHECK(json_of("a") == "\"a\"");
-  CHECK(json_of(std::string("</script><!-- & \"\\\n\x7f")) == R"("\u003c/script\u003e\u003c!-- \u0026 \u0022\u005c\u000a\u007f")");
+  CHECK(json_of(std::string("</script><!-- & \"\\\n\x7f")) ==
+        R"("\u003c/script\u003e\u003c!-- \u0026 \u0022\u005c\u000a\u007f")");
   CHECK(json_of("\xc3\xa4") == "\"\xc3\xa4\"");
   CHECK(JsonWriter().begin_object().member("<", "").text() == R"({"\u003c":"")");
 }
@@ -44,6 +45,11 @@ TEST_CASE("numbers are the shortest that read back as the same, or null") {
 
 TEST_CASE("arrays are written from what holds or computes their items") {
   CHECK(json_of(std::array<std::uint8_t, 3>{1, 2, 255}) == "[1,2,255]");
-  CHECK(JsonWriter().array(2, [](std::size_t i) { return std::array{0.5, static_cast<double>(i)}; }).text() == "[[0.5,0],[0.5,1]]");
+  CHECK(JsonWriter()
+            .array(2,
+                   [](std::size_t i) {
+                     return std::array{0.5, static_cast<double>(i)};
+                   })
+            .text() == "[[0.5,0],[0.5,1]]");
   CHECK(JsonWriter().array(0, [](std::size_t i) { return i; }).text() == "[]");
 }

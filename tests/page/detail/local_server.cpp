@@ -31,8 +31,11 @@ struct Greeter {
   int port;
 
   explicit Greeter(const LocalServerLimits& limits = {}) : server(limits) {
-    server.Get("/greeting", [](const httplib::Request&, httplib::Response& r) { r.set_content("hello", "text/plain"); });
-    server.Get("/long", [](const httplib::Request&, httplib::Response& r) { r.set_content(std::string(20'000'000, 'a'), "text/plain"); });
+    server.Get("/greeting",
+               [](const httplib::Request&, httplib::Response& r) { r.set_content("hello", "text/plain"); });
+    server.Get("/long", [](const httplib::Request&, httplib::Response& r) {
+      r.set_content(std::string(20'000'000, 'a'), "text/plain");
+    });
     port = server.bind(0);
     server.start();
   }
@@ -50,7 +53,8 @@ std::size_t descriptors() {
 
 /// Waits until `number` descriptors are open: the server took or closed a connection, however busy the machine is.
 void wait_for_descriptors(std::size_t number) {
-  for (int tries = 0; tries < 10'000 && descriptors() != number; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  for (int tries = 0; tries < 10'000 && descriptors() != number; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }
 
 }  // namespace
@@ -72,7 +76,8 @@ TEST_CASE("what is no request, or has a body, is told so") {
   const Greeter greeter;
   CHECK(greeter.answer("nonsense\r\n\r\n").starts_with("HTTP/1.1 400"));
   CHECK(greeter.answer("POST /greeting HTTP/1.1\r\nContent-Length: 5\r\n\r\nabcde").starts_with("HTTP/1.1 4"));
-  CHECK(greeter.answer("POST /greeting HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nabcde\r\n").starts_with("HTTP/1.1 4"));
+  CHECK(greeter.answer("POST /greeting HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nabcde\r\n")
+            .starts_with("HTTP/1.1 4"));
   std::string ranges = "GET /greeting HTTP/1.1\r\nRange: bytes=0-1";
   for (int k = 0; k < 2000; ++k) ranges += ",0-1";
   CHECK(greeter.answer(ranges + "\r\n\r\n").starts_with("HTTP/1.1 "));
@@ -125,7 +130,8 @@ TEST_CASE("many clients leave half of the descriptors to the program") {
       for (int k = 0; k < 300; ++k) clients.emplace_back(greeter.port).send("GET /");
       for (;;) pause();
     }
-    for (int tries = 0; tries < 500 && descriptors() == with_server; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    for (int tries = 0; tries < 500 && descriptors() == with_server; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     std::vector<int> files;
     for (std::size_t k = 0; k < free / 2; ++k) files.push_back(open("/dev/null", O_RDONLY | O_CLOEXEC));
     CHECK(std::ranges::none_of(files, [](int file) { return file < 0; }));

@@ -30,7 +30,8 @@ void give(PageSample& sample, PulseIndex n, PulseIndex a_batch) {
                        .direction = {0, 0.6, -0.8},
                        .first_echo = static_cast<std::uint32_t>(echoes.size()),
                        .echoes = number});
-      for (std::uint32_t k = 1; k <= number; ++k) echoes.push_back({.range = 10.0 * k, .number = static_cast<std::uint8_t>(k)});
+      for (std::uint32_t k = 1; k <= number; ++k)
+        echoes.push_back({.range = 10.0 * k, .number = static_cast<std::uint8_t>(k)});
     }
     EchoBatch batch;
     batch.shots = shots;
@@ -57,9 +58,14 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
                   .leg = 3,
                   .channel = 2,
                   .echoes = 2};
-  const Echo echoes[] = {
-      {.range = 10, .amplitude = 1e-6, .reflectance = 0.5, .width = 2e-9, .cos_incidence = 0.5, .object = 9, .classification = 5},
-      {.range = 20, .number = 2, .kind = ReflectionKind::water}};
+  const Echo echoes[] = {{.range = 10,
+                          .amplitude = 1e-6,
+                          .reflectance = 0.5,
+                          .width = 2e-9,
+                          .cos_incidence = 0.5,
+                          .object = 9,
+                          .classification = 5},
+                         {.range = 20, .number = 2, .kind = ReflectionKind::water}};
   EchoBatch batch;
   batch.shots = {&shot, 1};
   batch.echoes = echoes;
@@ -101,7 +107,9 @@ TEST_CASE("points have the colours of their echoes, rounded to a byte, and keep 
   CHECK(asked < few.seen());  // only of those that were kept for a moment
   for (const PagePoint& p : few.points()) {
     CHECK(p.coloured == (p.number != 2));
-    if (p.coloured) CHECK(p.colour == std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(p.pulse % 256), 255, 3});  // 899 / 257 is 3.498
+    if (p.coloured)
+      CHECK(p.colour ==
+            std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(p.pulse % 256), 255, 3});  // 899 / 257 is 3.498
   }
   PageSample without(500);
   give(without, 9000, 100);
@@ -113,7 +121,8 @@ TEST_CASE("of too many, those of the least keys are kept, however they came") {
   constexpr PulseIndex n = 20'000;
   std::vector<std::pair<std::uint32_t, std::pair<PulseIndex, int>>> all;
   for (PulseIndex i = 0; i < n; ++i)
-    for (int k = 1; k <= static_cast<int>(i % 3); ++k) all.push_back({page_key(i, static_cast<std::uint8_t>(k)), {i, k}});
+    for (int k = 1; k <= static_cast<int>(i % 3); ++k)
+      all.push_back({page_key(i, static_cast<std::uint8_t>(k)), {i, k}});
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const std::size_t most : {2u, 777u, 15'999u, 19'998u, 30'000u}) {
     std::vector<std::pair<PulseIndex, int>> expected;

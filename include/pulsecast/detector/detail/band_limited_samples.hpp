@@ -40,8 +40,8 @@ struct ReceivedPulses {
 
 }  // namespace detail
 
-/// Samples behind a receiver of finite bandwidth, in sections with gaps where nothing is heard. With noise there is one section: the range
-/// gate, up to the last reflection if it has no end, and of 1e7 samples at most.
+/// Samples behind a receiver of finite bandwidth, in sections with gaps where nothing is heard. With noise there is one
+/// section: the range gate, up to the last reflection if it has no end, and of 1e7 samples at most.
 class BandLimitedSamples {
  public:
   /// Scratch memory.
@@ -52,8 +52,9 @@ class BandLimitedSamples {
   };
 
   /// For reflections sorted by range. `peaks_only`: no width is taken.
-  BandLimitedSamples(const ReceiverChain& chain, const detail::ReceivedPulses& pulses, const WaveformSettings& s, const Heard& heard,
-                     std::span<const Reflection> reflections, bool peaks_only, Workspace& w) noexcept
+  BandLimitedSamples(const ReceiverChain& chain, const detail::ReceivedPulses& pulses, const WaveformSettings& s,
+                     const Heard& heard, std::span<const Reflection> reflections, bool peaks_only,
+                     Workspace& w) noexcept
       : chain_(chain),
         pulses_(pulses),
         reflections_(reflections),
@@ -63,7 +64,8 @@ class BandLimitedSamples {
         wavelength_(heard.emitter.laser.wavelength),
         noise_(pulses.filter, noise_key(heard.key)),
         noisy_(chain.noisy()),
-        peaks_only_(peaks_only && !noisy_ && pulses.taps.empty() && s.record_length == 0 && s.timing == EchoTiming::peak) {
+        peaks_only_(peaks_only && !noisy_ && pulses.taps.empty() && s.record_length == 0 &&
+                    s.timing == EchoTiming::peak) {
     std::fill(w_.sums.begin(), w_.sums.end(), 0.0);
     if (chain_.noise_power > 0 || chain_.shot_noise) deviation_ = deviation(0);
     held_decay_ = chain_.recovery > 0 ? std::exp(-interval_ / chain_.recovery) : 0;
@@ -85,15 +87,18 @@ class BandLimitedSamples {
     [[nodiscard]] double begin() const noexcept { return pulse.begin() - pulse.peak(); }
     [[nodiscard]] double end() const noexcept { return pulse.end() - pulse.peak(); }
   };
-  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }          ///< shape of the pulses of these samples
-  [[nodiscard]] double start() const noexcept { return start_; }                  ///< number of the first sample
-  [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }         ///< of a pulse's maximum in the samples [s]
-  [[nodiscard]] double background() const noexcept { return chain_.background; }  ///< mean that is not in the samples [W]
-  [[nodiscard]] bool independent_noise() const noexcept { return false; }         ///< noise is filtered
+  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }   ///< shape of the pulses of these samples
+  [[nodiscard]] double start() const noexcept { return start_; }           ///< number of the first sample
+  [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }  ///< of a pulse's maximum in the samples [s]
+  [[nodiscard]] double background() const noexcept {
+    return chain_.background;
+  }                                                                        ///< mean that is not in the samples [W]
+  [[nodiscard]] bool independent_noise() const noexcept { return false; }  ///< noise is filtered
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
-    if (noisy_ ? begun_ || !(number_ <= end_ || !reflections_.empty()) : !std::isfinite(first_of_section())) return false;
+    if (noisy_ ? begun_ || !(number_ <= end_ || !reflections_.empty()) : !std::isfinite(first_of_section()))
+      return false;
     if (!noisy_) {
       number_ = first_of_section();
       end_ = number_;
@@ -150,10 +155,13 @@ class BandLimitedSamples {
     return first - margin - static_cast<double>(pulses_.first_tap) - static_cast<double>(pulses_.taps.size());
   }
   /// Number of the first sample of a section that a reflection begins.
-  [[nodiscard]] double first_of(std::size_t r) const noexcept { return before(pulses_.pulse.first_sample(arrival(reflections_[r]))); }
+  [[nodiscard]] double first_of(std::size_t r) const noexcept {
+    return before(pulses_.pulse.first_sample(arrival(reflections_[r])));
+  }
   /// Number of the first sample of the next section; infinite if there is none.
   [[nodiscard]] double first_of_section() const noexcept {
-    const double rise = before(std::ceil(continuous_.next() / interval_)), solid = next_ < reflections_.size() ? first_of(next_) : infinity;
+    const double rise = before(std::ceil(continuous_.next() / interval_)),
+                 solid = next_ < reflections_.size() ? first_of(next_) : infinity;
     const double late = before(std::floor(continuous_.first_peak() / interval_));
     return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }
@@ -182,7 +190,8 @@ class BandLimitedSamples {
     }
     const std::size_t size = w_.sums.size();
     std::size_t at = static_cast<std::size_t>(static_cast<std::int64_t>(first)) & (size - 1);
-    auto k = static_cast<std::size_t>(std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples that are gone
+    auto k = static_cast<std::size_t>(
+        std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples that are gone
     at = (at + k) & (size - 1);
     for (std::size_t end; k < pulse.stride(); k = end, at = 0) {
       end = std::min(pulse.stride(), k + (size - at));
@@ -203,7 +212,8 @@ class BandLimitedSamples {
   /// Next sample before a matched filter.
   double raw() noexcept {
     const std::size_t mask = w_.sums.size() - 1;
-    while (next_ < reflections_.size() && pulses_.pulse.first_sample(arrival(reflections_[next_])) <= static_cast<double>(raw_))
+    while (next_ < reflections_.size() &&
+           pulses_.pulse.first_sample(arrival(reflections_[next_])) <= static_cast<double>(raw_))
       add_pulses();
     double& sum = w_.sums[static_cast<std::size_t>(raw_) & mask];
     double power = std::exchange(sum, 0.0);
@@ -213,7 +223,8 @@ class BandLimitedSamples {
       last_ = now;
       power += now;
     }
-    if (deviation_ > 0) power += (chain_.shot_noise ? deviation(power) : deviation_) * noise_(static_cast<double>(raw_) * interval_);
+    if (deviation_ > 0)
+      power += (chain_.shot_noise ? deviation(power) : deviation_) * noise_(static_cast<double>(raw_) * interval_);
     ++raw_;
     if (chain_.saturation > 0) {
       held_ *= held_decay_;

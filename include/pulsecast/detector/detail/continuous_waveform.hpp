@@ -24,12 +24,14 @@ namespace PULSECAST_NAMESPACE::detail {
 
 /// Waveform of continuous returns, for `PulseShape`, at times that ascend: exact, as density is linear in each return.
 ///
-/// A step J of the density by range, whose leading edge passed an age u [tau] ago, contributes J (2 - e^-u (u^2 + 2 u + 2)) to the sum of
-/// pulses u^2 e^-u, and a change K of its slope by tau contributes K (2 u - 6 + e^-u (u^2 + 4 u + 6)). What has no e^-u is 2 q - 6 q', of
-/// the density q at the leading edge; the others add up to a quadratic in time, times an exponential. By integration of `PulseShape`.
+/// A step J of the density by range, whose leading edge passed an age u [tau] ago, contributes J (2 - e^-u (u^2 + 2 u +
+/// 2)) to the sum of pulses u^2 e^-u, and a change K of its slope by tau contributes K (2 u - 6 + e^-u (u^2 + 4 u +
+/// 6)). What has no e^-u is 2 q - 6 q', of the density q at the leading edge; the others add up to a quadratic in time,
+/// times an exponential. By integration of `PulseShape`.
 class ContinuousSum {
  public:
-  ContinuousSum(std::span<const ContinuousReturn> returns, const PulseShape& shape) noexcept : returns_(returns), tau_(shape.tau) {}
+  ContinuousSum(std::span<const ContinuousReturn> returns, const PulseShape& shape) noexcept
+      : returns_(returns), tau_(shape.tau) {}
 
   [[nodiscard]] bool empty() const noexcept { return returns_.empty(); }  ///< true without returns
 
@@ -84,7 +86,7 @@ class ContinuousSum {
   std::span<const ContinuousReturn> returns_;
   double tau_, edge_ = -std::numeric_limits<double>::infinity();  ///< edge: range whose leading edge arrives now [m]
   double density_ = 0, slope_ = 0;                                ///< at the edge [W/m], by tau
-  double zeroth_ = 0, first_ = 0, second_ = 0;                    ///< e^-x (second + first x + zeroth x^2), a time x from now on [tau]
+  double zeroth_ = 0, first_ = 0, second_ = 0;  ///< e^-x (second + first x + zeroth x^2), a time x from now on [tau]
   std::size_t passed_ = 0, begun_ = 0;
 };
 
@@ -93,9 +95,13 @@ class GammaIntegrals {
  public:
   explicit GammaIntegrals(const PulseShape& shape) noexcept : shape_(shape) {}
 
-  [[nodiscard]] double begin() const noexcept { return shape_.begin(); }  ///< time of the leading edge since the arrival [s]
-  [[nodiscard]] double end() const noexcept { return 36 * shape_.tau; }   ///< time since the arrival when 1e-13 of a pulse is left [s]
-  [[nodiscard]] double peak() const noexcept { return 0; }                ///< time of the maximum since the arrival [s]
+  [[nodiscard]] double begin() const noexcept {
+    return shape_.begin();
+  }  ///< time of the leading edge since the arrival [s]
+  [[nodiscard]] double end() const noexcept {
+    return 36 * shape_.tau;
+  }  ///< time since the arrival when 1e-13 of a pulse is left [s]
+  [[nodiscard]] double peak() const noexcept { return 0; }  ///< time of the maximum since the arrival [s]
   /// Integrals up to a time since the arrival [s].
   [[nodiscard]] PulseIntegrals until(double t) const noexcept {
     if (!(t < end())) return of(2, 6);
@@ -114,18 +120,22 @@ class GammaIntegrals {
   PulseShape shape_;
 };
 
-/// Places at which the waveform of continuous returns may have maxima, and echoes that are theirs. `Pulse` is as `GammaIntegrals`.
+/// Places at which the waveform of continuous returns may have maxima, and echoes that are theirs. `Pulse` is as
+/// `GammaIntegrals`.
 ///
-/// The waveform rises only where density does, and until the light of there has passed its maximum, as a pulse has only one: a search for
-/// maxima looks there alone, and at reflections.
+/// The waveform rises only where density does, and until the light of there has passed its maximum, as a pulse has only
+/// one: a search for maxima looks there alone, and at reflections.
 template <class Pulse>
 class ContinuousRises {
  public:
-  ContinuousRises(std::span<const ContinuousReturn> returns, const Pulse& pulse) noexcept : returns_(returns), pulse_(pulse) {}
+  ContinuousRises(std::span<const ContinuousReturn> returns, const Pulse& pulse) noexcept
+      : returns_(returns), pulse_(pulse) {}
 
   [[nodiscard]] bool empty() const noexcept { return returns_.empty(); }  ///< true without returns
   /// Time at which light begins to arrive; infinite without any [s].
-  [[nodiscard]] double start() const noexcept { return empty() ? infinity : time_of(returns_.front().begin) + pulse_.begin(); }
+  [[nodiscard]] double start() const noexcept {
+    return empty() ? infinity : time_of(returns_.front().begin) + pulse_.begin();
+  }
   /// Time from which no more light arrives [s].
   [[nodiscard]] double end() const noexcept {
     double last = -infinity;
@@ -138,14 +148,17 @@ class ContinuousRises {
     return next_ < returns_.size() ? time_of(returns_[next_].begin) + pulse_.begin() : infinity;
   }
   /// Time up to which the waveform only rises, if `next` is the first return: no light has passed its maximum [s].
-  [[nodiscard]] double first_peak() const noexcept { return next_ == 0 && !empty() ? start() - pulse_.begin() + pulse_.peak() : -infinity; }
+  [[nodiscard]] double first_peak() const noexcept {
+    return next_ == 0 && !empty() ? start() - pulse_.begin() + pulse_.peak() : -infinity;
+  }
   /// Time up to which returns that have passed may let the waveform rise, although it falls before [s].
   [[nodiscard]] double until() const noexcept { return until_; }
   /// Passes all returns whose light has begun to arrive at a time [s].
   void pass(double time) noexcept {
     while (next() <= time) {
       const ContinuousReturn& r = returns_[next_];
-      const double late = next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as their light may fall faster
+      const double late =
+          next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as their light may fall faster
       until_ = std::max(until_, time_of(r.at_end > r.at_begin ? r.end : r.begin) + late);
       const ContinuousReturn *last = &r, *const end = returns_.data() + returns_.size();
       while (last + 1 != end && goes_on(last[0], last[1])) ++last;
@@ -173,11 +186,12 @@ class ContinuousRises {
   };
   [[nodiscard]] Sources sources(double delay) const noexcept { return {*this, delay}; }  ///< those of this waveform
 
-  /// Return that a peak is of, of whose height `solid` is of reflections [W]; its times count from `solid` is of reflections, whose times
-  /// count from `delay` before those of the waveform [s]; null if it would rise without continuous returns. `met`: true if there are
-  /// reflections in it.
+  /// Return that a peak is of, of whose height `solid` is of reflections [W]; its times count from `solid` is of
+  /// reflections, whose times count from `delay` before those of the waveform [s]; null if it would rise without
+  /// continuous returns. `met`: true if there are reflections in it.
   [[nodiscard]] const ContinuousReturn* source(const Peak& peak, double delay, double solid, bool met) const noexcept {
-    if (empty() || (met && (solid >= 0.5 * peak.height || at(peak.begin + delay, 0) >= peak.height - 2 * solid))) return nullptr;
+    if (empty() || (met && (solid >= 0.5 * peak.height || at(peak.begin + delay, 0) >= peak.height - 2 * solid)))
+      return nullptr;
     const double begun = 0.5 * speed_of_light * (peak.time + delay - pulse_.begin());
     const ContinuousReturn* source = nullptr;
     for (const ContinuousReturn& r : returns_) {
@@ -198,7 +212,8 @@ class ContinuousRises {
 
   /// Waveform at a time [s], of the returns from a number on [W].
   [[nodiscard]] double at(double time, std::size_t from) const noexcept {
-    const double begun = 0.5 * speed_of_light * (time - pulse_.begin()), passed = 0.5 * speed_of_light * (time - pulse_.end());
+    const double begun = 0.5 * speed_of_light * (time - pulse_.begin()),
+                 passed = 0.5 * speed_of_light * (time - pulse_.end());
     const double negligible = 1e-6 * pulse_.end() * speed_of_light;
     double sum = 0, known = -infinity;  // range
     PulseIntegrals of_known;            // the end of a return is mostly the begin of the next

@@ -17,12 +17,13 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian about it, as tables: one for each of some
-/// variances, interpolated by cubics in time and in the variance. As the convolution with a Gaussian obeys the equation of heat, the slope
-/// in the variance is half the second derivative in time.
+/// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian about it, as tables:
+/// one for each of some variances, interpolated by cubics in time and in the variance. As the convolution with a
+/// Gaussian obeys the equation of heat, the slope in the variance is half the second derivative in time.
 class SystemWaveform {
  public:
-  /// Takes samples of the waveform of a flat target of power 1, every `step` [s], the first at a time `begin` since its arrival [s].
+  /// Takes samples of the waveform of a flat target of power 1, every `step` [s], the first at a time `begin` since its
+  /// arrival [s].
   SystemWaveform(std::vector<double> flat, double begin, double step) : begin_(begin), step_(step) {
     double energy = 0, first = 0, second = 0;
     for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -38,22 +39,26 @@ class SystemWaveform {
       if (flat[i] > 1e-3) fall_ = begin + static_cast<double>(i) * step;
     levels_[0] = {2, std::vector<double>(flat.size() + 4)};
     std::copy(flat.begin(), flat.end(), levels_[0].values.begin() + 2);
-    for (std::size_t j = 1; j < levels_.size(); ++j) levels_[j] = widened(levels_[j - 1], std::sqrt(added(j) - added(j - 1)) / step);
+    for (std::size_t j = 1; j < levels_.size(); ++j)
+      levels_[j] = widened(levels_[j - 1], std::sqrt(added(j) - added(j - 1)) / step);
   }
 
-  [[nodiscard]] double variance() const noexcept { return variance_; }                            ///< of a flat target [s^2]
-  [[nodiscard]] double rise() const noexcept { return rise_; }                                    ///< time of the first thousandth [s]
-  [[nodiscard]] double fall() const noexcept { return fall_; }                                    ///< time of the last thousandth [s]
-  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }                  ///< least variance in use [s^2]
-  [[nodiscard]] double most_added() const noexcept { return 0.999 * added(levels_.size() - 1); }  ///< greatest variance in use [s^2]
+  [[nodiscard]] double variance() const noexcept { return variance_; }            ///< of a flat target [s^2]
+  [[nodiscard]] double rise() const noexcept { return rise_; }                    ///< time of the first thousandth [s]
+  [[nodiscard]] double fall() const noexcept { return fall_; }                    ///< time of the last thousandth [s]
+  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< least variance in use [s^2]
+  [[nodiscard]] double most_added() const noexcept {
+    return 0.999 * added(levels_.size() - 1);
+  }  ///< greatest variance in use [s^2]
 
   /// Place between two tables.
   struct Blend {
     std::size_t level = 0;
-    double place = 0, span = 0;  ///< from 0 to 1, or a variance below that of a flat target, by the distance of the tables [s^2]
+    double place = 0,
+           span = 0;  ///< from 0 to 1, or a variance below that of a flat target, by the distance of the tables [s^2]
   };
-  /// Place of a variance in use, beyond that of a flat target [s^2]. Below 0 the waveform is extrapolated, so that noise moves it both
-  /// ways.
+  /// Place of a variance in use, beyond that of a flat target [s^2]. Below 0 the waveform is extrapolated, so that
+  /// noise moves it both ways.
   [[nodiscard]] Blend blend(double variance) const noexcept {
     std::size_t j = 0;
     while (j + 2 < levels_.size() && added(j + 1) <= variance) ++j;
@@ -72,10 +77,11 @@ class SystemWaveform {
     if (u < 0) return {low.value + u * b.span * slope, low.slope / step_, slope};
     const Cubic high = levels_[b.level + 1].at(whole, f);
     const double then = 0.5 * high.bend / (step_ * step_);
-    return {(1 + 2 * u) * (1 - u) * (1 - u) * low.value + u * u * (3 - 2 * u) * high.value +
-                b.span * u * (1 - u) * ((1 - u) * slope - u * then),
-            ((1 - u) * low.slope + u * high.slope) / step_,
-            6 * u * (1 - u) * (high.value - low.value) / b.span + (1 - u) * (1 - 3 * u) * slope + u * (3 * u - 2) * then};
+    return {
+        (1 + 2 * u) * (1 - u) * (1 - u) * low.value + u * u * (3 - 2 * u) * high.value +
+            b.span * u * (1 - u) * ((1 - u) * slope - u * then),
+        ((1 - u) * low.slope + u * high.slope) / step_,
+        6 * u * (1 - u) * (high.value - low.value) / b.span + (1 - u) * (1 - 3 * u) * slope + u * (3 * u - 2) * then};
   }
 
  private:
@@ -99,7 +105,9 @@ class SystemWaveform {
   };
 
   /// Variance of a level beyond that of a flat target [s^2].
-  [[nodiscard]] double added(std::size_t level) const noexcept { return variance_ * (std::pow(1.2, static_cast<double>(level)) - 1); }
+  [[nodiscard]] double added(std::size_t level) const noexcept {
+    return variance_ * (std::pow(1.2, static_cast<double>(level)) - 1);
+  }
 
   /// Convolution with a Gaussian of a deviation [samples].
   static Level widened(const Level& from, double deviation) {
@@ -125,8 +133,8 @@ class SystemWaveform {
   std::array<Level, 24> levels_{};  ///< up to 8 times the deviation of a flat target
 };
 
-/// Sum of up to six system waveforms and a constant, fitted to samples by least squares without weights, as noise of a digitiser is the
-/// same for all samples. Source: Levenberg 1944; Marquardt 1963.
+/// Sum of up to six system waveforms and a constant, fitted to samples by least squares without weights, as noise of a
+/// digitiser is the same for all samples. Source: Levenberg 1944; Marquardt 1963.
 class WaveformSum {
  public:
   static constexpr std::size_t most = 6;  ///< parts
@@ -145,7 +153,8 @@ class WaveformSum {
   double start = 0;                ///< time of the first sample [s]
   double squares = 0;              ///< sum of the squared residuals [W^2]
 
-  /// Improves the estimate; false if it does not converge to a sum of positive parts within the samples, which are `interval` apart [s].
+  /// Improves the estimate; false if it does not converge to a sum of positive parts within the samples, which are
+  /// `interval` apart [s].
   [[nodiscard]] bool fit(const SystemWaveform& wave, std::span<const float> y, double interval) noexcept {
     double damping = 1e-3;
     Equations here = equations(wave, y, interval);
@@ -167,8 +176,9 @@ class WaveformSum {
     for (Part& p : parts)
       if (!p.flat) p.spread = p.added;
     const double end = start + static_cast<double>(y.size()) * interval;
-    return std::all_of(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
-                       [&](const Part& p) { return p.power > 0 && p.arrival > start && p.arrival < end && p.added < wave.most_added(); });
+    return std::all_of(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count), [&](const Part& p) {
+      return p.power > 0 && p.arrival > start && p.arrival < end && p.added < wave.most_added();
+    });
   }
 
   /// The same sum of flat parts.
@@ -182,14 +192,16 @@ class WaveformSum {
   }
 
   /// Flat part of the greatest residual.
-  [[nodiscard]] Part greatest_residual(const SystemWaveform& wave, std::span<const float> y, double interval) const noexcept {
+  [[nodiscard]] Part greatest_residual(const SystemWaveform& wave, std::span<const float> y,
+                                       double interval) const noexcept {
     std::array<SystemWaveform::Blend, most> blends{};
     for (std::size_t k = 0; k < count; ++k) blends[k] = wave.blend(parts[k].added);
     Part greatest{.flat = true};
     for (std::size_t i = 0; i < y.size(); ++i) {
       const double time = start + static_cast<double>(i) * interval;
       double residual = static_cast<double>(y[i]) - constant;
-      for (std::size_t k = 0; k < count; ++k) residual -= parts[k].power * wave.at(time - parts[k].arrival, blends[k]).value;
+      for (std::size_t k = 0; k < count; ++k)
+        residual -= parts[k].power * wave.at(time - parts[k].arrival, blends[k]).value;
       if (residual > greatest.power) greatest = {residual, time, 0, true};
     }
     return greatest;
@@ -205,7 +217,8 @@ class WaveformSum {
     double squares = 0;
   };
 
-  [[nodiscard]] Equations equations(const SystemWaveform& wave, std::span<const float> y, double interval) const noexcept {
+  [[nodiscard]] Equations equations(const SystemWaveform& wave, std::span<const float> y,
+                                    double interval) const noexcept {
     Equations e;
     std::array<SystemWaveform::Blend, most> blends{};
     for (std::size_t k = 0; k < count; ++k) blends[k] = wave.blend(parts[k].added);

@@ -12,7 +12,8 @@
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 
-/// Type-erased survey of any receiver: code that runs or samples it compiles once, and the pipeline of each kind in one place.
+/// Type-erased survey of any receiver: code that runs or samples it compiles once, and the pipeline of each kind in one
+/// place.
 class AnySurvey {
  public:
   struct Scratch {
@@ -36,7 +37,8 @@ class AnySurvey {
   template <class Next>
   void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
     simulate(
-        i, end, w, [](const void* n, const Outcome& outcome) { return (*static_cast<const Next*>(n))(outcome); }, &next);
+        i, end, w, [](const void* n, const Outcome& outcome) { return (*static_cast<const Next*>(n))(outcome); },
+        &next);
   }
 
  protected:
@@ -56,11 +58,14 @@ class SurveyOf final : public AnySurvey {
   [[nodiscard]] std::size_t recorded_subrays() const noexcept override { return survey_.recorded_subrays(); }
   [[nodiscard]] double sample_interval() const noexcept override { return survey_.sample_interval(); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept override { return survey_.next_pulse(i); }
-  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override { return survey_(i, static_cast<Own&>(*w).own); }
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override {
+    return survey_(i, static_cast<Own&>(*w).own);
+  }
 
  protected:
   void simulate(PulseIndex i, PulseIndex end, Workspace& w, CallNext call, const void* next) const override {
-    survey_.simulate_in_order(i, end, static_cast<Own&>(*w).own, [&](const Outcome& outcome) { return call(next, outcome); });
+    survey_.simulate_in_order(i, end, static_cast<Own&>(*w).own,
+                              [&](const Outcome& outcome) { return call(next, outcome); });
   }
 
  private:

@@ -23,8 +23,9 @@ struct AssetMatch {
   std::string warning{};                       ///< unusual place of the files; empty if there is none
 };
 
-/// Finds the files that documents name, in the folders of a program. An absolute path is taken as it is. The first folder that contains a
-/// relative one wins. A path that leads out of all folders ranks after the others and gives a warning.
+/// Finds the files that documents name, in the folders of a program. An absolute path is taken as it is. The first
+/// folder that contains a relative one wins. A path that leads out of all folders ranks after the others and gives a
+/// warning.
 class AssetSearch {
  public:
   explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {
@@ -34,7 +35,9 @@ class AssetSearch {
     }
   }
 
-  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept { return folders_; }  ///< absolute, in search order
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept {
+    return folders_;
+  }  ///< absolute, in search order
 
   /// Finds the file of a name. A backslash separates as well.
   [[nodiscard]] AssetMatch find(std::string name) const {
@@ -46,11 +49,12 @@ class AssetSearch {
     return {.problem = problem(name, places, "does not exist")};
   }
 
-  /// Finds the files whose names match a regular expression as a whole: the last component of `pattern` (ECMAScript, without
-  /// back-references). Searches all folders. Time is linear in the length of a name.
+  /// Finds the files whose names match a regular expression as a whole: the last component of `pattern` (ECMAScript,
+  /// without back-references). Searches all folders. Time is linear in the length of a name.
   [[nodiscard]] AssetMatch find_all(const std::string& pattern) const {
     const std::size_t slash = pattern.rfind('/');
-    const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1), name = pattern.substr(slash + 1);
+    const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1),
+                      name = pattern.substr(slash + 1);
     if (!is_simple(name))
       return {.problem = "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
                          " letters, no back-reference, and four counts in braces, none of them after a group"};
@@ -61,10 +65,13 @@ class AssetSearch {
       for (const std::filesystem::path& place : places) {
         std::error_code error;
         std::size_t entries = 0;
-        for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
-          if (++entries > max_entries) return {.problem = "names a folder with more than " + std::to_string(max_entries) + " files"};
+        for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end;
+             entry.increment(error)) {
+          if (++entries > max_entries)
+            return {.problem = "names a folder with more than " + std::to_string(max_entries) + " files"};
           std::error_code ignored;
-          if (!std::regex_match(entry->path().filename().string(), expression) || !entry->is_regular_file(ignored)) continue;
+          if (!std::regex_match(entry->path().filename().string(), expression) || !entry->is_regular_file(ignored))
+            continue;
           match.files.push_back(normal(entry->path()));
           if (match.warning.empty()) match.warning = warning(pattern, match.files.back());
         }
@@ -122,7 +129,8 @@ class AssetSearch {
   }
 
   [[nodiscard]] bool is_inside(const std::filesystem::path& place) const {
-    return std::any_of(folders_.begin(), folders_.end(), [&](const std::filesystem::path& folder) { return holds(folder, place); });
+    return std::any_of(folders_.begin(), folders_.end(),
+                       [&](const std::filesystem::path& folder) { return holds(folder, place); });
   }
 
   /// Warning if the file of a name lies outside the folders; empty otherwise.
@@ -135,7 +143,8 @@ class AssetSearch {
     return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
   }
 
-  [[nodiscard]] std::string problem(const std::string& name, const std::vector<std::filesystem::path>& places, const char* missing) const {
+  [[nodiscard]] std::string problem(const std::string& name, const std::vector<std::filesystem::path>& places,
+                                    const char* missing) const {
     if (name.empty()) return "is empty: expected a path";
     return missing + std::string(": looked for ") + listed(places);
   }

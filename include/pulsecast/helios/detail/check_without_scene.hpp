@@ -18,7 +18,8 @@
 /// Checks of a survey that need no scene.
 namespace PULSECAST_NAMESPACE::helios {
 
-PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
+PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey,
+                                                              const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
   std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {

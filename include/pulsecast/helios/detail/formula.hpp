@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^`, parentheses and functions. Operators have
-/// their usual precedence; all are left-associative. Functions: `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`.
-/// Angles in radians.
+/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^`, parentheses and
+/// functions. Operators have their usual precedence; all are left-associative. Functions: `exp ln sqrt abs cos sin tan
+/// acos asin atan cosh sinh tanh atan2(y, x)`. Angles in radians.
 class Formula {
  public:
   /// Throws a `std::invalid_argument` with the error and its position. Limits: 10,000 characters, parentheses 100 deep.
@@ -61,7 +61,18 @@ class Formula {
  private:
   static constexpr std::size_t depth = 256;  ///< size of the evaluation stack
 
-  enum class Kind : std::uint8_t { number, variable, negative, add, subtract, multiply, divide, power, atan2, function };
+  enum class Kind : std::uint8_t {
+    number,
+    variable,
+    negative,
+    add,
+    subtract,
+    multiply,
+    divide,
+    power,
+    atan2,
+    function
+  };
   struct Step {
     Kind kind = Kind::number;
     double number = 0;
@@ -69,7 +80,8 @@ class Formula {
   };
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw std::invalid_argument("formula '" + std::string(text_.substr(0, 80)) + "' " + what + " at character " + std::to_string(at_ + 1));
+    throw std::invalid_argument("formula '" + std::string(text_.substr(0, 80)) + "' " + what + " at character " +
+                                std::to_string(at_ + 1));
   }
 
   void push(Step step) {
@@ -123,7 +135,8 @@ class Formula {
 
   void signed_power(int deep) {
     bool negative = false;
-    for (skip(); at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+'); skip()) negative ^= text_[at_++] == '-';
+    for (skip(); at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+'); skip())
+      negative ^= text_[at_++] == '-';
     value(deep);
     while (take('^')) {
       const bool minus = take('-');
@@ -150,8 +163,8 @@ class Formula {
       return push({Kind::number, *number});
     }
     std::size_t end = at_;
-    while (end < text_.size() &&
-           ((text_[end] >= 'a' && text_[end] <= 'z') || (text_[end] >= 'A' && text_[end] <= 'Z') || (end > at_ && is_digit(end))))
+    while (end < text_.size() && ((text_[end] >= 'a' && text_[end] <= 'z') ||
+                                  (text_[end] >= 'A' && text_[end] <= 'Z') || (end > at_ && is_digit(end))))
       ++end;
     const std::string_view name = text_.substr(at_, end - at_);
     if (name.empty()) fail("lacks a number, the variable or a function");
@@ -175,13 +188,14 @@ class Formula {
       std::string_view name;
       double (*function)(double);
     };
-    static constexpr Named functions[] = {{"exp", [](double x) { return std::exp(x); }},   {"ln", [](double x) { return std::log(x); }},
-                                          {"sqrt", [](double x) { return std::sqrt(x); }}, {"abs", [](double x) { return std::fabs(x); }},
-                                          {"cos", [](double x) { return std::cos(x); }},   {"sin", [](double x) { return std::sin(x); }},
-                                          {"tan", [](double x) { return std::tan(x); }},   {"acos", [](double x) { return std::acos(x); }},
-                                          {"asin", [](double x) { return std::asin(x); }}, {"atan", [](double x) { return std::atan(x); }},
-                                          {"cosh", [](double x) { return std::cosh(x); }}, {"sinh", [](double x) { return std::sinh(x); }},
-                                          {"tanh", [](double x) { return std::tanh(x); }}};
+    static constexpr Named functions[] = {
+        {"exp", [](double x) { return std::exp(x); }},   {"ln", [](double x) { return std::log(x); }},
+        {"sqrt", [](double x) { return std::sqrt(x); }}, {"abs", [](double x) { return std::fabs(x); }},
+        {"cos", [](double x) { return std::cos(x); }},   {"sin", [](double x) { return std::sin(x); }},
+        {"tan", [](double x) { return std::tan(x); }},   {"acos", [](double x) { return std::acos(x); }},
+        {"asin", [](double x) { return std::asin(x); }}, {"atan", [](double x) { return std::atan(x); }},
+        {"cosh", [](double x) { return std::cosh(x); }}, {"sinh", [](double x) { return std::sinh(x); }},
+        {"tanh", [](double x) { return std::tanh(x); }}};
     const bool two = name == "atan2";
     double (*function)(double) = nullptr;
     for (const Named& f : functions)

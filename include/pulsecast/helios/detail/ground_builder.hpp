@@ -45,27 +45,33 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoT
     else
       all.push_back(part_of(ground(file, source)));
   });
-  if (source.mosaic && !tiles.empty()) naming(source.files.front().string(), [&] { loaded.push_back(part_of(mosaic(tiles))); });
+  if (source.mosaic && !tiles.empty())
+    naming(source.files.front().string(), [&] { loaded.push_back(part_of(mosaic(tiles))); });
   return loaded;
 }
 
-/// Reads a raster by the extension of its file. Numbers of missing heights, scale and size of pixels are those of `source`.
-PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::filesystem::path& file, const GeoTiffSource& source) {
+/// Reads a raster by the extension of its file. Numbers of missing heights, scale and size of pixels are those of
+/// `source`.
+PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::filesystem::path& file,
+                                                                 const GeoTiffSource& source) {
   add_files({file});
   add_files(io::world_files_of(file));
   if (io::is_ascii_grid(file)) {
-    io::AsciiGrid grid = io::read_ascii_grid(file, {.vertical_scale = source.height_scale.value_or(1), .missing = source.missing});
+    io::AsciiGrid grid =
+        io::read_ascii_grid(file, {.vertical_scale = source.height_scale.value_or(1), .missing = source.missing});
     warn(grid.warnings);
     return {std::move(grid.raster)};
   }
   if (io::is_png(file)) {
     io::PngHeightSettings settings{.vertical_scale = source.height_scale.value_or(1)};
-    if (source.missing && *source.missing >= 0 && *source.missing <= 65535 && std::floor(*source.missing) == *source.missing)
+    if (source.missing && *source.missing >= 0 && *source.missing <= 65535 &&
+        std::floor(*source.missing) == *source.missing)
       settings.missing = static_cast<std::uint16_t>(*source.missing);
     if (source.pixel_size) settings.pixel = Vec2(*source.pixel_size);
     return {io::read_png_heights(file, settings)};
   }
-  io::GeoTiff tiff = io::read_geotiff(file, {.vertical_scale = source.height_scale, .missing = source.missing, .packed = true});
+  io::GeoTiff tiff =
+      io::read_geotiff(file, {.vertical_scale = source.height_scale, .missing = source.missing, .packed = true});
   warn(tiff.warnings);
   return {std::move(tiff.raster), std::move(tiff.colours)};
 }
@@ -74,18 +80,21 @@ PULSECAST_INLINE std::vector<PlacedRaster> SceneBuilder::rasters() {
   std::vector<PlacedRaster> all;
   for (const PartSettings& part : settings_.parts)
     if (const auto* const source = std::get_if<GeoTiffSource>(&part.source))
-      for (const std::filesystem::path& file : source->files) all.push_back({ground(file, *source), placement_of(part, part.transform)});
+      for (const std::filesystem::path& file : source->files)
+        all.push_back({ground(file, *source), placement_of(part, part.transform)});
   return all;
 }
 
 /// Reads a raster of heights.
 PULSECAST_INLINE Raster SceneBuilder::ground(const std::filesystem::path& file, const GeoTiffSource& source) {
   LoadedRaster read = this->raster(file, source);
-  if (!read.colours.empty()) warn({file.string() + ": has a colour table, as a map of classes; its numbers are taken as heights"});
+  if (!read.colours.empty())
+    warn({file.string() + ": has a colour table, as a map of classes; its numbers are taken as heights"});
   Raster raster = std::move(read.raster);
   raster.packed.offset += source.height_offset;
   if (source.height_offset != 0)
-    for (float& height : raster.heights) height = static_cast<float>(static_cast<double>(height) + source.height_offset);
+    for (float& height : raster.heights)
+      height = static_cast<float>(static_cast<double>(height) + source.height_offset);
   return raster;
 }
 

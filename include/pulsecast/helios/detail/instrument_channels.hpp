@@ -20,8 +20,9 @@ namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-[[nodiscard]] inline std::vector<SurveyChannel> instrument_channels(const ScannerSettings& scanner, const LegScannerSettings& settings,
-                                                                    double duration, const InstrumentOptions& options) {
+[[nodiscard]] inline std::vector<SurveyChannel> instrument_channels(const ScannerSettings& scanner,
+                                                                    const LegScannerSettings& settings, double duration,
+                                                                    const InstrumentOptions& options) {
   if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
   scanner.validate();
   settings.validate();
@@ -36,17 +37,18 @@ namespace detail {
     const ChannelSettings& channel = scanner.channels[c];
     SurveyOptic optic;
     if (fires) optic = survey_optic(channel, settings, rate, options.boresight, {options.optic_time});
-    channels.emplace_back(
-        std::move(optic),
-        Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, settings), .receiver = receivers.of_channel[c]});
+    channels.emplace_back(std::move(optic), Scanner{.pulse_rate = rate,
+                                                    .pulses = slots,
+                                                    .laser = survey_laser(channel, settings),
+                                                    .receiver = receivers.of_channel[c]});
   }
   return channels;
 }
 
 }  // namespace detail
 
-PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,
-                                        const InstrumentOptions& options)
+PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings,
+                                        double duration, const InstrumentOptions& options)
     : channels_(detail::instrument_channels(scanner, settings, duration, options)) {}
 
 }  // namespace PULSECAST_NAMESPACE::helios

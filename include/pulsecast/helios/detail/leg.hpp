@@ -45,8 +45,8 @@ auto visit_path(const AnyPath& path, const Function& function) noexcept {
 
 /// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
-  using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>, std::shared_ptr<const MulticopterFlight>,
-                               std::shared_ptr<const GroundVehicleDrive>>;
+  using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>,
+                               std::shared_ptr<const MulticopterFlight>, std::shared_ptr<const GroundVehicleDrive>>;
   AnyPath path{};
   Tick start{};  ///< start time on the clock of the plan
 
@@ -56,7 +56,8 @@ struct SurveyPath {
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
-    return detail::visit_path(path, [&](const auto& p) noexcept { return find_poses(p, t + start, all_lanes(), poses); });
+    return detail::visit_path(path,
+                              [&](const auto& p) noexcept { return find_poses(p, t + start, all_lanes(), poses); });
   }
 };
 
@@ -73,15 +74,16 @@ struct SurveyNoise {
            std::none_of(attitude.begin(), attitude.end(), [](const auto& n) { return n.has_value(); });
   }
 
-  [[nodiscard]] Vec3 draw(const std::array<std::optional<NoiseSettings>, 3>& noise, PulseIndex slot, Purpose purpose) const noexcept {
+  [[nodiscard]] Vec3 draw(const std::array<std::optional<NoiseSettings>, 3>& noise, PulseIndex slot,
+                          Purpose purpose) const noexcept {
     Vec3 out{};
     for (int k = 0; k < 3; ++k) {
       const std::optional<NoiseSettings>& n = noise[static_cast<std::size_t>(k)];
       if (!n) continue;
       const PulseIndex moment = n->lifespan > 0 ? slot / static_cast<PulseIndex>(n->lifespan) : 0;
       const RandomKey key{.seed = seed, .pulse = moment, .subray = static_cast<std::uint32_t>(k), .purpose = purpose};
-      double value =
-          n->distribution == NoiseDistribution::normal ? n->mean + n->deviation * normal(key) : n->low + (n->high - n->low) * uniform(key);
+      double value = n->distribution == NoiseDistribution::normal ? n->mean + n->deviation * normal(key)
+                                                                  : n->low + (n->high - n->low) * uniform(key);
       if (n->clipped) value = std::clamp(value, n->clip_low, std::max(n->clip_low, n->clip_high));
       out[k] = value;
     }
@@ -89,12 +91,13 @@ struct SurveyNoise {
   }
 };
 
-/// One leg of a survey: an instrument on a platform. Where the platform errs, it reports poses as documents define them: by noise of each
-/// slot, which `PoseErrors` has not.
+/// One leg of a survey: an instrument on a platform. Where the platform errs, it reports poses as documents define
+/// them: by noise of each slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
   /// `known` is the time for which the path is known, if that ends within the last slot.
-  SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise, std::optional<Tick> known = {})
+  SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise,
+            std::optional<Tick> known = {})
       : truth_(std::move(path), mount, std::move(instrument)),
         noise_(std::move(noise)),
         noisy_(!noise_.none()),
@@ -115,8 +118,8 @@ class SurveyLeg {
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
       auto reported = out.reports[lane] != 0 ? out.reported[lane] : out.pose[lane];
       reported.position += noise_.draw(noise_.position, slot, Purpose::position_noise);
-      reported.rotation = reported.rotation * rotation_about(axis::right, turn.x) * rotation_about(axis::forward, turn.y) *
-                          rotation_about(axis::up, turn.z);
+      reported.rotation = reported.rotation * rotation_about(axis::right, turn.x) *
+                          rotation_about(axis::forward, turn.y) * rotation_about(axis::up, turn.z);
       out.report(lane, reported);
     }
     return out;

@@ -42,8 +42,8 @@ struct LegPath {
   std::optional<double> clock{};  ///< start time by the clock of a trajectory that sets that of the survey [s]
 };
 
-/// Paths of all legs of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
-/// `FileError` of a trajectory. Settings and options must outlive it.
+/// Paths of all legs of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg
+/// and attribute, or a `FileError` of a trajectory. Settings and options must outlive it.
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)
@@ -59,7 +59,9 @@ class LegPaths {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Number for messages, rounded to three digits after the point.
-  [[nodiscard]] static std::string brief(double value) { return pulsecast::detail::to_text(std::round(value * 1e3) / 1e3); }
+  [[nodiscard]] static std::string brief(double value) {
+    return pulsecast::detail::to_text(std::round(value * 1e3) / 1e3);
+  }
 
   /// True if a leg goes on along the plan of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
@@ -67,8 +69,10 @@ class LegPaths {
       const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);
       return before && *before == plan;
     };
-    const auto* const flight = k > 0 ? std::get_if<std::shared_ptr<const MulticopterFlight>>(&paths_[k].path.path) : nullptr;
-    const auto* const drive = k > 0 ? std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path) : nullptr;
+    const auto* const flight =
+        k > 0 ? std::get_if<std::shared_ptr<const MulticopterFlight>>(&paths_[k].path.path) : nullptr;
+    const auto* const drive =
+        k > 0 ? std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path) : nullptr;
     return (flight && shares(*flight)) || (drive && shares(*drive));
   }
 
@@ -99,10 +103,11 @@ class LegPaths {
       require_finite(leg_name(k) + ": position (length)", length(at), "m");
       if (survey_.leg_offset && options_.leg_noise)
         for (int axis = 0; axis < 3; ++axis)
-          at[axis] += survey_.leg_offset->mean + survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,
-                                                                                         .pulse = k,
-                                                                                         .subray = static_cast<std::uint32_t>(axis),
-                                                                                         .purpose = Purpose::position_noise});
+          at[axis] += survey_.leg_offset->mean +
+                      survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,
+                                                              .pulse = k,
+                                                              .subray = static_cast<std::uint32_t>(axis),
+                                                              .purpose = Purpose::position_noise});
       places_.push_back(k > 0 && is_stationary(k - 1) ? places_.back() : at);
     }
   }
@@ -132,8 +137,10 @@ class LegPaths {
   [[nodiscard]] double speed_of(std::size_t k) const {
     const double speed = survey_.legs[k].platform.speed;
     if (!(speed > 0))
-      throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, as the leg would never end otherwise");
-    if (survey_.platform.kind != PlatformKind::linear_path) require_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
+      throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s",
+                         "greater than 0, as the leg would never end otherwise");
+    if (survey_.platform.kind != PlatformKind::linear_path)
+      require_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
     return speed;
   }
 
@@ -219,11 +226,14 @@ class LegPaths {
         continue;
       }
       std::size_t end = k + 1;
-      while (end < last && !is_stationary(end) && survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed) ++end;
+      while (end < last && !is_stationary(end) &&
+             survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed)
+        ++end;
       if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only gives the end of the path
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
-      const GroundVehicleSettings settings{.speed = speed_of(k), .start_height = height, .height_without_ground = places_[k].z};
+      const GroundVehicleSettings settings{
+          .speed = speed_of(k), .start_height = height, .height_without_ground = places_[k].z};
       const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, ground, settings));
       for (const std::string& warning : way->warnings()) warn(leg_name(k) + ": " + warning);
       height = way->at(way->duration()).position.z;
@@ -242,8 +252,8 @@ class LegPaths {
     const double way = std::hypot(places_[k + 1].x - places_[k].x, places_[k + 1].y - places_[k].y);
     const double expected = way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
     if (paths_[k].duration > 2 * expected)
-      warn(leg_name(k) + ": the vehicle takes " + brief(paths_[k].duration) + " s for " + brief(way) + " m at up to " + brief(s.speed) +
-           " m/s; turns and steep ground take time");
+      warn(leg_name(k) + ": the vehicle takes " + brief(paths_[k].duration) + " s for " + brief(way) + " m at up to " +
+           brief(s.speed) + " m/s; turns and steep ground take time");
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
@@ -258,12 +268,13 @@ class LegPaths {
       const auto pose = !ever_drives ? Tripod{at}.at({})
                         : k > 0      ? paths_[k - 1].path.at(Tick::of_seconds(paths_[k - 1].duration))
                                      : paths_[next].path.at({});
-      paths_[k].path.path = std::make_shared<const Waypoints>(std::vector<TimedPose>{{0, pose.position, pose.rotation}});
+      paths_[k].path.path =
+          std::make_shared<const Waypoints>(std::vector<TimedPose>{{0, pose.position, pose.rotation}});
     }
   }
 
-  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start of the next one. A flight also
-  /// completes its turn towards the following waypoint.
+  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start of the next
+  /// one. A flight also completes its turn towards the following waypoint.
   template <class Plan>
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
@@ -283,7 +294,8 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings> told;  // columns and separator per file, each from the first leg that gives it
+    std::map<std::string, TrajectorySettings>
+        told;  // columns and separator per file, each from the first leg that gives it
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");

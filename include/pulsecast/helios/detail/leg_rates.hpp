@@ -24,7 +24,8 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// True if the head turns away from its stop angle.
 [[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
-  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) || (leg.head_speed < 0 && leg.head_stop > leg.head_start);
+  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) ||
+         (leg.head_speed < 0 && leg.head_stop > leg.head_start);
 }
 
 /// True if a leg waits for a head that does not turn.

@@ -43,8 +43,10 @@ namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-/// Spectra in folders, for the wavelengths of the channels. An unreadable folder gives a warning, as no part may need it.
-[[nodiscard]] inline io::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
+/// Spectra in folders, for the wavelengths of the channels. An unreadable folder gives a warning, as no part may need
+/// it.
+[[nodiscard]] inline io::SpectralLibrary spectra_of(const SurveySettings& survey,
+                                                    const std::vector<std::filesystem::path>& folders) {
   io::SpectralLibrary all;
   for (const std::filesystem::path& folder : folders) {
     std::error_code ignored;
@@ -68,7 +70,8 @@ namespace detail {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Detectors of a survey: waveform settings of its channels within the limits of batches and files, with a warning for each change.
+/// Detectors of a survey: waveform settings of its channels within the limits of batches and files, with a warning for
+/// each change.
 class WaveformLimits {
  public:
   WaveformLimits(const SurveySettings& survey, const Simulation::Settings& settings)
@@ -77,8 +80,10 @@ class WaveformLimits {
   /// Scanner with the smallest bin size in all channels, as a batch has one sample interval.
   [[nodiscard]] ScannerSettings sampled_alike(ScannerSettings scanner, std::vector<std::string>& warnings) const {
     double finest = finest_bin(scanner);
-    if (std::any_of(scanner.channels.begin(), scanner.channels.end(), [&](const auto& c) { return c.waveform.bin_size > finest; }))
-      warnings.push_back("scanner '" + scanner.id + "': its channels have bins of different size; all are sampled by the smallest");
+    if (std::any_of(scanner.channels.begin(), scanner.channels.end(),
+                    [&](const auto& c) { return c.waveform.bin_size > finest; }))
+      warnings.push_back("scanner '" + scanner.id +
+                         "': its channels have bins of different size; all are sampled by the smallest");
     if (las_) finest = las_bins(finest, warnings);
     for (ChannelSettings& c : scanner.channels) c.waveform.bin_size = finest;
     return scanner;
@@ -90,12 +95,14 @@ class WaveformLimits {
     const double longest = (most - 0.5) * s.sample_interval;  // margin for rounding: half a sample
     if (s.record_length <= longest) return;
     s.record_length = longest;
-    warnings.push_back(name_ + ": waveforms are cut after " + xml_number(std::round(longest * 1e12) / 1e3) + " ns, " + xml_number(most) +
-                       " samples, the maximum " + (las_ ? "of LAS" : "kept") + "; longer bins reach farther");
+    warnings.push_back(name_ + ": waveforms are cut after " + xml_number(std::round(longest * 1e12) / 1e3) + " ns, " +
+                       xml_number(most) + " samples, the maximum " + (las_ ? "of LAS" : "kept") +
+                       "; longer bins reach farther");
   }
 
  private:
-  /// Bin size for LAS, whose sample interval is in whole picoseconds [s]. Source: LAS 1.4 R15, Waveform Packet Descriptor.
+  /// Bin size for LAS, whose sample interval is in whole picoseconds [s]. Source: LAS 1.4 R15, Waveform Packet
+  /// Descriptor.
   [[nodiscard]] double las_bins(double bin, std::vector<std::string>& warnings) const {
     constexpr double rounding = 1e-6;  // [ps]
     const double picoseconds = bin * 1e12;
@@ -115,13 +122,14 @@ class WaveformLimits {
   const std::vector<ChannelSettings>& channels = survey.scanner.channels;
   for (const ChannelSettings& channel : channels)
     if (channel.wavelength != channels.front().wavelength)
-      throw SettingError("wavelength_nm (of another channel, with a preset of <medium>)", units::nanometre.number(channel.wavelength), "nm",
+      throw SettingError("wavelength_nm (of another channel, with a preset of <medium>)",
+                         units::nanometre.number(channel.wavelength), "nm",
                          "that of the first; give the coefficients of the medium instead");
   return channels.front().wavelength;
 }
 
-/// Transport of a survey whose scene has `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap, and presets beyond
-/// the wavelength
+/// Transport of a survey whose scene has `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap,
+/// and presets beyond the wavelength
 [[nodiscard]] inline LightPaths light_paths(const SurveySettings& survey, bool library_physics) {
   const SceneSettings& scene = survey.scene;
   const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
@@ -166,7 +174,8 @@ class LoadedSimulation final : public Simulation {
     all.insert(all.end(), meshes_.begin(), meshes_.end());
     scene_.emplace(all, MovingIndexSettings{.to = 1});
     const auto ground = [&](const Vec2& at, auto... near) { return scene_->ground_height(at, near...); };
-    const SurveyBuildOptions options{settings_.seed, settings_.platform_noise, settings_.leg_noise, settings_.leg_places};
+    const SurveyBuildOptions options{settings_.seed, settings_.platform_noise, settings_.leg_noise,
+                                     settings_.leg_places};
     compiled_.emplace(compile_survey(survey_, ground, options));
     const double duration = compiled_->source.duration().seconds();
     const bool moves = std::any_of(all.begin(), all.end(), [](const SurveyPart& p) { return p.motion != nullptr; });
@@ -183,11 +192,15 @@ class LoadedSimulation final : public Simulation {
 
   [[nodiscard]] Scene scene() const override {
     const SurveyScene& s = *scene_;
-    Scene out{
-        .least = s.bounds().min, .most = s.bounds().max, .parts = s.parts().size(), .memory = s.memory(), .empty = s.bounds().empty()};
+    Scene out{.least = s.bounds().min,
+              .most = s.bounds().max,
+              .parts = s.parts().size(),
+              .memory = s.memory(),
+              .empty = s.bounds().empty()};
     for (const SurveyPart& part : s.parts()) {
       out.moving += part.motion ? 1 : 0;
-      if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh<>>>(&part.geometry)) out.triangles += (*mesh)->size();
+      if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh<>>>(&part.geometry))
+        out.triangles += (*mesh)->size();
     }
     return out;
   }
@@ -195,7 +208,9 @@ class LoadedSimulation final : public Simulation {
   [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(scene_->parts()); }
   [[nodiscard]] PointColours colours() const override { return colours_of(*scene_); }
 
-  RunSummary run(const RunOptions& options, const Sink& sink) const override { return pulsecast::run(*pipeline_, options, sink); }
+  RunSummary run(const RunOptions& options, const Sink& sink) const override {
+    return pulsecast::run(*pipeline_, options, sink);
+  }
 
   void receive(const Receiving& how) override {
     std::vector<std::string> odd;
@@ -276,7 +291,8 @@ class LoadedSimulation final : public Simulation {
   template <class Width>
   void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& odd) {
     const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
-    const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal, library = settings_.library_physics;
+    const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal,
+               library = settings_.library_physics;
     const auto units_by = [&](const auto& receiver_unit) {
       return ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
         const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
@@ -306,7 +322,8 @@ class LoadedSimulation final : public Simulation {
   template <class Detector, class Light>
   void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units, const Light& light) {
     using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector, Light>;
-    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, light, seed_));
+    pipeline_ =
+        std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, light, seed_));
   }
 
   SurveySettings survey_;
@@ -324,7 +341,8 @@ class LoadedSimulation final : public Simulation {
 
 }  // namespace detail
 
-PULSECAST_INLINE std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey, const Simulation::Settings& settings,
+PULSECAST_INLINE std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
+                                                             const Simulation::Settings& settings,
                                                              const PartProvider& provider) {
   return std::make_unique<detail::LoadedSimulation>(survey, settings, provider);
 }

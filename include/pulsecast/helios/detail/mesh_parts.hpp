@@ -19,13 +19,16 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Files are imported by child processes, so that a damaged one ends as an error.
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const MeshSource& source) {
-  io::MeshFileSettings settings{.unit = source.unit, .materials = source.materials, .spectra = options_.spectra, .isolated = true};
+  io::MeshFileSettings settings{
+      .unit = source.unit, .materials = source.materials, .spectra = options_.spectra, .isolated = true};
   if (source.up != MeshUp::file) settings.up = source.up == MeshUp::y ? io::UpAxis::y : io::UpAxis::z;
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    const bool city = text::lower(file.extension().string()) == ".gml" || text::lower(file.extension().string()) == ".citygml";
-    if (city && !options_.city_models) throw FileError(file.string(), "", "is a CityGML file, which this program was built without");
-    io::MeshFile read =
-        city ? options_.city_models(file, settings, options_.threads) : io::read_mesh_file(file, settings, options_.threads);
+    const bool city =
+        text::lower(file.extension().string()) == ".gml" || text::lower(file.extension().string()) == ".citygml";
+    if (city && !options_.city_models)
+      throw FileError(file.string(), "", "is a CityGML file, which this program was built without");
+    io::MeshFile read = city ? options_.city_models(file, settings, options_.threads)
+                             : io::read_mesh_file(file, settings, options_.threads);
     warn(read.warnings);
     add_files(read.files);
     if (read.placements.empty()) warn({file.string() + ": is left out"});

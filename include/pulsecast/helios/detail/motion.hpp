@@ -47,7 +47,8 @@ struct MotionStep {
     about(r->center);
     out.move.rotation = rotation_about(r->axis, r->angle);
     shift = r->glide.value_or(0) * r->axis;
-  } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal and a point reflection
+  } else if (const auto* f =
+                 std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal and a point reflection
     out = {{rotation_about(f->normal, pi), {}}, -1, 1};
     shift = f->shift.value_or(Vec3{});
   } else if (const auto* s = std::get_if<RotoreflectionMotion>(&m.kind)) {

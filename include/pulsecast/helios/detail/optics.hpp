@@ -38,8 +38,8 @@ struct OpticClock {
 
 namespace detail {
 
-/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to `WaveformSettings::max_samples`
-/// of them [s].
+/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to
+/// `WaveformSettings::max_samples` of them [s].
 [[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
   constexpr double most = WaveformSettings::max_samples;
   const double bin = channel.waveform.bin_size, length = channel.pulse_length;
@@ -58,9 +58,10 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg asks for a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the width of the device
-/// about the same centre.
-[[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic, const LegScannerSettings& leg) {
+/// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the
+/// width of the device about the same centre.
+[[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
+                                            const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
   const double half = std::min(effective, scan_angle_of(channel, leg));
   MirrorGate gate{leg.vertical_angle_min.value_or(-half), leg.vertical_angle_max.value_or(half)};
@@ -89,48 +90,56 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within the limits of the device, " + pulsecast::detail::to_text(channel.scan_frequency_min) + " to " +
-                           (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
+                       "within the limits of the device, " + pulsecast::detail::to_text(channel.scan_frequency_min) +
+                           " to " + (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
 }
 
-/// Rate of an oscillating mirror: within the device's product of angle and rate, and then in cycles of whole pulses [Hz].
-[[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic, const LegScannerSettings& leg,
-                                             double pulse_rate) {
+/// Rate of an oscillating mirror: within the device's product of angle and rate, and then in cycles of whole pulses
+/// [Hz].
+[[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic,
+                                             const LegScannerSettings& leg, double pulse_rate) {
   const double angle = scan_angle_of(channel, leg);
-  const double f = angle * leg.scan_frequency > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_frequency;
+  const double f =
+      angle * leg.scan_frequency > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_frequency;
   const double pulses = std::floor(pulse_rate / f);
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
 
-/// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are those of the document.
-[[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c, const LegScannerSettings& leg,
-                                                          double pulse_rate) {
+/// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are
+/// those of the document.
+[[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
+                                                          const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
   std::vector<std::string> notes;
   const auto brief = [](double x) { return pulsecast::detail::to_text(std::round(x * 1e3) / 1e3); };
-  const auto note = [&](const std::string& text) { notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text); };
+  const auto note = [&](const std::string& text) {
+    notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
+  };
   if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_frequency > 0) {
     const double asked = leg.scan_frequency, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
     if (std::fabs(f - asked) > 1e-4 * asked)
       note("scanFreq_hz of " + brief(asked) + " is taken as " + brief(f) +
-           (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and" : ",") +
+           (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and"
+                                                                           : ",") +
            " for a cycle is a whole number of pulses, here " + brief(pulse_rate / f));
   }
   if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic);
       mirror && leg.scan_frequency > 0 && channel.scan_angle_max > 0) {
     const MirrorGate gate = mirror_gate(channel, *mirror, leg);
     const double sweep = channel.scan_angle_max;
-    const std::string within = brief(degrees(std::max(gate.low, -sweep))) + " to " + brief(degrees(std::min(gate.high, sweep))) + " deg";
+    const std::string within =
+        brief(degrees(std::max(gate.low, -sweep))) + " to " + brief(degrees(std::min(gate.high, sweep))) + " deg";
     if (gate.is_cut && !gate.is_limited)
-      note("verticalAngleMin_deg and verticalAngleMax_deg reach beyond the mirror's sweep, -" + brief(degrees(sweep)) + " to " +
-           brief(degrees(sweep)) + " deg: pulses leave from " + within);
+      note("verticalAngleMin_deg and verticalAngleMax_deg reach beyond the mirror's sweep, -" + brief(degrees(sweep)) +
+           " to " + brief(degrees(sweep)) + " deg: pulses leave from " + within);
     if (gate.is_limited && c > 0) note("verticalAngleMin_deg and verticalAngleMax_deg are limited to " + within);
   }
   if (c == 0) return notes;
   if (leg.scan_angle && scan_angle_of(channel, leg) < *leg.scan_angle)
     note("scanAngle_deg is limited to " + brief(degrees(channel.scan_angle_max)));
   if (head_rate(channel, leg) != head_rate(scanner.channels[0], leg))
-    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_speed_max)) + ", unlike that of the first channel");
+    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_speed_max)) +
+         ", unlike that of the first channel");
   return notes;
 }
 
@@ -145,7 +154,8 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
     ahead = active;
-    if (!(leg.scan_frequency > 0)) throw SettingError("scanFreq_hz", leg.scan_frequency, "Hz", "greater than 0 for an oscillating mirror");
+    if (!(leg.scan_frequency > 0))
+      throw SettingError("scanFreq_hz", leg.scan_frequency, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
     return OscillatingMirror{// that turns round in 100 pulses at most
                              .cycles_per_second = f,
@@ -159,8 +169,10 @@ struct OpticBuilder {
     const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
-    return PolygonMirror{
-        .lines_per_second = f, .sweep = std::min(sweep, pi), .angle_min = std::max(low, -pi), .angle_max = std::min(high, pi)};
+    return PolygonMirror{.lines_per_second = f,
+                         .sweep = std::min(sweep, pi),
+                         .angle_min = std::max(low, -pi),
+                         .angle_max = std::min(high, pi)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
@@ -175,8 +187,9 @@ struct OpticBuilder {
     ahead = active;
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
     tilt = optic.fibers > 1 ? -angle / n : 0;
-    return FiberArray{
-        .fibers = static_cast<std::uint32_t>(optic.fibers), .fibers_per_second = pulse_rate, .half_angle = angle * (n - 1) / n};
+    return FiberArray{.fibers = static_cast<std::uint32_t>(optic.fibers),
+                      .fibers_per_second = pulse_rate,
+                      .half_angle = angle * (n - 1) / n};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RisleyOptic& optic) {
@@ -199,7 +212,8 @@ struct OpticBuilder {
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
 }
 
-/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as no beam meets them.
+/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as
+/// no beam meets them.
 inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
@@ -213,11 +227,12 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 
 }  // namespace detail
 
-/// Optic of a channel in a leg. Documents give the beam origin along the axes of the platform, like that of the mount: the two add up.
-/// `boresight` (rotation of the instrument on the body) does not turn it; heading and head do. Throws a `SettingError` with the attribute
-/// at fault.
-[[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg, double pulse_rate,
-                                              const Rotation& boresight = no_rotation, const OpticClock& clock = {}) {
+/// Optic of a channel in a leg. Documents give the beam origin along the axes of the platform, like that of the mount:
+/// the two add up. `boresight` (rotation of the instrument on the body) does not turn it; heading and head do. Throws a
+/// `SettingError` with the attribute at fault.
+[[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
+                                              double pulse_rate, const Rotation& boresight = no_rotation,
+                                              const OpticClock& clock = {}) {
   if (leg.active) detail::require_scan_frequency(channel, leg);
   detail::OpticBuilder build{channel, leg, pulse_rate, clock.active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
@@ -226,7 +241,9 @@ inline void require_finite(const char* field, const Formula& error, const std::p
                  conjugate(boresight) * channel.beam_origin.position};
   const double rate = head_rate(channel, leg);
   out.head = {.rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
-  const auto formula = [](const std::string& text) { return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA"); };
+  const auto formula = [](const std::string& text) {
+    return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA");
+  };
   out.deflection_error = formula(channel.errors.deflection);
   out.head_error = formula(channel.errors.head);
   out.range_error = formula(channel.errors.range);
@@ -238,7 +255,8 @@ inline void require_finite(const char* field, const Formula& error, const std::p
   return out;
 }
 
-/// Laser of a channel in a leg. A given beam quality puts the waist at the exit; quality and divergence give its diameter.
+/// Laser of a channel in a leg. A given beam quality puts the waist at the exit; quality and divergence give its
+/// diameter.
 [[nodiscard]] inline Laser survey_laser(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double divergence = leg.divergence.value_or(channel.divergence);
   Laser laser{.wavelength = channel.wavelength,
@@ -252,18 +270,20 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 
 namespace detail {
 
-/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of the factor has no
-/// effect, as noise is symmetric.
+/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of
+/// the factor has no effect, as noise is symmetric.
 [[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
   const Formula times(channel.errors.range_noise, "t");
-  const double first = std::max(channel.range_min, 0.01), last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
+  const double first = std::max(channel.range_min, 0.01),
+               last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
   constexpr int rows = 2000;
   std::vector<DeviationAtRange> table;
   for (int i = 0; i <= rows && (i == 0 || first < last); ++i) {
     const double range = first * std::pow(last / first, i / static_cast<double>(rows)),
                  deviation = channel.accuracy * std::fabs(times(range));
     if (!std::isfinite(deviation))
-      throw SettingError("distanceMeasurementError at t", range, "m", "a formula with a finite value from rangeMin_m to rangeMax_m");
+      throw SettingError("distanceMeasurementError at t", range, "m",
+                         "a formula with a finite value from rangeMin_m to rangeMax_m");
     table.push_back({range, deviation});
   }
   return {.deviations = std::move(table)};
@@ -271,8 +291,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a `SettingError` or a
-/// `std::invalid_argument` if the noise formula is invalid.
+/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a
+/// `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
 [[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
   const bool by_formula = !channel.errors.range_noise.empty();
   const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
@@ -285,25 +305,29 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for; empty if there is
-/// nothing to tell.
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for;
+/// empty if there is nothing to tell.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
-  return "light of " + pulsecast::detail::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
-         pulsecast::detail::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
-         (receiver.aerosols == AerosolModel::kim ? "" : ", and from 6 km on; --libraryPhysics has one for haze and fog");
+  return "light of " + pulsecast::detail::to_text(std::round(wavelength * 1e10) / 10) +
+         " nm in air of a visibility of " + pulsecast::detail::to_text(receiver.visibility / 1e3) +
+         " km: the formula of its extinction holds from 400 to 1600 nm" +
+         (receiver.aerosols == AerosolModel::kim ? ""
+                                                 : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }
 
-/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are one-way times of
-/// light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true ranges. By the library's
-/// physics they are timed by their peaks, and where light goes on: between the surface of water and its bottom a mean range says nothing.
-/// Its threshold is that of `WaveformSettings`, unless the scanner has another than that of HELIOS++, which is less than a photon.
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
+/// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
+/// ranges. By the library's physics they are timed by their peaks, and where light goes on: between the surface of
+/// water and its bottom a mean range says nothing. Its threshold is that of `WaveformSettings`, unless the scanner has
+/// another than that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;
   out.sample_interval = detail::limited_bin(channel);
-  if (!library_physics || channel.received_power_min != ChannelSettings{}.received_power_min) out.threshold = channel.received_power_min;
+  if (!library_physics || channel.received_power_min != ChannelSettings{}.received_power_min)
+    out.threshold = channel.received_power_min;
   if (!library_physics) {
     if (!follows_light) out.timing = EchoTiming::true_range;
     out.shape_divisor = 3.5;

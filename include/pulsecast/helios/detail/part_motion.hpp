@@ -19,8 +19,8 @@
 namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Motion at constant rates that equals all motions of a sequence, once per `step` [s].
-[[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre,
-                                            double step) {
+[[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence,
+                                            const Vec3& scene_centre, double step) {
   if (const std::string problem = motion_problem(sequence); !problem.empty())
     throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': motions (number)",
                        static_cast<double>(sequence.motions.size()), "", problem);
@@ -32,8 +32,10 @@ namespace PULSECAST_NAMESPACE::helios::detail {
   return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .rate = turn.rate};
 }
 
-/// Motion of a part that has at least one sequence, with a step in each `step` [s]. Throws a `SettingError` with part and sequence.
-[[nodiscard]] inline std::shared_ptr<const PartMotion> part_motion(const PartSettings& part, const Vec3& scene_centre, double step) {
+/// Motion of a part that has at least one sequence, with a step in each `step` [s]. Throws a `SettingError` with part
+/// and sequence.
+[[nodiscard]] inline std::shared_ptr<const PartMotion> part_motion(const PartSettings& part, const Vec3& scene_centre,
+                                                                   double step) {
   std::vector<MotionSequence> sequences;
   std::optional<std::size_t> again;
   std::map<std::string, std::size_t> seen;
@@ -43,7 +45,8 @@ namespace PULSECAST_NAMESPACE::helios::detail {
     if (s->loop > 0) steady.duration = step * s->loop;
     sequences.push_back({.motions = {steady}});
     if (s->loop == 0 || !s->next) break;
-    const auto next = std::find_if(part.motions.begin(), part.motions.end(), [&](const auto& m) { return m.id == *s->next; });
+    const auto next =
+        std::find_if(part.motions.begin(), part.motions.end(), [&](const auto& m) { return m.id == *s->next; });
     if (next == part.motions.end()) break;
     if (const auto back = seen.find(next->id); back != seen.end()) {
       again = back->second;

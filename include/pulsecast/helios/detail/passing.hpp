@@ -20,7 +20,8 @@ namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Time after `from` at which a plan is horizontally nearest to waypoint `number` at `place` [s].
 template <class Plan>
-[[nodiscard]] double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
+[[nodiscard]] double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from,
+                                    double whole) {
   const auto distance = [&](double t) {
     const Tick tick = Tick::of_seconds(t);
     Vec3 off = -place;
@@ -59,7 +60,8 @@ template <class Plan>
   return 0.5 * (low + high);
 }
 
-/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are below 1 cm.
+/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are
+/// below 1 cm.
 [[nodiscard]] inline MulticopterFlight flight_over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
   const std::vector<FlightPoint> wanted = points;
   MulticopterFlight flight = plan_multicopter(points, s);

@@ -41,8 +41,8 @@ struct ReceiverGroups {
     }
   }
 
-  /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all channels of a group may
-  /// have been changed alike.
+  /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all
+  /// channels of a group may have been changed alike.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;
@@ -61,7 +61,8 @@ struct ReceiverGroups {
 /// Receiver of a channel for `Survey`. Noise is a quarter of the least power of an echo.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, FullWaveform<Width>> survey_receiver_unit(const ChannelSettings& channel,
-                                                                                    const WaveformSettings& waveform, bool noisy) {
+                                                                                    const WaveformSettings& waveform,
+                                                                                    bool noisy) {
   ReceiverNoise noise;
   if (noisy) noise.deviation = 0.25 * channel.received_power_min;
   return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), survey_receiver(channel),
@@ -72,15 +73,17 @@ template <EchoWidth Width>
 template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
-/// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth of the pulse. Noise
-/// is a sixth of the least power of an echo, so that false echoes are rare though it listens to the whole gate.
+/// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth
+/// of the pulse. Noise is a sixth of the least power of an echo, so that false echoes are rare though it listens to the
+/// whole gate.
 template <EchoWidth Width>
-[[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(const ChannelSettings& channel,
-                                                                                            const WaveformSettings& waveform, bool noisy) {
+[[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
+    const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {
   ReceiverChain chain;
-  if (noisy) chain.noise_power = waveform.threshold / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
-  return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)), RingMoments::whole), survey_receiver(channel, true),
-          BandLimitedWaveform<Width>(waveform, {}, BandLimitedReceiver<>(chain))};
+  if (noisy)
+    chain.noise_power = waveform.threshold / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
+  return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)), RingMoments::whole),
+          survey_receiver(channel, true), BandLimitedWaveform<Width>(waveform, {}, BandLimitedReceiver<>(chain))};
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

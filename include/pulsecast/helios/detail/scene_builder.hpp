@@ -95,7 +95,8 @@ PULSECAST_INLINE const std::vector<SceneBuilder::Loaded>& SceneBuilder::load(con
 }
 
 /// Loads files in order. A `SettingError` becomes a `FileError` of that file.
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std::vector<std::filesystem::path>& files, const Load& load) {
+PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std::vector<std::filesystem::path>& files,
+                                                                      const Load& load) {
   std::vector<Loaded> all;
   add_files(files);
   for (const std::filesystem::path& file : files) try {
@@ -118,7 +119,8 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
       warn({file.string() + ": is left out"});
       return;
     }
-    all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
+    all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads),
+                   table(std::move(model.materials))});
   });
 }
 
@@ -176,7 +178,8 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
   if (source.random_shift) s.shift = options_.seed;
   s.validate();
   if (!source.leaf_angles.empty()) add_files({source.leaf_angles});
-  const LeafAngles leaves = source.leaf_angles.empty() ? LeafAngles::spherical() : io::read_leaf_angles(source.leaf_angles);
+  const LeafAngles leaves =
+      source.leaf_angles.empty() ? LeafAngles::spherical() : io::read_leaf_angles(source.leaf_angles);
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     io::VoxelFile voxels = io::read_voxel_file(file, s);
     warn(voxels.warnings);
@@ -185,12 +188,14 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
       return;
     }
     MaterialTable materials = assign_materials(source.material, voxels.voxels);
-    if (!source.leaf_angles.empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
+    if (!source.leaf_angles
+             .empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
       for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
     if (source.mode == VoxelMode::transmittive)
-      all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(
-                         voxels.voxels, TransmissiveVoxels{leaves, options_.tilted_leaves, source.leaf_area, source.clumping}),
-                     materials});
+      all.push_back(
+          {std::make_shared<const VoxelGrid<TransmissiveVoxels>>(
+               voxels.voxels, TransmissiveVoxels{leaves, options_.tilted_leaves, source.leaf_area, source.clumping}),
+           materials});
     else if (source.mode == VoxelMode::fixed)
       all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
     else
@@ -225,10 +230,11 @@ PULSECAST_INLINE MaterialTable SceneBuilder::table(std::vector<Material> materia
 PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSource& source, VoxelData& voxels) {
   std::vector<Material> all{material(source)};
   if (source.random > 0) {
-    const std::vector<Material> variants =
-        vary_reflectance(all[0], static_cast<std::size_t>(source.random), std::min(1.0, source.random_range), options_.seed);
+    const std::vector<Material> variants = vary_reflectance(all[0], static_cast<std::size_t>(source.random),
+                                                            std::min(1.0, source.random_range), options_.seed);
     all.insert(all.end(), variants.begin(), variants.end());
-    const std::vector<std::uint32_t> turns = assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
+    const std::vector<std::uint32_t> turns =
+        assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
     voxels.materials.assign(turns.begin(), turns.end());
   }
   return table(std::move(all));
@@ -242,8 +248,9 @@ PULSECAST_INLINE Similarity SceneBuilder::placement_of(const PartSettings& part,
   return placement;
 }
 
-PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source, const TransformSettings& transform,
-                                        std::size_t place, std::vector<SurveyPart>& all) {
+PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source,
+                                        const TransformSettings& transform, std::size_t place,
+                                        std::vector<SurveyPart>& all) {
   const Similarity placement = placement_of(part, transform);
   const auto number = text::number_in<ObjectId>(part.id);
   ObjectId object = number.value_or(static_cast<ObjectId>(place));
@@ -253,14 +260,18 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
   const Attributes numbers = part.named_numbers();
   for (const Loaded& loaded : load(source)) {
     const Similarity& inner = loaded.placement;
-    const Similarity placed = inner.identity() ? placement
-                                               : Similarity{normalize(placement.rotation * inner.rotation), placement.scale * inner.scale,
-                                                            placement.point(inner.translation)};
-    const std::string name = loaded.name.empty() ? part.id : part.id.empty() ? loaded.name : part.id + "/" + loaded.name;
+    const Similarity placed = inner.identity()
+                                  ? placement
+                                  : Similarity{normalize(placement.rotation * inner.rotation),
+                                               placement.scale * inner.scale, placement.point(inner.translation)};
+    const std::string name = loaded.name.empty() ? part.id
+                             : part.id.empty()   ? loaded.name
+                                                 : part.id + "/" + loaded.name;
     all.push_back({loaded.geometry, loaded.materials, placed, object++, name, {}, numbers});
     const Box box = box_of(all.back());
     const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
-    if (!(extent <= 1e18)) throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");
+    if (!(extent <= 1e18))
+      throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");
     settings_of_.resize(all.size());
     settings_of_.back() = &part;
   }
@@ -272,8 +283,8 @@ PULSECAST_INLINE void SceneBuilder::tell_shared_objects(const std::vector<Survey
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);
     if (is_new) continue;
-    warn({"the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' have the same object id, " + std::to_string(all[i].object) +
-          ": their points cannot be distinguished"});
+    warn({"the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' have the same object id, " +
+          std::to_string(all[i].object) + ": their points cannot be distinguished"});
     return;
   }
 }
@@ -303,7 +314,8 @@ PULSECAST_INLINE void SceneBuilder::move(std::vector<SurveyPart>& all) {
   Box box;
   for (const SurveyPart& part : all) box.extend(box_of(part));
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (!settings_of_[i]->motions.empty()) all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
+    if (!settings_of_[i]->motions.empty())
+      all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
 }
 
 /// Time between two steps of a part [s].

@@ -20,10 +20,12 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files in the settings of a scene, in all runs, there or not. Those that these files name are told by `SceneBuilder::files`.
+/// Files in the settings of a scene, in all runs, there or not. Those that these files name are told by
+/// `SceneBuilder::files`.
 [[nodiscard]] std::set<std::filesystem::path> scene_files(const SceneSettings& scene);
 
-/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for `onGround`.
+/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for
+/// `onGround`.
 [[nodiscard]] bool has_ground(const SceneSettings& scene);
 
 /// Folders of spectra, there or not: `spectra` in each folder of assets.
@@ -56,7 +58,8 @@ class SceneFiles {
         [this](const auto& s) {
           for (const std::filesystem::path& file : s.files) {
             add(file);
-            if (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj") objs.insert(file);
+            if (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj")
+              objs.insert(file);
           }
           if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
           if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
@@ -106,7 +109,8 @@ inline void add_named(std::set<std::filesystem::path>& files, const std::filesys
 inline void add_libraries(std::set<std::filesystem::path>& files, const std::filesystem::path& obj) {
   try {
     const io::MappedFile file(obj);
-    const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), keyword = "mtllib";
+    const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()),
+        keyword = "mtllib";
     for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at)) {
       at += keyword.size();
       std::size_t end = std::min(text.find('\n', at), text.size());

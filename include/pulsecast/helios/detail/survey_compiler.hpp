@@ -48,19 +48,21 @@ class SurveyCompiler {
       const double late = follow(k, path, compiled), way = std::max(0.0, paths_[k].duration - late);
       const double duration = in_whole_slots(duration_of(k, way), rate, paths_[k].rounding);
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + LegPaths::brief(way) + " s, and stays for " +
-                           LegPaths::brief(duration - way) +
+        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + LegPaths::brief(way) +
+                           " s, and stays for " + LegPaths::brief(duration - way) +
                            " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
       require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
       require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
       if (interval > 0)
-        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
+        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records,
+                       "");
       for (std::size_t c = 0; c < survey_.scanner.channels.size() && leg.scanner.active && !only_ends(survey_, k); ++c)
         for (const std::string& note : limit_notes(survey_.scanner, c, leg.scanner, rate))
           if (noted.insert(note).second) warnings.push_back(paths_.leg_name(k) + ": " + note);
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
-      const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
+      const Mount mount{.lever_arm = survey_.platform.mount.position,
+                        .boresight = survey_.platform.mount.rotation.rotation()};
       Instrument instrument = paths_.of_leg(k, [&] {
         return Instrument(survey_.scanner, leg.scanner, duration, {mount.boresight, optic_time});
       });
@@ -72,9 +74,11 @@ class SurveyCompiler {
         noise.attitude = survey_.platform.attitude_noise;
       }
       const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
-      legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), leg.scanner.active, start});
+      legs.push_back(
+          {SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), leg.scanner.active, start});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
-      compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
+      compiled.push_back(
+          {k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
       start = start + time;
     }
@@ -85,16 +89,19 @@ class SurveyCompiler {
   static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
 
   [[nodiscard]] bool teleports(const LegSettings& leg) const {
-    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
+    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory &&
+           leg.platform.trajectory->teleports;
   }
 
-  /// Sets the path of a leg. A plan that goes on does so where the whole slots of the leg before ended. Returns the delay by that [s].
+  /// Sets the path of a leg. A plan that goes on does so where the whole slots of the leg before ended. Returns the
+  /// delay by that [s].
   [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
     const SurveyPath& planned = paths_[k].path;
     const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
     path = planned;
     if (!paths_.continues(k)) return 0;
-    const double late = static_cast<double>(ended.second - planned.start.second) + (ended.fraction - planned.start.fraction);
+    const double late =
+        static_cast<double>(ended.second - planned.start.second) + (ended.fraction - planned.start.fraction);
     if (std::fabs(late) * before[k - 1].pulse_rate >= 1) return 0;  // cut by `duration_max`, or waiting for the head
     path.start = ended;
     return late;
@@ -106,8 +113,8 @@ class SurveyCompiler {
     return std::fabs(duration - slots / rate) <= rounding ? slots / rate : duration;
   }
 
-  /// Duration of a leg of a path that takes `way` [s]: until the platform has arrived and the head has turned, but at most `duration_max`
-  /// [s].
+  /// Duration of a leg of a path that takes `way` [s]: until the platform has arrived and the head has turned, but at
+  /// most `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k, double way) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
@@ -136,7 +143,8 @@ class SurveyCompiler {
 
 PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                                const SurveyBuildOptions& options) {
-  const std::vector<std::string> notes = detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); }).notes();
+  const std::vector<std::string> notes =
+      detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); }).notes();
   const LegPaths paths(survey, ground, options);
   CompiledSurvey compiled = detail::SurveyCompiler(survey, paths, options).compile();
   if (options.leg_places.empty())

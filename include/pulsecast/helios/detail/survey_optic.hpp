@@ -30,19 +30,21 @@ concept TellsAngle = requires(const O optic, Tick t) {
   static_cast<double>(optic.angle(t));
 };
 
-/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type for all optics, so that a program
-/// with scanners from files compiles one pipeline.
+/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type for all optics,
+/// so that a program with scanners from files compiles one pipeline.
 struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
   AnyOptic optic{};
-  Tick ahead{};                                          ///< lead of the optic's clock over that of the leg
-  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< pose of the channel in the instrument, before the head turns it
+  Tick ahead{};  ///< lead of the optic's clock over that of the leg
+  Pose<frame::Instrument, frame::Instrument>
+      emitter{};  ///< pose of the channel in the instrument, before the head turns it
   RotatingHead head{.rate = 0};
-  std::shared_ptr<const Formula> deflection_error{};  ///< error of the deflection, as a function of the deflection; none if empty [rad]
-  std::shared_ptr<const Formula> head_error{};        ///< error of the head angle, as a function of the deflection [rad]
-  std::shared_ptr<const Formula> range_error{};       ///< error of the reported range, as a function of the deflection [m]
-  double head_zero_threshold = 0;                     ///< least distance of the argument of `head_error` from multiples of pi [rad]
+  std::shared_ptr<const Formula>
+      deflection_error{};  ///< error of the deflection, as a function of the deflection; none if empty [rad]
+  std::shared_ptr<const Formula> head_error{};   ///< error of the head angle, as a function of the deflection [rad]
+  std::shared_ptr<const Formula> range_error{};  ///< error of the reported range, as a function of the deflection [m]
+  double head_zero_threshold = 0;  ///< least distance of the argument of `head_error` from multiples of pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
@@ -78,7 +80,8 @@ struct SurveyOptic {
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const simd::Mask open = exact(t, poses);
     if (deflection_error || head_error)
-      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) poses.set(lane, with_errors(poses[lane], deflection(t[lane])));
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
+        poses.set(lane, with_errors(poses[lane], deflection(t[lane])));
     return open;
   }
 
@@ -95,7 +98,8 @@ struct SurveyOptic {
   }
 
   /// True pose of a beam of an upward deflection [rad].
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> with_errors(Pose<frame::Beam, frame::Instrument> pose, double angle) const noexcept {
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> with_errors(Pose<frame::Beam, frame::Instrument> pose,
+                                                                 double angle) const noexcept {
     if (deflection_error) pose.rotation = pose.rotation * aimed_above((*deflection_error)(angle)).rotation;
     if (!head_error) return pose;
     const double half_turns = std::round(angle / pi), off = angle - half_turns * pi;

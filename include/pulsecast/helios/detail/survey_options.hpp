@@ -19,11 +19,12 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Options for compiling a survey to pulses.
 struct SurveyBuildOptions {
-  std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
-  bool platform_noise = true;             ///< true: platform noise as in the survey; false: none
-  bool leg_noise = true;                  ///< true: random leg offsets as in the survey; false: none
-  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty,
-                                          ///< for settings of a program: then the notes of `read_survey` are given with the others
+  std::uint64_t seed = 0;      ///< seed of leg offsets and noise
+  bool platform_noise = true;  ///< true: platform noise as in the survey; false: none
+  bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
+  std::vector<std::string>
+      leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty,
+                     ///< for settings of a program: then the notes of `read_survey` are given with the others
 
   /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const {
@@ -31,7 +32,8 @@ struct SurveyBuildOptions {
   }
 };
 
-/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` is asked for the level nearest to a height.
+/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` is asked for the level
+/// nearest to a height.
 class GroundHeight {
  public:
   template <Ground G>
@@ -43,7 +45,8 @@ class GroundHeight {
             return ground(at);
         }) {}
 
-  [[nodiscard]] std::optional<double> operator()(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const {
+  [[nodiscard]] std::optional<double> operator()(const Vec2& at,
+                                                 double near = std::numeric_limits<double>::infinity()) const {
     return height_(at, near);
   }
 

@@ -15,8 +15,10 @@
 namespace PULSECAST_NAMESPACE::helios::detail {
 
 inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format) {
-  std::vector<std::pair<int, const char*>> columns{{t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
-  if (!t.position_only) columns.insert(columns.end(), {{t.columns->roll, "roll"}, {t.columns->pitch, "pitch"}, {t.columns->yaw, "yaw"}});
+  std::vector<std::pair<int, const char*>> columns{
+      {t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
+  if (!t.position_only)
+    columns.insert(columns.end(), {{t.columns->roll, "roll"}, {t.columns->pitch, "pitch"}, {t.columns->yaw, "yaw"}});
   int most = 0;
   for (const auto& [place, name] : columns) most = std::max(most, place);
   format.names = io::ColumnNames::nowhere;
@@ -25,8 +27,9 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
   for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
   format.left_out = format.columns;
   for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
-  std::erase_if(format.left_out,
-                [&](const std::string& c) { return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end(); });
+  std::erase_if(format.left_out, [&](const std::string& c) {
+    return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end();
+  });
 }
 
 /// Format of the trajectory file of a leg.

@@ -26,7 +26,8 @@
 #include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-/// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their memory layout.
+/// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their
+/// memory layout.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Archive of other types, or inconsistent.
@@ -67,7 +68,9 @@ concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !Arc
 inline constexpr std::size_t array_alignment = 64;
 inline constexpr std::size_t item_alignment = 8;  ///< alignment of everything else [byte]
 
-[[nodiscard]] constexpr std::uint64_t aligned(std::uint64_t position, std::uint64_t to) noexcept { return (position + to - 1) / to * to; }
+[[nodiscard]] constexpr std::uint64_t aligned(std::uint64_t position, std::uint64_t to) noexcept {
+  return (position + to - 1) / to * to;
+}
 
 /// Header of each run of elements, to check its type when read.
 struct ItemHead {
@@ -91,9 +94,9 @@ inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};
 
 }  // namespace detail
 
-/// Writes objects in sequence into a file, from its position on, a multiple of 64 bytes. Objects are plain values, `SharedArray` arrays,
-/// strings, vectors, variants, shared pointers (shared objects are written once), and types that pass their members by `template <class
-/// Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
+/// Writes objects in sequence into a file, from its position on, a multiple of 64 bytes. Objects are plain values,
+/// `SharedArray` arrays, strings, vectors, variants, shared pointers (shared objects are written once), and types that
+/// pass their members by `template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
 class ArchiveWriter {
  public:
   explicit ArchiveWriter(OutputFile& file) : file_(file) {}
@@ -166,16 +169,18 @@ class ArchiveWriter {
 
   OutputFile& file_;
   Digest digest_;
-  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< numbers of shared objects, by address and type
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t>
+      numbers_;  ///< numbers of shared objects, by address and type
 };
 
-/// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is allocated only for
-/// data present. Filled objects may check themselves: by `bool is_consistent() const`, true if all indices in the arrays are in bounds, and
-/// by `void validate() const`.
+/// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is
+/// allocated only for data present. Filled objects may check themselves: by `bool is_consistent() const`, true if all
+/// indices in the arrays are in bounds, and by `void validate() const`.
 class ArchiveReader {
  public:
   /// `owner` keeps the bytes alive, at a multiple of 64.
-  ArchiveReader(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) : bytes_(bytes), owner_(std::move(owner)) {}
+  ArchiveReader(std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
+      : bytes_(bytes), owner_(std::move(owner)) {}
 
   template <class... Items>
   void operator()(Items&... items) {
@@ -230,7 +235,8 @@ class ArchiveReader {
     } else {
       std::uint64_t count = 0;
       take(count);
-      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, which bounds their number
+      for (items.clear(); count > 0; --count)
+        take(items.emplace_back());  // each takes bytes, which bounds their number
     }
   }
   template <class... Options>
@@ -282,7 +288,8 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    static_assert(pulsecast::detail::ConsistencyCheckingCheck<T>::passed && pulsecast::detail::ValidatingCheck<T>::passed);
+    static_assert(pulsecast::detail::ConsistencyCheckingCheck<T>::passed &&
+                  pulsecast::detail::ValidatingCheck<T>::passed);
     if constexpr (SelfChecking<T>) require(object.is_consistent());
     if constexpr (Validated<T>) object.validate();
   }

@@ -50,7 +50,8 @@ class CellNumbers {
 
   /// Mixes the coordinates. Source: Steele, Lea & Flood 2014, SplitMix64 (variant 13 of Stafford).
   [[nodiscard]] static std::size_t hash(const Cell& cell) noexcept {
-    std::uint64_t h = (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(cell[2] * std::uint64_t{0x9E3779B97F4A7C15}, 29);
+    std::uint64_t h =
+        (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(cell[2] * std::uint64_t{0x9E3779B97F4A7C15}, 29);
     h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9;
     h = (h ^ (h >> 27)) * 0x94D049BB133111EB;
     return static_cast<std::size_t>(h ^ (h >> 31));

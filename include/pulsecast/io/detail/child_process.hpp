@@ -118,7 +118,8 @@ class ChildOutput {
   std::vector<char> buffer_;
 };
 
-/// Reads the result of a child. Bytes are checked, as the child may have been damaged by what it read: errors are a `FileError`.
+/// Reads the result of a child. Bytes are checked, as the child may have been damaged by what it read: errors are a
+/// `FileError`.
 class ChildResult {
  public:
   ChildResult(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
@@ -151,7 +152,9 @@ class ChildResult {
     return items;
   }
   [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
-  [[noreturn]] void fail() const { throw FileError(path_, "", "its import in a child process gave an inconsistent result"); }
+  [[noreturn]] void fail() const {
+    throw FileError(path_, "", "its import in a child process gave an inconsistent result");
+  }
 
  private:
   [[nodiscard]] std::span<const std::byte> take(std::uint64_t size) {
@@ -172,19 +175,22 @@ struct ChildLimits {
   double time = 60;     ///< of computation, and by the clock [s]
 };
 
-/// Child process that does one piece of work: a fork, which starts no program, so that a library without a program of its own can have it.
-/// The child has one thread and no network. It must not use locks that other threads may hold, which those of memory and of streams are
-/// not.
+/// Child process that does one piece of work: a fork, which starts no program, so that a library without a program of
+/// its own can have it. The child has one thread and no network. It must not use locks that other threads may hold,
+/// which those of memory and of streams are not.
 class ChildProcess {
  public:
   using Work = std::function<void(ChildOutput&)>;
 
-  /// Calls `work` in a child and waits. Throws the `FileError` of `work`, or one of `path` that says how the child died.
+  /// Calls `work` in a child and waits. Throws the `FileError` of `work`, or one of `path` that says how the child
+  /// died.
   [[nodiscard]] static ChildResult result(const std::string& path, const ChildLimits& limits, const Work& work) {
     const File file(path);
     std::fflush(nullptr);
     const pid_t child = ::fork();
-    if (child < 0) throw FileError(path, "", "no child process can be started for its import: " + std::generic_category().message(errno));
+    if (child < 0)
+      throw FileError(path, "",
+                      "no child process can be started for its import: " + std::generic_category().message(errno));
     if (child == 0) run(file.number, limits, work);
     const int status = wait(child, limits.time);
     return finished(path, file.number, status, limits);
@@ -201,14 +207,16 @@ class ChildProcess {
       number = ::mkstemp(name.data());
       ::unlink(name.c_str());
 #endif
-      if (number < 0) throw FileError(path, "", "no file for the result of its import: " + std::generic_category().message(errno));
+      if (number < 0)
+        throw FileError(path, "", "no file for the result of its import: " + std::generic_category().message(errno));
     }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() { ::close(number); }
   };
 
-  static constexpr std::array<char, 8> done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'}, failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
+  static constexpr std::array<char, 8> done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'},
+      failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
 
   /// The child's part.
   [[noreturn]] static void run(int file, const ChildLimits& limits, const Work& work) noexcept {
@@ -290,8 +298,10 @@ class ChildProcess {
       fail("its import took more than " + pulsecast::detail::to_text(limits.time) + " s" + consequence);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
       fail("its import was killed, as the system does when memory runs out: expected more free memory, or another try");
-    if (WIFSIGNALED(status)) fail("its import ended by signal " + std::to_string(WTERMSIG(status)) + ": the file is damaged");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory) fail("its import took more memory than is allowed" + consequence);
+    if (WIFSIGNALED(status))
+      fail("its import ended by signal " + std::to_string(WTERMSIG(status)) + ": the file is damaged");
+    if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory)
+      fail("its import took more memory than is allowed" + consequence);
     struct stat size {};
     const std::size_t word = done.size();
     if (::fstat(file, &size) != 0 || size.st_size < static_cast<off_t>(word))
@@ -299,11 +309,13 @@ class ChildProcess {
     const auto bytes = static_cast<std::size_t>(size.st_size);
     void* const memory = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    const std::shared_ptr<const void> owner(memory, [bytes](const void* at) { ::munmap(const_cast<void*>(at), bytes); });
+    const std::shared_ptr<const void> owner(memory,
+                                            [bytes](const void* at) { ::munmap(const_cast<void*>(at), bytes); });
     const auto* const first = static_cast<const std::byte*>(memory);
     ChildResult result(path, {first, bytes - word}, owner);
     if (std::memcmp(first + bytes - word, done.data(), word) == 0) return result;
-    if (std::memcmp(first + bytes - word, failed.data(), word) != 0) fail("its import ended without a result: the file is damaged");
+    if (std::memcmp(first + bytes - word, failed.data(), word) != 0)
+      fail("its import ended without a result: the file is damaged");
     std::string of = result.text(), place = result.text(), problem = result.text();
     throw FileError(of.empty() ? path : std::move(of), std::move(place), std::move(problem));
   }

@@ -122,7 +122,8 @@ class CityGmlLog final : public citygml::CityGMLLogger {
 
 class CityGmlImport {
  public:
-  CityGmlImport(const std::filesystem::path& path, const CityGmlSettings& settings) : path_(path), settings_(settings) {}
+  CityGmlImport(const std::filesystem::path& path, const CityGmlSettings& settings)
+      : path_(path), settings_(settings) {}
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
@@ -147,9 +148,11 @@ class CityGmlImport {
       if (name_.empty()) name_ = object.getEnvelope().srsName();
       root(object);
     }
-    if (const auto code = epsg_of(name_); name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
+    if (const auto code = epsg_of(name_);
+        name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
       fail("its coordinates are in degrees, by '" + name_ + "': expected a projected system in metres");
-    for (const std::string& message : log->messages) scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
+    for (const std::string& message : log->messages)
+      scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
     scene_.reference = name_;
     scene_.owner = data_;
     return std::move(scene_);
@@ -200,14 +203,16 @@ class CityGmlImport {
   }
 
   [[nodiscard]] bool is_left_out(const citygml::CityObject& object) const {
-    return object.getType() == CityClass::COT_ClosureSurface || (!settings_.interior && rule_of(object.getType()).interior);
+    return object.getType() == CityClass::COT_ClosureSurface ||
+           (!settings_.interior && rule_of(object.getType()).interior);
   }
 
   void check_depth(int depth) const {
     if (depth > 200) fail("its objects are nested more than 200 deep");
   }
 
-  /// Highest level of detail of an object and those in it, up to the limit, which libcitygml does not keep for boundary surfaces.
+  /// Highest level of detail of an object and those in it, up to the limit, which libcitygml does not keep for boundary
+  /// surfaces.
   void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) const {
     check_depth(depth);
     if (is_left_out(object)) return;
@@ -218,15 +223,18 @@ class CityGmlImport {
     for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
       for (unsigned k = 0; k < object.getImplicitGeometry(i).getGeometriesCount(); ++k)
         offer(object.getImplicitGeometry(i).getGeometry(k).getLOD());
-    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) highest(object.getChildCityObject(i), lod, depth + 1);
+    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
+      highest(object.getChildCityObject(i), lod, depth + 1);
   }
 
   void collect(const citygml::CityObject& object, unsigned lod, ByClass& all, const std::string& id, int depth) {
     if (is_left_out(object)) return;
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i)
       if (object.getGeometry(i).getLOD() == lod) add(object.getGeometry(i), all[object.getType()], 0);
-    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i) implicit(object.getImplicitGeometry(i), object.getType(), id, lod);
-    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) collect(object.getChildCityObject(i), lod, all, id, depth + 1);
+    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
+      implicit(object.getImplicitGeometry(i), object.getType(), id, lod);
+    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
+      collect(object.getChildCityObject(i), lod, all, id, depth + 1);
   }
 
   void add(const citygml::Geometry& geometry, Surfaces& to, int depth) const {
@@ -280,7 +288,8 @@ class CityGmlImport {
     }
     data_->vertices.push_back(std::move(surfaces.vertices));
     data_->triangles.push_back(std::move(surfaces.triangles));
-    scene_.meshes.push_back({.material = number->second, .precise = data_->vertices.back(), .triangles = data_->triangles.back()});
+    scene_.meshes.push_back(
+        {.material = number->second, .precise = data_->vertices.back(), .triangles = data_->triangles.back()});
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
 
@@ -300,13 +309,16 @@ inline bool is_citygml(const std::filesystem::path& path) {
   return ending == ".gml" || ending == ".citygml";
 }
 
-inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
+inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings,
+                            const Workers& workers) {
   settings.validate();
   return reading(path, [&] {
     const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
-    const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
+    const detail::RawScene scene =
+        settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
     const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
-    CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
+    CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(),
+                 .epsg = detail::epsg_of(scene.reference)};
     detail::replace_materials(city.file, plain);
     return city;
   });

@@ -48,8 +48,8 @@ class Digest {
     add(std::as_bytes(std::span(text)));
   }
 
-  /// Adds the content of a file; of a folder, the content and names of all files below it. The path itself does not matter.
-  /// Throws a `FileError` if it cannot be read.
+  /// Adds the content of a file; of a folder, the content and names of all files below it. The path itself does not
+  /// matter. Throws a `FileError` if it cannot be read.
   void add_content(const std::filesystem::path& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -58,7 +58,8 @@ class Digest {
     } else if (std::filesystem::is_regular_file(status)) {
       add_file(path);
     } else {
-      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
+      throw FileError(path.string(), "",
+                      std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
     }
   }
 
@@ -75,7 +76,8 @@ class Digest {
   void add_folder(const std::filesystem::path& path) {
     std::vector<std::filesystem::path> files;
     std::error_code error;
-    for (std::filesystem::recursive_directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    for (std::filesystem::recursive_directory_iterator entry(path, error), end; !error && entry != end;
+         entry.increment(error))
       if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
     if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
     std::sort(files.begin(), files.end());

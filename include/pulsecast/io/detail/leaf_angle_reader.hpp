@@ -39,13 +39,15 @@ struct LeafRow {
     const std::optional<double> value = text::finite_number_in(cells[column]);
     const bool is_g = column == 3;
     if (!value || !(*value >= (is_g ? 0 : -1.001) && *value <= (is_g ? 1 : 1.001)))
-      table.fail_here(column, text::quoted(cells[column]) + (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
-                                                                  : ": expected a component of a unit direction, from -1 to 1"));
+      table.fail_here(column, text::quoted(cells[column]) +
+                                  (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
+                                        : ": expected a component of a unit direction, from -1 to 1"));
     values[column] = *value;
   }
   const Vec3 direction{values[0], values[1], values[2]};
   if (!(std::fabs(length(direction) - 1) <= 1e-3))
-    table.fail_here("the direction has the length " + pulsecast::detail::to_text(length(direction)) + ": expected 1, within 1e-3");
+    table.fail_here("the direction has the length " + pulsecast::detail::to_text(length(direction)) +
+                    ": expected 1, within 1e-3");
   return {{std::atan2(std::hypot(direction.x, direction.y), std::fabs(direction.z)), values[3]}, table.line()};
 }
 
@@ -58,7 +60,8 @@ PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) 
   while (table.next())
     if (!table.text().starts_with('#')) rows.push_back(detail::leaf_row(table));
   if (rows.empty()) table.fail("has no rows: expected a table of leaf projections, x,y,z,G");
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.projection.zenith < b.projection.zenith; });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.projection.zenith < b.projection.zenith; });
 
   // beyond the outermost rows, their values hold
   rows.insert(rows.begin(), {{0, rows.front().projection.g}, rows.front().line});
@@ -70,8 +73,8 @@ PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) 
     const LeafProjection last = result.empty() ? projection : result.back();
     const double step = projection.zenith - last.zenith;
     if (step > widest)
-      table.fail("has no row between " + pulsecast::detail::to_text(std::round(degrees(last.zenith) * 10) / 10) + " and " +
-                 pulsecast::detail::to_text(std::round(degrees(projection.zenith) * 10) / 10) +
+      table.fail("has no row between " + pulsecast::detail::to_text(std::round(degrees(last.zenith) * 10) / 10) +
+                 " and " + pulsecast::detail::to_text(std::round(degrees(projection.zenith) * 10) / 10) +
                  " degrees from the vertical: expected one every 10 degrees at least");
     if (step <= same && std::fabs(projection.g - last.g) > 1e-3)
       throw FileError(table.path(), TextTable::place(std::max(row, line)),

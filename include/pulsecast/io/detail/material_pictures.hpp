@@ -12,7 +12,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Picture that a material names: a file, or bytes inside the file of the mesh.
 struct PictureSource {
-  std::filesystem::path file{};                              ///< path of the file; of embedded bytes, a name for messages; empty: none
+  std::filesystem::path file{};  ///< path of the file; of embedded bytes, a name for messages; empty: none
   std::shared_ptr<const std::vector<std::byte>> embedded{};  ///< content of the file if it is embedded
 
   [[nodiscard]] bool empty() const noexcept { return file.empty() && !embedded; }
@@ -24,8 +24,9 @@ struct MaterialPictures {
   PictureSource opacity{};           ///< outline: by its opacity, or by its grey or red without one
   PictureSource reflectance{};       ///< reflectance
   bool reflectance_pattern = false;  ///< true if that is a pattern, as of `ReflectanceMap::pattern`
-  bool outlined_by_colour = false;   ///< true if the opacity of the colour picture is the outline; without effect if it has none
-  double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
+  bool outlined_by_colour =
+      false;            ///< true if the opacity of the colour picture is the outline; without effect if it has none
+  double cutoff = 0.5;  ///< opacity from which a surface is solid, in [0, 1]
 
   [[nodiscard]] bool empty() const noexcept { return colour.empty() && opacity.empty() && reflectance.empty(); }
   /// Appends the files.

@@ -22,7 +22,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
 
-/// Throws a `SettingError` unless the names of a layout can stand in the header of a file, and its fields be told by them.
+/// Throws a `SettingError` unless the names of a layout can stand in the header of a file, and its fields be told by
+/// them.
 inline void require_field_names(const PointLayout& layout) {
   for (const PointField& field : layout.fields) {
     require_within("PointField::name (length)", static_cast<double>(field.name.size()), 1, 100, "");
@@ -30,7 +31,8 @@ inline void require_field_names(const PointLayout& layout) {
       if (!(c > ' ' && c <= '~' && c != '/'))
         throw SettingError("PointField::name (character code)", static_cast<unsigned char>(c), "",
                            "that of a visible ASCII character but /");
-    const auto same = std::count_if(layout.fields.begin(), layout.fields.end(), [&](const PointField& f) { return f.name == field.name; });
+    const auto same = std::count_if(layout.fields.begin(), layout.fields.end(),
+                                    [&](const PointField& f) { return f.name == field.name; });
     require_within("PointField::name (number of " + field.name + ")", static_cast<double>(same), 1, 1, "");
   }
 }
@@ -39,7 +41,8 @@ inline void require_field_names(const PointLayout& layout) {
 class PackedPoints {
  public:
   /// Packs the fields of `layout`. @throws SettingError for a layout or settings out of range
-  PackedPoints(const PointLayout& layout, const PointSettings& settings) : encoder_(PointLayout::packed(layout.fields), settings) {
+  PackedPoints(const PointLayout& layout, const PointSettings& settings)
+      : encoder_(PointLayout::packed(layout.fields), settings) {
     require_field_names(layout);
   }
 
@@ -58,13 +61,14 @@ class PackedPoints {
     const std::vector<PointField>&from = points.layout().fields, &to = layout().fields;
     for (std::size_t k = 0; k < std::max(from.size(), to.size()); ++k)
       if (k >= from.size() || k >= to.size() || !same_number(from[k], to[k]))
-        throw SettingError("PointBuffer::layout (index of a field)", static_cast<double>(k), "", "of fields as those of the file");
+        throw SettingError("PointBuffer::layout (index of a field)", static_cast<double>(k), "",
+                           "of fields as those of the file");
     if (points.layout().size == layout().size) return points.records();
     records_.resize(points.size() * layout().size);
     for (std::size_t i = 0; i < points.size(); ++i)
       for (std::size_t k = 0; k < to.size(); ++k)
-        std::memcpy(records_.data() + i * layout().size + to[k].offset, points.records().data() + i * points.layout().size + from[k].offset,
-                    size_of(to[k].type));
+        std::memcpy(records_.data() + i * layout().size + to[k].offset,
+                    points.records().data() + i * points.layout().size + from[k].offset, size_of(to[k].type));
     return records_;
   }
 
@@ -89,7 +93,8 @@ class FieldColumns {
       const std::size_t size = size_of(layout_.fields[k].type), begin = columns_[k].size();
       columns_[k].resize(begin + count * size);
       for (std::size_t i = 0; i < count; ++i)
-        std::memcpy(columns_[k].data() + begin + i * size, records.data() + i * layout_.size + layout_.fields[k].offset, size);
+        std::memcpy(columns_[k].data() + begin + i * size, records.data() + i * layout_.size + layout_.fields[k].offset,
+                    size);
     }
   }
 
@@ -101,7 +106,8 @@ class FieldColumns {
   PointLayout layout_;
 };
 
-/// Text of a count, and of blanks that bring it to the length of the longest count: for headers that are written again with another count.
+/// Text of a count, and of blanks that bring it to the length of the longest count: for headers that are written again
+/// with another count.
 struct CountText {
   std::string digits, blanks;
 

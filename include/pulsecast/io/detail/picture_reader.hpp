@@ -32,7 +32,8 @@ namespace detail {
 /// Pictures by file, each read once.
 class PictureShelf {
  public:
-  PictureShelf(std::vector<std::string>& warnings, const PictureSettings& settings) : warnings_(warnings), settings_(settings) {}
+  PictureShelf(std::vector<std::string>& warnings, const PictureSettings& settings)
+      : warnings_(warnings), settings_(settings) {}
 
   /// Picture, or null with a warning.
   [[nodiscard]] std::shared_ptr<const Image> get(const PictureSource& source) {
@@ -77,16 +78,21 @@ class PictureShelf {
   int width = 0, height = 0, channels = 0;
   const auto fail = [&]() -> FileError {
     return {path, "",
-            std::string("is no picture that can be read: ") + stbi_failure_reason() + "; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM"};
+            std::string("is no picture that can be read: ") + stbi_failure_reason() +
+                "; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM"};
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw fail();
-  if (width < 1 || height < 1 || width > 65536 || height > 65536 || static_cast<double>(width) * height > static_cast<double>(max_pixels))
-    throw FileError(path, "",
-                    pulsecast::detail::joined({"has ", std::to_string(width), " x ", std::to_string(height), " pixels, expected at most ",
-                                               std::to_string(max_pixels), ", and 65536 a side"}));
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
+  if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
+      static_cast<double>(width) * height > static_cast<double>(max_pixels))
+    throw FileError(
+        path, "",
+        pulsecast::detail::joined({"has ", std::to_string(width), " x ", std::to_string(height),
+                                   " pixels, expected at most ", std::to_string(max_pixels), ", and 65536 a side"}));
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
   if (!pixels) throw fail();
-  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), static_cast<std::uint32_t>(channels)};
+  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+              static_cast<std::uint32_t>(channels)};
   const SharedBuffer<std::uint8_t> samples(std::size_t{image.width} * image.height * image.channels);
   std::copy_n(pixels.get(), samples.size(), samples.data());
   image.samples = samples;
@@ -98,11 +104,12 @@ class PictureShelf {
 PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
   if (!settings.isolated) return reading(source.file, [&] { return detail::decoded(source, settings.max_pixels); });
   const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
-  detail::ChildResult found = detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
-    const Image image = detail::decoded(source, settings.max_pixels);
-    for (const std::uint32_t number : {image.width, image.height, image.channels}) output.value(number);
-    output.array(std::span(image.samples.data(), image.samples.size()));
-  });
+  detail::ChildResult found =
+      detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
+        const Image image = detail::decoded(source, settings.max_pixels);
+        for (const std::uint32_t number : {image.width, image.height, image.channels}) output.value(number);
+        output.array(std::span(image.samples.data(), image.samples.size()));
+      });
   Image image{found.value<std::uint32_t>(), found.value<std::uint32_t>(), found.value<std::uint32_t>()};
   image.samples = {found.array<std::uint8_t>(), found.owner()};
   try {
@@ -113,21 +120,23 @@ PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSe
   return image;
 }
 
-PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<const MaterialPictures> pictures,
-                                   std::vector<std::string>& warnings, const PictureSettings& settings) {
+PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials,
+                                   std::span<const MaterialPictures> pictures, std::vector<std::string>& warnings,
+                                   const PictureSettings& settings) {
   detail::PictureShelf shelf(warnings, settings);
   for (std::size_t i = 0; i < std::min(materials.size(), pictures.size()); ++i) {
     const MaterialPictures& of = pictures[i];
     if (of.empty()) continue;
     if (mesh.texture.empty()) {
-      warnings.push_back("material '" + materials[i].name + "' has pictures, which are left out, as the mesh has no texture coordinates");
+      warnings.push_back("material '" + materials[i].name +
+                         "' has pictures, which are left out, as the mesh has no texture coordinates");
       continue;
     }
     if (!of.colour.empty()) materials[i].picture = shelf.get(of.colour);
     if (!of.reflectance.empty())
       if (const auto picture = shelf.get(of.reflectance))
-        materials[i].reflectance_map = std::make_shared<const ReflectanceMap>(of.reflectance_pattern ? ReflectanceMap::pattern(*picture)
-                                                                                                     : ReflectanceMap{.image = *picture});
+        materials[i].reflectance_map = std::make_shared<const ReflectanceMap>(
+            of.reflectance_pattern ? ReflectanceMap::pattern(*picture) : ReflectanceMap{.image = *picture});
     if (Mask mask = detail::outline(of, shelf); mask.width > 0) {
       mesh.masks.resize(std::max(mesh.masks.size(), i + 1));
       mesh.masks[i] = std::move(mask);

@@ -35,13 +35,14 @@ inline void require_plain_encoding(const InputFile& file, std::string_view text)
   }
 }
 
-/// Refuses XML files with a document type, by which they open others and grow without end, and with encodings that could hide one: its
-/// letters must have the bytes of ASCII.
+/// Refuses XML files with a document type, by which they open others and grow without end, and with encodings that
+/// could hide one: its letters must have the bytes of ASCII.
 inline void require_plain_xml(const std::filesystem::path& path) {
   InputFile file(path, "an XML file");
   std::string before;
   bool first = true;
-  for (std::string_view text = file.take(InputFile::block_size / 2); !text.empty(); text = file.take(InputFile::block_size / 2)) {
+  for (std::string_view text = file.take(InputFile::block_size / 2); !text.empty();
+       text = file.take(InputFile::block_size / 2)) {
     if (std::exchange(first, false)) {
       const std::string_view begin = text::without_byte_order_mark(text);
       const std::size_t start = begin.find_first_not_of(" \t\r\n");
@@ -50,7 +51,8 @@ inline void require_plain_xml(const std::filesystem::path& path) {
       require_plain_encoding(file, begin.substr(start));
     }
     before += text;
-    if (before.find("<!DOCTYPE") != before.npos || before.find("<!ENTITY") != before.npos) file.fail("has a document type: expected none");
+    if (before.find("<!DOCTYPE") != before.npos || before.find("<!ENTITY") != before.npos)
+      file.fail("has a document type: expected none");
     before.erase(0, before.size() - std::min<std::size_t>(before.size(), 16));
   }
 }

@@ -36,15 +36,19 @@ class PngHeightReader {
 
   [[nodiscard]] Raster read() && {
     read_size();
-    raster_.packed = {.scale = settings_.vertical_scale, .offset = settings_.vertical_offset, .missing = settings_.missing};
+    raster_.packed = {
+        .scale = settings_.vertical_scale, .offset = settings_.vertical_offset, .missing = settings_.missing};
     const bool is_northward = place();
     if (bits_ == 16)
       take(std::unique_ptr<stbi_us, Free>(stbi_load_16_from_memory(data(), size(), &width_, &height_, &channels_, 1)));
     else
       take(std::unique_ptr<stbi_uc, Free>(stbi_load_from_memory(data(), size(), &width_, &height_, &channels_, 1)));
     auto& numbers = raster_.packed.numbers;
-    const auto row = [&](std::uint32_t r) { return numbers.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * raster_.columns); };
-    for (std::uint32_t r = 0; is_northward && r < raster_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(raster_.rows - 1 - r));
+    const auto row = [&](std::uint32_t r) {
+      return numbers.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * raster_.columns);
+    };
+    for (std::uint32_t r = 0; is_northward && r < raster_.rows / 2; ++r)
+      std::swap_ranges(row(r), row(r + 1), row(raster_.rows - 1 - r));
     if (std::all_of(numbers.begin(), numbers.end(), [&](std::uint16_t n) { return settings_.missing == n; }))
       fail("has no height: expected at least one pixel of another grey than that of missing heights");
     try {
@@ -68,13 +72,16 @@ class PngHeightReader {
   [[nodiscard]] const stbi_uc* data() const noexcept { return reinterpret_cast<const stbi_uc*>(file_.bytes().data()); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(file_.bytes().size()); }
 
-  /// Reads and checks the size and the kind of pixels. Source: Portable Network Graphics, second edition (ISO/IEC 15948), 5.2 and 11.2.2.
+  /// Reads and checks the size and the kind of pixels. Source: Portable Network Graphics, second edition (ISO/IEC
+  /// 15948), 5.2 and 11.2.2.
   void read_size() {
     constexpr std::array<stbi_uc, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     constexpr std::size_t depth = 24, colour = 25;  // bytes of the header
     const std::size_t bytes = file_.bytes().size();
-    if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max())) fail("has more than 2^31 bytes: expected fewer");
-    if (bytes <= colour || !std::equal(signature.begin(), signature.end(), data())) fail("is no PNG file: expected one of heights");
+    if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      fail("has more than 2^31 bytes: expected fewer");
+    if (bytes <= colour || !std::equal(signature.begin(), signature.end(), data()))
+      fail("is no PNG file: expected one of heights");
     if (stbi_info_from_memory(data(), size(), &width_, &height_, &channels_) == 0) fail_to_read();
     bits_ = data()[depth];
     if (data()[colour] != 0 || channels_ != 1 || (bits_ != 8 && bits_ != 16))
@@ -85,7 +92,8 @@ class PngHeightReader {
     const double count = static_cast<double>(width_) * height_;
     if (count > static_cast<double>(settings_.max_pixels))
       fail("is of " + pixels + ": expected at most " + std::to_string(settings_.max_pixels) + " in all");
-    constexpr double deflate = 1032;  // largest ratio of compression; source: zlib, Technical Details, "Maximum Compression Factor"
+    constexpr double deflate =
+        1032;  // largest ratio of compression; source: zlib, Technical Details, "Maximum Compression Factor"
     if (count * bits_ / 8 > deflate * static_cast<double>(bytes))
       fail("claims " + pixels + ", more than its " + std::to_string(bytes) + " bytes can hold");
     raster_.columns = static_cast<std::uint32_t>(width_);
@@ -99,12 +107,13 @@ class PngHeightReader {
     if (settings_.pixel) return false;
     const std::filesystem::path beside = world_file_of(path_);
     if (beside.empty())
-      fail("has no place: expected a world file beside it, as in " + std::filesystem::path(path_).replace_extension(".pgw").string() +
-           ", or the size of pixels as a setting");
+      fail("has no place: expected a world file beside it, as in " +
+           std::filesystem::path(path_).replace_extension(".pgw").string() + ", or the size of pixels as a setting");
     const WorldFile world = read_world_file(beside);
     const bool is_northward = world.step.y > 0;
     raster_.pixel = {world.step.x, std::fabs(world.step.y)};
-    if (!settings_.first) raster_.first = {world.first.x, world.first.y + (is_northward ? (raster_.rows - 1) * world.step.y : 0)};
+    if (!settings_.first)
+      raster_.first = {world.first.x, world.first.y + (is_northward ? (raster_.rows - 1) * world.step.y : 0)};
     if (const std::string question = degrees_question(raster_); !question.empty())
       fail("by its world file " + question + ", or the size of pixels as a setting");
     return is_northward;

@@ -47,7 +47,8 @@ inline void refuse_other_kinds(InputFile& file) {
   const std::string_view head = file.take(16);
   for (const Kind& kind : kinds)
     if (head.starts_with(kind.begin) && (kind.begin != "ply" || head.size() < 4 || head[3] == '\n' || head[3] == '\r'))
-      file.fail("is " + std::string(kind.name) + ": expected a point cloud as text or LAS; CloudCompare and pdal translate convert to LAS");
+      file.fail("is " + std::string(kind.name) +
+                ": expected a point cloud as text or LAS; CloudCompare and pdal translate convert to LAS");
   file.seek(0);
 }
 
@@ -68,14 +69,16 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   }
 }
 
-/// Normal of the least-squares plane through points, pointing up; empty for fewer than three points, or points on one line. Arguments are
-/// their number, the sum of their offsets from a nearby origin, and the sums of the products xx, xy, xz, yy, yz, zz.
-/// Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
-[[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum, const std::array<double, 6>& products) {
+/// Normal of the least-squares plane through points, pointing up; empty for fewer than three points, or points on one
+/// line. Arguments are their number, the sum of their offsets from a nearby origin, and the sums of the products xx,
+/// xy, xz, yy, yz, zz. Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
+[[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum,
+                                                      const std::array<double, 6>& products) {
   if (count < 3) return std::nullopt;
   const Eigen::Vector3d offset(sum.x, sum.y, sum.z);
-  Eigen::Matrix3d about{
-      {products[0], products[1], products[2]}, {products[1], products[3], products[4]}, {products[2], products[4], products[5]}};
+  Eigen::Matrix3d about{{products[0], products[1], products[2]},
+                        {products[1], products[3], products[4]},
+                        {products[2], products[4], products[5]}};
   const double size = about.trace();
   if (!(size > 0)) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
@@ -89,7 +92,8 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
 
 class PointCloudReader {
  public:
-  PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) : settings_(validated(settings)) {
+  PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings)
+      : settings_(validated(settings)) {
     measure(paths);
     for (int axis = 0; axis < 3; ++axis) lay(axis, paths.front());
     require_room(paths.front());
@@ -147,9 +151,10 @@ class PointCloudReader {
     }
     if (!(cells <= 0x1p32))
       throw FileError(path.string(), "",
-                      std::string("the cloud extends over ") + pulsecast::detail::to_text(extent) + " m along " + "xyz"[axis] +
-                          ", which is " + pulsecast::detail::to_text(cells) + " voxels: expected no more than 2^32; voxels are " +
-                          pulsecast::detail::to_text(edge) + " m large");
+                      std::string("the cloud extends over ") + pulsecast::detail::to_text(extent) + " m along " +
+                          "xyz"[axis] + ", which is " + pulsecast::detail::to_text(cells) +
+                          " voxels: expected no more than 2^32; voxels are " + pulsecast::detail::to_text(edge) +
+                          " m large");
     last_[axis] = cells - 1;
   }
 
@@ -160,8 +165,9 @@ class PointCloudReader {
     const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
     if (edge >= least) return;
     throw FileError(path.string(), "",
-                    "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
-                        pulsecast::detail::to_text(edge) + " m are below the resolution of coordinates: expected at least " +
+                    "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) +
+                        " m from the origin, where voxels of " + pulsecast::detail::to_text(edge) +
+                        " m are below the resolution of coordinates: expected at least " +
                         pulsecast::detail::to_text(least) + " m");
   }
 
@@ -172,8 +178,10 @@ class PointCloudReader {
     Cell cell{};
     Vec3 centre{};
     for (int axis = 0; axis < 3; ++axis) {
-      const double place = std::min(std::floor((p[axis] - origin_[axis]) / settings_.voxel_size) - first_[axis], last_[axis]);
-      if (!(p[axis] >= bounds_.min[axis] && p[axis] <= bounds_.max[axis])) points.fail_here("the file has changed while it was read");
+      const double place =
+          std::min(std::floor((p[axis] - origin_[axis]) / settings_.voxel_size) - first_[axis], last_[axis]);
+      if (!(p[axis] >= bounds_.min[axis] && p[axis] <= bounds_.max[axis]))
+        points.fail_here("the file has changed while it was read");
       cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
       centre[axis] = origin_[axis] + (first_[axis] + place + 0.5) * settings_.voxel_size;
     }
@@ -188,7 +196,8 @@ class PointCloudReader {
   void append() {
     counts_.push_back(0);
     if (normals_) sums_.emplace_back(0, 0, 0);
-    if (normals_ && settings_.normals == VoxelNormals::nearest) nearest_.push_back(std::numeric_limits<double>::infinity());
+    if (normals_ && settings_.normals == VoxelNormals::nearest)
+      nearest_.push_back(std::numeric_limits<double>::infinity());
     if (normals_ && settings_.normals == VoxelNormals::fitted) products_.push_back({});
     if (colours_) squares_.emplace_back(0, 0, 0);
   }
@@ -232,7 +241,8 @@ class PointCloudReader {
 
   [[nodiscard]] std::optional<Vec3> normal_of(std::size_t voxel) const {
     if (!normals_) return std::nullopt;
-    if (settings_.normals == VoxelNormals::fitted) return plane_normal(static_cast<double>(counts_[voxel]), sums_[voxel], products_[voxel]);
+    if (settings_.normals == VoxelNormals::fitted)
+      return plane_normal(static_cast<double>(counts_[voxel]), sums_[voxel], products_[voxel]);
     constexpr double rounding = 1e-12;  // residue where normals of one voxel cancel
     if (!(length(sums_[voxel]) > rounding * static_cast<double>(counts_[voxel]))) return std::nullopt;
     return normalize(sums_[voxel]);
@@ -241,7 +251,9 @@ class PointCloudReader {
   void finish_normals() {
     if (settings_.normals == VoxelNormals::none || (!normals_ && !settings_.default_normal)) return;
     const std::optional<Vec3> otherwise =
-        settings_.default_normal ? std::optional(normalize(*settings_.default_normal / max_norm(*settings_.default_normal))) : std::nullopt;
+        settings_.default_normal
+            ? std::optional(normalize(*settings_.default_normal / max_norm(*settings_.default_normal)))
+            : std::nullopt;
     std::uint64_t without = 0;
     cloud_.voxels.normals.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
@@ -252,18 +264,22 @@ class PointCloudReader {
       cloud_.voxels.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
     }
     if (without > 0)
-      cloud_.warnings.push_back(std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
-                                (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
-                                                                           : "the normals of their points are zero, or cancel"));
+      cloud_.warnings.push_back(
+          std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
+          (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
+                                                     : "the normals of their points are zero, or cancel"));
   }
 
   void finish_colours() {
     if (!colours_) return;
     if (brightest_ > 0 && brightest_ <= 255)
-      cloud_.warnings.push_back("no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
+      cloud_.warnings.push_back(
+          "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
     cloud_.colours.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
-      const auto channel = [&](int k) { return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel]))); };
+      const auto channel = [&](int k) {
+        return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel])));
+      };
       cloud_.colours.push_back({channel(0), channel(1), channel(2)});
     }
   }
@@ -285,7 +301,8 @@ class PointCloudReader {
 
 }  // namespace detail
 
-PULSECAST_INLINE PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) {
+PULSECAST_INLINE PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths,
+                                             const PointCloudSettings& settings) {
   if (paths.empty()) throw SettingError("read_point_cloud paths", 0, "", "at least one");
   return reading(paths.front(), [&] { return detail::PointCloudReader(paths, settings).result(); });
 }

@@ -16,9 +16,10 @@ namespace PULSECAST_NAMESPACE::io {
 /// Spectra by name.
 struct SpectralLibrary {
   std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
-  std::vector<std::string> reports{};                                             ///< report of each file, as in `SpectrumFile`
-  std::vector<std::string> warnings{};                                            ///< oddities that could still be read
-  std::vector<double> wavelengths{};  ///< of the lasers, if known: materials whose spectra do not reach them cause a warning [m]
+  std::vector<std::string> reports{};   ///< report of each file, as in `SpectrumFile`
+  std::vector<std::string> warnings{};  ///< oddities that could still be read
+  std::vector<double>
+      wavelengths{};  ///< of the lasers, if known: materials whose spectra do not reach them cause a warning [m]
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

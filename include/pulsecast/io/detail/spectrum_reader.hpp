@@ -67,7 +67,8 @@ class SpectrumReader {
     if (!unit_ || !scale_) titles();
     SpectrumFile file;
     file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
-    std::stable_sort(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    std::stable_sort(samples_.begin(), samples_.end(),
+                     [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
     file.spectrum = std::make_shared<const Spectrum>(united());
     file.warnings = std::move(warnings_);
     return file;
@@ -104,7 +105,8 @@ class SpectrumReader {
       return;
     }
     begun_ = true;
-    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12)) table_.fail_here(text::quoted(text) + ": expected a wavelength greater than 0");
+    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12))
+      table_.fail_here(text::quoted(text) + ": expected a wavelength greater than 0");
     if (reflectance.number) samples_.push_back({{*wavelength, *reflectance.number}, table_.line()});
   }
 
@@ -117,7 +119,8 @@ class SpectrumReader {
     if (!is_key("y units:")) return;
     scale_ = reflectance_scale_in(line);
     scale_line_ = table_.line();
-    if (line.find("reflect") == line.npos) table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
+    if (line.find("reflect") == line.npos)
+      table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
   }
 
   /// Takes units from the line above the numbers if no key named them.
@@ -130,12 +133,16 @@ class SpectrumReader {
 
   std::string take_wavelengths() {
     static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
-    const auto [low, high] =
-        std::minmax_element(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    const auto [low, high] = std::minmax_element(
+        samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
     const double shortest = low->wavelength;
     const bool told = unit_.has_value();
-    if (!told) unit_ = shortest >= 100 ? WavelengthUnit::nanometre : shortest < 0.01 ? WavelengthUnit::metre : WavelengthUnit::micrometre;
-    const std::string range = pulsecast::detail::to_text(shortest) + " to " + pulsecast::detail::to_text(high->wavelength);
+    if (!told)
+      unit_ = shortest >= 100   ? WavelengthUnit::nanometre
+              : shortest < 0.01 ? WavelengthUnit::metre
+                                : WavelengthUnit::micrometre;
+    const std::string range =
+        pulsecast::detail::to_text(shortest) + " to " + pulsecast::detail::to_text(high->wavelength);
     for (Row& sample : samples_) {
       double& w = sample.wavelength;
       w = *unit_ == WavelengthUnit::metre        ? w
@@ -168,7 +175,8 @@ class SpectrumReader {
     }
     if (clipped.count > 0)
       warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
-    return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", by the header" : ", as " + reach);
+    return std::string("reflectance in ") + (percent ? "percent" : "fractions") +
+           (told ? ", by the header" : ", as " + reach);
   }
 
   /// Samples with those of equal wavelength averaged.
@@ -178,13 +186,15 @@ class SpectrumReader {
     for (std::size_t i = 0; i < samples_.size();) {
       std::size_t end = i;
       double sum = 0;
-      for (; end < samples_.size() && samples_[end].wavelength == samples_[i].wavelength; ++end) sum += samples_[end].reflectance;
+      for (; end < samples_.size() && samples_[end].wavelength == samples_[i].wavelength; ++end)
+        sum += samples_[end].reflectance;
       all.push_back({samples_[i].wavelength, std::min(sum / static_cast<double>(end - i), 1.0)});
       if (end - i > 1) repeated.at(samples_[i + 1].line);
       i = end;
     }
     if (repeated.count > 0)
-      warn(repeated.first, "a wavelength is repeated, the first of " + std::to_string(repeated.count) + ": the mean is used");
+      warn(repeated.first,
+           "a wavelength is repeated, the first of " + std::to_string(repeated.count) + ": the mean is used");
     return all;
   }
 
@@ -199,7 +209,8 @@ class SpectrumReader {
   std::string titles_;  // last line of the header, in small letters
   std::size_t titles_line_ = 0;
   std::vector<std::string> warnings_;
-  std::size_t scale_line_ = 0, odd_ = 0;  // lines of the header's scale, and of the first wavelength outside the range of light
+  std::size_t scale_line_ = 0,
+              odd_ = 0;  // lines of the header's scale, and of the first wavelength outside the range of light
   bool begun_ = false;
 };
 
@@ -215,7 +226,8 @@ PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::pa
   if (std::filesystem::is_directory(path, error)) {
     for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
       std::error_code ignored;
-      if (entry->is_regular_file(ignored) && !entry->path().filename().string().starts_with('.')) files.push_back(entry->path());
+      if (entry->is_regular_file(ignored) && !entry->path().filename().string().starts_with('.'))
+        files.push_back(entry->path());
     }
     if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
     std::sort(files.begin(), files.end());
@@ -237,7 +249,8 @@ PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::pa
       library.warnings.push_back(std::string(unreadable.what()) + "; it is left out");
     }
   }
-  if (library.spectra.empty()) throw FileError(path.string(), "", "holds no spectrum: expected files of wavelength and reflectance");
+  if (library.spectra.empty())
+    throw FileError(path.string(), "", "holds no spectrum: expected files of wavelength and reflectance");
   return library;
 }
 

@@ -83,7 +83,8 @@ class VoxelFileReader {
         resolution(value);
       } else if (key == "max_pad") {
         const std::vector<double> given = numbers(value);
-        if (given.size() != 1 || !(given[0] > 0)) table_.fail_here("'max_pad' is " + text::quoted(value) + ": expected a number above 0");
+        if (given.size() != 1 || !(given[0] > 0))
+          table_.fail_here("'max_pad' is " + text::quoted(value) + ": expected a number above 0");
         max_pad_ = given[0];
       }
     }
@@ -101,7 +102,8 @@ class VoxelFileReader {
 
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
     const std::vector<double> given = numbers(value);
-    if (given.size() != 3) table_.fail_here("'" + key + "' is " + text::quoted(value) + ": expected three numbers within 1e12");
+    if (given.size() != 3)
+      table_.fail_here("'" + key + "' is " + text::quoted(value) + ": expected three numbers within 1e12");
     return {given[0], given[1], given[2]};
   }
 
@@ -126,12 +128,15 @@ class VoxelFileReader {
     };
     const auto need = [&](std::string_view name) {
       const std::optional<std::size_t> column = find(name);
-      if (!column) table_.fail_here("no column is named '" + std::string(name) + "': expected a row of names, as 'i j k PadBVTotal ...'");
+      if (!column)
+        table_.fail_here("no column is named '" + std::string(name) +
+                         "': expected a row of names, as 'i j k PadBVTotal ...'");
       return *column;
     };
     index_ = {need("i"), need("j"), need("k")};
     density_ = need("PadBVTotal");
-    transmittance_ = settings_.use == VoxelUse::transmissive ? find("transmittance") : std::optional(need("transmittance"));
+    transmittance_ =
+        settings_.use == VoxelUse::transmissive ? find("transmittance") : std::optional(need("transmittance"));
     columns_ = names.size();
   }
 
@@ -142,17 +147,19 @@ class VoxelFileReader {
     file_.voxels.edge = *edge_;
     if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
       throw FileError(table_.path(), TextTable::place(edge_line_),
-                      "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " + pulsecast::detail::to_text(least) +
-                          " at the distance of 'min_corner' from the origin");
+                      "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " +
+                          pulsecast::detail::to_text(least) + " at the distance of 'min_corner' from the origin");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
     if (max_norm(should - *max_corner_) > *edge_ / 2)
-      file_.warnings.push_back(table_.path() + ": 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
+      file_.warnings.push_back(table_.path() +
+                               ": 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
   }
 
   void row() {
     const std::vector<std::string_view>& cells = table_.cells();
-    if (cells.size() < columns_) table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(columns_));
+    if (cells.size() < columns_)
+      table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(columns_));
     const CellNumbers::Cell cell{index(0), index(1), index(2)};
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= max_number))
@@ -160,12 +167,15 @@ class VoxelFileReader {
     const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
     if (density < 0 || density > max_number)
       table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
-    if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no line end: the file may be truncated");
+    if (table_.line_is_open())
+      file_.warnings.push_back(table_.path() + ": the last line has no line end: the file may be truncated");
     if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
-    if (cells_.number(cell) != before) table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");
+    if (cells_.number(cell) != before)
+      table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");
     density_max_ = std::fmax(density_max_, density);
-    if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance)) return;
+    if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance))
+      return;
     if (std::isnan(density) && settings_.use != VoxelUse::opaque) return no_density_.at(table_.line());
     kept_.push_back(cell);
     densities_.push_back(static_cast<float>(density));
@@ -178,14 +188,15 @@ class VoxelFileReader {
     const auto value = text::number_in<std::uint32_t>(text);
     if (!value) table_.fail_here(column, text::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
     if (split_ && !(*value < (*split_)[axis]))
-      table_.fail_here(column, text::quoted(text) + ": expected less than the " + pulsecast::detail::to_text((*split_)[axis]) +
-                                   " voxels that 'split' gives");
+      table_.fail_here(column, text::quoted(text) + ": expected less than the " +
+                                   pulsecast::detail::to_text((*split_)[axis]) + " voxels that 'split' gives");
     return *value;
   }
 
   [[nodiscard]] double number(std::size_t column) {
     const std::string_view text = table_.cells()[column];
-    if (text::is_same_word(text, "nan") || text::is_same_word(text, "-nan")) return std::numeric_limits<double>::quiet_NaN();
+    if (text::is_same_word(text, "nan") || text::is_same_word(text, "-nan"))
+      return std::numeric_limits<double>::quiet_NaN();
     const std::optional<double> value = text::finite_number_in(text);
     if (!value) table_.fail_here(column, text::quoted(text) + ": expected a number, with a decimal point, or NaN");
     return *value;
@@ -200,9 +211,11 @@ class VoxelFileReader {
     if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
     file_.voxels.cells = std::move(kept_);
     warn(no_density_, "has no density (NaN)", "they are left out");
-    warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::to_text(file_.density_max) + " m^2/m^3", "they fill their cells");
+    warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::to_text(file_.density_max) + " m^2/m^3",
+         "they fill their cells");
     if (file_.voxels.cells.empty())
-      table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel" : "has no occupied voxel: expected at least one");
+      table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"
+                                     : "has no occupied voxel: expected at least one");
   }
 
   /// Sets the size of each cube, and its shift if requested; removes those of size 0.
@@ -226,7 +239,8 @@ class VoxelFileReader {
 
   /// Uniform shift that keeps the cube inside its cell, in edges of the cell.
   [[nodiscard]] std::array<float, 3> shift(const CellNumbers::Cell& cell, float size) const {
-    const auto words = random_words({*settings_.shift, std::uint64_t{cell[1]} << 32 | cell[0], cell[2], Purpose::scene});
+    const auto words =
+        random_words({*settings_.shift, std::uint64_t{cell[1]} << 32 | cell[0], cell[2], Purpose::scene});
     std::array<float, 3> result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double within = (words[axis] + 0.5) * 0x1p-31 - 1;  // (-1, 1)
@@ -238,7 +252,8 @@ class VoxelFileReader {
   void warn(const Oddity& oddity, const std::string& what, const std::string& consequence) {
     if (oddity.count == 0) return;
     const std::string place = oddity.first > 0 ? ", " + TextTable::place(oddity.first) : "";
-    file_.warnings.push_back(table_.path() + place + ": a voxel " + what + ", one of " + std::to_string(oddity.count) + ": " + consequence);
+    file_.warnings.push_back(table_.path() + place + ": a voxel " + what + ", one of " + std::to_string(oddity.count) +
+                             ": " + consequence);
   }
 
   [[nodiscard]] static std::string to_text(const CellNumbers::Cell& cell) {

@@ -28,11 +28,13 @@ PULSECAST_INLINE WorldFile read_world_file(const std::filesystem::path& path) {
     const std::optional<double> value = text::finite_number_in(table.text());
     if (!value) table.fail_here(text::quoted(table.text()) + ": expected a number, with a decimal point");
     const bool is_place = i >= 4, is_size = i == 0 || i == 3;
-    if (is_place && !(std::fabs(*value) <= 1e15)) table.fail_here(text::quoted(table.text()) + ": expected a place within 1e15 m");
+    if (is_place && !(std::fabs(*value) <= 1e15))
+      table.fail_here(text::quoted(table.text()) + ": expected a place within 1e15 m");
     if (is_size && !(std::fabs(*value) >= 1e-9 && std::fabs(*value) <= 1e6))
       table.fail_here(text::quoted(table.text()) + ": expected the size of a pixel, from 1e-9 m to 1e6 m");
     if (i == 0 && *value < 0) table.fail_here("has columns that go west: expected a positive width of the pixels");
-    if (!is_place && !is_size && *value != 0) table.fail_here("is rotated or sheared: expected 0; resampling to north up makes it so");
+    if (!is_place && !is_size && *value != 0)
+      table.fail_here("is rotated or sheared: expected 0; resampling to north up makes it so");
     values[i] = *value;
   }
   if (table.next()) table.fail_here("is a line too many: expected six");
@@ -44,7 +46,8 @@ PULSECAST_INLINE std::vector<std::filesystem::path> world_files_of(const std::fi
   std::vector<std::filesystem::path> all;
   if (extension.size() < 3) return all;
   for (const char* const w : {"w", "W"})
-    for (const std::string& name : {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(*w == 'w' ? ".wld" : ".WLD")})
+    for (const std::string& name :
+         {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(*w == 'w' ? ".wld" : ".WLD")})
       all.push_back(std::filesystem::path(picture).replace_extension(name));
   return all;
 }

@@ -43,8 +43,8 @@ struct MpiCost {
   double seconds = 0;  ///< computing time [s]
 };
 
-/// Schedule of a run, on the first process: blocks are handed out in order, and finish in any. They shrink towards the end, so that all
-/// processes end together; memory and time of a block are bounded.
+/// Schedule of a run, on the first process: blocks are handed out in order, and finish in any. They shrink towards the
+/// end, so that all processes end together; memory and time of a block are bounded.
 class MpiBlockScheduler {
  public:
   MpiBlockScheduler(PulseIndex slots, unsigned processes) : slots_(slots), processes_(std::max(1U, processes)) {}
@@ -53,7 +53,8 @@ class MpiBlockScheduler {
   [[nodiscard]] std::optional<MpiBlock> next(int owner) {
     if (handed_out_ == slots_) return std::nullopt;
     const PulseIndex left = slots_ - handed_out_;
-    const PulseIndex size = std::min(left, std::clamp(left / (4 * processes_), min_slots, most()) / min_slots * min_slots);
+    const PulseIndex size =
+        std::min(left, std::clamp(left / (4 * processes_), min_slots, most()) / min_slots * min_slots);
     const MpiBlock block{next_, handed_out_, handed_out_ + size};
     owners_.emplace(next_++, owner);
     handed_out_ += size;
@@ -72,7 +73,8 @@ class MpiBlockScheduler {
     cost_.seconds += cost.seconds;
   }
 
-  /// Calls place(number, owner, extents) in order for each finished block without an unfinished one before it, as long as may() is true.
+  /// Calls place(number, owner, extents) in order for each finished block without an unfinished one before it, as long
+  /// as may() is true.
   template <class May, class Place>
   void settle(const May& may, const Place& place) {
     for (auto due = finished_.find(placed_); due != finished_.end() && may(); due = finished_.find(placed_)) {
@@ -95,7 +97,8 @@ class MpiBlockScheduler {
   /// Upper limit of a block's slots; small until a cost is known.
   [[nodiscard]] PulseIndex most() const noexcept {
     if (cost_.slots == 0) return first_slots;
-    const double slots = static_cast<double>(cost_.slots), by_bytes = max_bytes / std::max(1.0, static_cast<double>(cost_.bytes)) * slots,
+    const double slots = static_cast<double>(cost_.slots),
+                 by_bytes = max_bytes / std::max(1.0, static_cast<double>(cost_.bytes)) * slots,
                  by_seconds = max_seconds / std::max(1e-9, cost_.seconds) * slots;
     const double allowed = std::min({by_bytes, by_seconds, static_cast<double>(max_slots)});
     return std::max(min_slots, static_cast<PulseIndex>(allowed));

@@ -24,14 +24,16 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// MPI environment: the first object of a program, and the last to go. Destruction by an exception aborts all processes, as the others
-/// would wait for ever; messages to the user must come before. Throws a `SettingError` if MPI lacks MPI_THREAD_SERIALIZED.
+/// MPI environment: the first object of a program, and the last to go. Destruction by an exception aborts all
+/// processes, as the others would wait for ever; messages to the user must come before. Throws a `SettingError` if MPI
+/// lacks MPI_THREAD_SERIALIZED.
 class MpiSession {
  public:
   MpiSession() {
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
-    if (provided < MPI_THREAD_SERIALIZED) throw SettingError("MPI thread level", provided, "", "MPI_THREAD_SERIALIZED at least");
+    if (provided < MPI_THREAD_SERIALIZED)
+      throw SettingError("MPI thread level", provided, "", "MPI_THREAD_SERIALIZED at least");
   }
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
@@ -52,8 +54,8 @@ struct MpiTraffic {
   std::uint64_t messages = 0, bytes = 0;
 };
 
-/// Messages among the processes of a communicator, non-blocking, in order between any two processes. Calls may come from several threads,
-/// one at a time. Errors of MPI itself abort the program (its default).
+/// Messages among the processes of a communicator, non-blocking, in order between any two processes. Calls may come
+/// from several threads, one at a time. Errors of MPI itself abort the program (its default).
 class MpiChannel {
  public:
   using Bytes = std::vector<std::byte>;

@@ -20,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first write. Throws a
-/// `FileError` that names the final path.
+/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first
+/// write. Throws a `FileError` that names the final path.
 class MpiFile {
  public:
   explicit MpiFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -32,9 +32,11 @@ class MpiFile {
   }
 
   void write(std::uint64_t position, std::span<const std::byte> bytes) {
-    if (file_ < 0 && !bytes.empty()) file_ = ::open(io::OutputFile::temporary_name(path_).c_str(), O_WRONLY | O_CLOEXEC);
+    if (file_ < 0 && !bytes.empty())
+      file_ = ::open(io::OutputFile::temporary_name(path_).c_str(), O_WRONLY | O_CLOEXEC);
     while (!bytes.empty()) {
-      const ssize_t written = file_ < 0 ? -1 : ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(position));
+      const ssize_t written =
+          file_ < 0 ? -1 : ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(position));
       if (written < 0 && errno == EINTR) continue;
       if (written < 0) fail(bytes.size());
       bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -54,8 +56,9 @@ class MpiFile {
  private:
   [[noreturn]] void fail(std::size_t bytes) const {
     throw FileError(path_.string(), "",
-                    "cannot be written by all processes: " + std::generic_category().message(errno) + "; expected room for " +
-                        std::to_string(bytes) + " more bytes in a folder that all machines share");
+                    "cannot be written by all processes: " + std::generic_category().message(errno) +
+                        "; expected room for " + std::to_string(bytes) +
+                        " more bytes in a folder that all machines share");
   }
 
   std::filesystem::path path_;

@@ -22,7 +22,8 @@ namespace PULSECAST_NAMESPACE::mpi {
 
 class MpiOutput;
 
-/// Processes of a communicator that run surveys together, and their shared outputs. Construction and destruction are collective.
+/// Processes of a communicator that run surveys together, and their shared outputs. Construction and destruction are
+/// collective.
 class MpiGroup {
  public:
   explicit MpiGroup(MPI_Comm communicator = MPI_COMM_WORLD) : channel_(communicator) {}
@@ -32,12 +33,15 @@ class MpiGroup {
   [[nodiscard]] int size() const noexcept { return channel_.size(); }
   [[nodiscard]] bool first() const noexcept { return channel_.first(); }
 
-  /// Begins a run, whose messages go to `handler`. Other processes may be in the next run already: their messages are kept for it.
+  /// Begins a run, whose messages go to `handler`. Other processes may be in the next run already: their messages are
+  /// kept for it.
   using Handler = void (*)(void* run, int from, int kind, MpiMessage message);
   void begin(void* run, Handler handler);
   void end() noexcept { handler_ = nullptr; }
   /// Sends a message to the same run on another process; `kind` is from 0 to 7.
-  void send(int to, int kind, MpiMessage message) { channel_.send(to, 2 + 8 * parity_ + kind, std::move(message).take()); }
+  void send(int to, int kind, MpiMessage message) {
+    channel_.send(to, 2 + 8 * parity_ + kind, std::move(message).take());
+  }
 
   /// Handles all messages that have arrived; true if there was any.
   bool serve();
@@ -59,7 +63,9 @@ class MpiGroup {
  private:
   static constexpr int to_output = 1;  // tag of messages to outputs; runs have those from 2 on
 
-  void hand_over(int from, int kind, MpiChannel::Bytes bytes) { handler_(run_, from, (kind - 2) % 8, MpiMessage(std::move(bytes))); }
+  void hand_over(int from, int kind, MpiChannel::Bytes bytes) {
+    handler_(run_, from, (kind - 2) % 8, MpiMessage(std::move(bytes)));
+  }
 
   struct Early {
     int from, kind;
@@ -80,15 +86,18 @@ class MpiPiece {
   virtual ~MpiPiece() = default;
   /// Resets the piece, keeping its memory.
   virtual void clear() = 0;
-  virtual void operator()(const EchoBatch& batch) = 0;                            ///< adds a batch, in pulse order
-  [[nodiscard]] virtual bool reads_empty_shots() const noexcept { return true; }  ///< as the concept ChoosesShots describes
+  virtual void operator()(const EchoBatch& batch) = 0;  ///< adds a batch, in pulse order
+  [[nodiscard]] virtual bool reads_empty_shots() const noexcept {
+    return true;
+  }  ///< as the concept ChoosesShots describes
   /// Size of the piece, after the last batch.
   [[nodiscard]] virtual MpiExtent extent() = 0;
   [[nodiscard]] virtual std::size_t memory() const noexcept = 0;  ///< [byte]
 };
 
-/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and puts each at the place that the first
-/// process assigns once all before is known. Construction and `close()` are collective, in the same order.
+/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and puts each at the
+/// place that the first process assigns once all before is known. Construction and `close()` are collective, in the
+/// same order.
 class MpiOutput {
  public:
   explicit MpiOutput(MpiGroup& group) : group_(group), number_(group.enter(*this)) {}
@@ -156,7 +165,8 @@ inline void MpiGroup::begin(void* run, Handler handler) {
 inline bool MpiGroup::serve() {
   return channel_.poll([this](int from, int kind, MpiChannel::Bytes bytes) {
     if (kind != to_output) {
-      if (handler_ == nullptr || (kind - 2) / 8 != parity_) return void(early_.push_back({from, kind, std::move(bytes)}));
+      if (handler_ == nullptr || (kind - 2) / 8 != parity_)
+        return void(early_.push_back({from, kind, std::move(bytes)}));
       return hand_over(from, kind, std::move(bytes));
     }
     MpiMessage message(std::move(bytes));

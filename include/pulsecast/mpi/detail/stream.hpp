@@ -25,12 +25,16 @@ namespace PULSECAST_NAMESPACE::mpi {
 class MpiBatchWriter {
  public:
   /// `empty_shots`: as `reads_empty_shots()` of the sink.
-  explicit MpiBatchWriter(io::OutputFile file, bool empty_shots = true) : file_(std::move(file)), empty_shots_(empty_shots) {}
+  explicit MpiBatchWriter(io::OutputFile file, bool empty_shots = true)
+      : file_(std::move(file)), empty_shots_(empty_shots) {}
 
-  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] bool reads_empty_shots() const noexcept {
+    return empty_shots_;
+  }  ///< as the concept ChoosesShots describes
 
   void operator()(const EchoBatch& batch) {
-    const Head head{batch.shots.size(), batch.echoes.size(), batch.samples.size(), batch.subrays.size(), batch.sample_interval};
+    const Head head{batch.shots.size(), batch.echoes.size(), batch.samples.size(), batch.subrays.size(),
+                    batch.sample_interval};
     file_.write(std::as_bytes(std::span(&head, 1)));
     file_.write(std::as_bytes(batch.shots));
     file_.write(std::as_bytes(batch.echoes));
@@ -66,8 +70,8 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   }
 }
 
-/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time. For a compressed stream: one
-/// process must make it, while all simulate and format text.
+/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time. For a
+/// compressed stream: one process must make it, while all simulate and format text.
 template <class Writer>
 class MpiStream final : public MpiOutput {
  public:
@@ -122,7 +126,9 @@ class MpiStream final : public MpiOutput {
       writer.emplace(make(io::OutputFile("piece", bytes)));
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept override { return pulsecast::detail::reads_empty_shots(*writer); }
+    [[nodiscard]] bool reads_empty_shots() const noexcept override {
+      return pulsecast::detail::reads_empty_shots(*writer);
+    }
     [[nodiscard]] MpiExtent extent() override {
       writer->close();
       return {};

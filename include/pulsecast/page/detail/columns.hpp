@@ -38,7 +38,8 @@ struct PageColumnSettings {
   }
 };
 
-/// Step of coordinates for an extent [m]: the least of 1, 2 and 5 times a power of ten with 2^17 steps across, at least 0.1 mm.
+/// Step of coordinates for an extent [m]: the least of 1, 2 and 5 times a power of ten with 2^17 steps across, at least
+/// 0.1 mm.
 [[nodiscard]] inline double page_step(double extent) noexcept {
   for (double power = 1e-4; power < 1e300; power *= 10)
     for (const double step : {power, 2 * power, 5 * power})
@@ -77,7 +78,8 @@ PageCodes linear_codes(std::string name, std::span<const PagePoint> points, doub
   return out;
 }
 
-/// Logarithmic codes: 1 + the number of steps of the logarithm above the least value. Values not above zero have code 0.
+/// Logarithmic codes: 1 + the number of steps of the logarithm above the least value. Values not above zero have code
+/// 0.
 template <class Value>
 PageCodes logarithmic_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
@@ -103,8 +105,8 @@ PageCodes listed_codes(std::string name, std::span<const PagePoint> points, cons
   values.erase(std::unique(values.begin(), values.end()), values.end());
   PageCodes out{.name = std::move(name), .kind = "listed", .differences = false};
   for (const PagePoint& p : points)
-    out.codes.push_back(1 +
-                        std::uint64_t{pulsecast::detail::first_not(values.size(), [&](std::size_t i) { return values[i] < value(p); })});
+    out.codes.push_back(1 + std::uint64_t{pulsecast::detail::first_not(
+                                values.size(), [&](std::size_t i) { return values[i] < value(p); })});
   out.values = std::move(values);
   return out;
 }
@@ -125,7 +127,8 @@ inline double time_of_a_pulse(std::span<const PagePoint> points) {
   return (points.back().time - points.front().time) / static_cast<double>(points.back().pulse - points.front().pulse);
 }
 
-/// Replaces codes by differences to the previous one, with the sign in the lowest bit: small numbers for similar neighbours.
+/// Replaces codes by differences to the previous one, with the sign in the lowest bit: small numbers for similar
+/// neighbours.
 inline void make_differences(std::vector<std::uint64_t>& codes) {
   std::uint64_t before = 0;
   for (std::uint64_t& code : codes) {
@@ -150,7 +153,8 @@ inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, 
     do {
       stream.next_out = room.data();
       stream.avail_out = static_cast<uInt>(room.size());
-      deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);  // cannot fail: the stream is valid, and the output has room
+      deflate(&stream,
+              bytes.empty() ? Z_FINISH : Z_NO_FLUSH);  // cannot fail: the stream is valid, and the output has room
       out.append(reinterpret_cast<const char*>(room.data()), room.size() - stream.avail_out);
     } while (stream.avail_out == 0);
   } while (!bytes.empty());
@@ -217,13 +221,15 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 ///
 ///     {"count":N,"columns":[{"name":"x","kind":"linear","offset":0,"step":0.001,"differences":true,"planes":2},...]}
 ///
-/// The deflated bytes are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1) step, offset exp((code
-/// - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the previous code, doubled, less one if negative.
-/// `per_pulse`, times the pulse's number, is added to a value. Values are exact to half a step. Positions have that of the settings, also
-/// the origins of pulses (`from_x` and so on). Steps of others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002,
-/// width 1 ps. Amplitudes are exact to 1 %, integers exactly. A colour is the
-/// number 65536 red + 256 green + blue.
-[[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points, const PageColumnSettings& settings = {}) {
+/// The deflated bytes are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1)
+/// step, offset exp((code
+/// - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the previous code, doubled,
+/// less one if negative. `per_pulse`, times the pulse's number, is added to a value. Values are exact to half a step.
+/// Positions have that of the settings, also the origins of pulses (`from_x` and so on). Steps of others: time 0.1 us,
+/// scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width 1 ps. Amplitudes are exact to 1 %, integers
+/// exactly. A colour is the number 65536 red + 256 green + blue.
+[[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points,
+                                              const PageColumnSettings& settings = {}) {
   settings.validate();
   using detail::linear_codes, detail::logarithmic_codes, detail::listed_codes;
   using Point = const PagePoint&;
@@ -236,28 +242,33 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
   for (int k = 0; k < 3; ++k) {
     const std::string axis(1, "xyz"[k]);
     block.add(linear_codes(axis, points, step, [k](Point p) { return p.position[k]; }));
-    block.add(linear_codes("from_" + axis, points, step,
-                           [k](Point p) { return p.position[k] + static_cast<double>(p.to_instrument[static_cast<std::size_t>(k)]); }));
+    block.add(linear_codes("from_" + axis, points, step, [k](Point p) {
+      return p.position[k] + static_cast<double>(p.to_instrument[static_cast<std::size_t>(k)]);
+    }));
   }
   block.add(linear_codes("pulse", points, 1, [](Point p) { return static_cast<double>(p.pulse); }));
-  detail::PageCodes times = linear_codes("time", points, 1e-7, [each](Point p) { return p.time - each * static_cast<double>(p.pulse); });
+  detail::PageCodes times =
+      linear_codes("time", points, 1e-7, [each](Point p) { return p.time - each * static_cast<double>(p.pulse); });
   times.per_pulse = each;
   block.add(std::move(times));
   block.add(linear_codes("return_number", points, 1, [](Point p) { return p.number; }));
   block.add(linear_codes("returns", points, 1, [](Point p) { return p.returns; }));
   block.add(linear_codes("leg", points, 1, [](Point p) { return p.leg; }));
   block.add(linear_codes("channel", points, 1, [](Point p) { return p.channel; }));
-  block.add(linear_codes("scan_angle", points, 0.05, [](Point p) { return static_cast<double>(p.scan_angle) * 180 / pi; }));
+  block.add(
+      linear_codes("scan_angle", points, 0.05, [](Point p) { return static_cast<double>(p.scan_angle) * 180 / pi; }));
   block.add(listed_codes("object", points, [](Point p) { return p.object; }));
   block.add(listed_codes("class", points, [](Point p) { return p.classification; }));
   block.add(unlike(linear_codes("reflectance", points, 0.002, [](Point p) { return p.reflectance; })));
   block.add(logarithmic_codes("amplitude", points, 0.02, [](Point p) { return p.amplitude; }));
-  block.add(unlike(linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; })));
+  block.add(unlike(
+      linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; })));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.kind != ReflectionKind::surface; }))
     block.add(listed_codes("kind", points, [](Point p) { return static_cast<std::uint32_t>(p.kind); }));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
     block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
-  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.coloured; })) block.add(detail::colour_codes(points));
+  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.coloured; }))
+    block.add(detail::colour_codes(points));
   if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));
   return block.finish(settings.effort);
 }

@@ -16,8 +16,8 @@ namespace PULSECAST_NAMESPACE::page::detail {
 
 /// JSON writer, token by token; it sets the commas. Source: RFC 8259.
 ///
-/// Texts are escaped for HTML, too: `<`, `>` and `&` become codes. A number that is not finite becomes `null`. The caller closes each array
-/// and object.
+/// Texts are escaped for HTML, too: `<`, `>` and `&` become codes. A number that is not finite becomes `null`. The
+/// caller closes each array and object.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }
@@ -40,7 +40,9 @@ class JsonWriter {
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(bool truth) { return token(truth ? "true" : "false"); }
   JsonWriter& value(std::integral auto number) { return token(std::to_string(number)); }
-  JsonWriter& value(double number) { return token(std::isfinite(number) ? pulsecast::detail::to_text(number) : "null"); }
+  JsonWriter& value(double number) {
+    return token(std::isfinite(number) ? pulsecast::detail::to_text(number) : "null");
+  }
 
   template <class T, std::size_t N>
   JsonWriter& value(const std::array<T, N>& values) {

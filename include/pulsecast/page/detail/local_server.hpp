@@ -28,7 +28,7 @@ namespace PULSECAST_NAMESPACE::page {
 
 /// Limits of a `LocalServer` that protect the program's memory, descriptors and time from clients.
 struct LocalServerLimits {
-  std::size_t connections = 32;                     ///< open at once, in half of the process's descriptors; one more closes the oldest
+  std::size_t connections = 32;  ///< open at once, in half of the process's descriptors; one more closes the oldest
   std::size_t request_bytes = 65'536;               ///< request line and headers
   std::chrono::milliseconds request_time{2'000};    ///< from the connection to the end of the headers
   std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte sent
@@ -71,8 +71,9 @@ class BufferedExchange final : public httplib::Stream {
 
 }  // namespace detail
 
-/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses the routes and the parser of
-/// `httplib::Server`. One thread polls all connections, so that idle clients cost nothing. A connection is one request, without a body.
+/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses the routes and the
+/// parser of `httplib::Server`. One thread polls all connections, so that idle clients cost nothing. A connection is
+/// one request, without a body.
 class LocalServer final : public httplib::Server {
  public:
   explicit LocalServer(const LocalServerLimits& limits = {}) : limits_(limits) {
@@ -92,8 +93,9 @@ class LocalServer final : public httplib::Server {
   int bind(int port) {
     const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
     if (bound <= 0)
-      throw std::runtime_error((port > 0 ? "port " + std::to_string(port) + " is not free" : std::string("no port is free")) +
-                               " at 127.0.0.1");
+      throw std::runtime_error(
+          (port > 0 ? "port " + std::to_string(port) + " is not free" : std::string("no port is free")) +
+          " at 127.0.0.1");
     ::listen(svr_sock_, SOMAXCONN);
     return bound;
   }
@@ -129,7 +131,8 @@ class LocalServer final : public httplib::Server {
     std::vector<pollfd> ready;
     while (!ending_) {
       ready.assign(1, {may_accept ? svr_sock_.load() : -1, POLLIN, 0});
-      for (const Connection& c : open_) ready.push_back({c.socket, static_cast<short>(c.answered ? POLLOUT : POLLIN), 0});
+      for (const Connection& c : open_)
+        ready.push_back({c.socket, static_cast<short>(c.answered ? POLLOUT : POLLIN), 0});
       poll(ready.data(), ready.size(), may_accept && open_.empty() ? -1 : tick);
       const auto now = Clock::now();  // once a round: the time of one response is not charged to the others
       for (std::size_t k = 0; k < open_.size(); ++k) {
@@ -142,7 +145,8 @@ class LocalServer final : public httplib::Server {
     close_if([](const Connection&) { return true; });
   }
 
-  /// Accepts one connection only, so that all others are served before the next. Returns false if the system has no descriptor left.
+  /// Accepts one connection only, so that all others are served before the next. Returns false if the system has no
+  /// descriptor left.
   bool accept_one() {
     socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;

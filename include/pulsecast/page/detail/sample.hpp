@@ -49,8 +49,8 @@ struct PagePoint {
   return static_cast<std::uint32_t>((h ^ h >> 33) >> 32);
 }
 
-/// Sink that keeps at most `most` points, those with the least keys, in pulse order: a uniform sample that depends on the echoes alone. It
-/// skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
+/// Sink that keeps at most `most` points, those with the least keys, in pulse order: a uniform sample that depends on
+/// the echoes alone. It skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
 class PageSample {
  public:
   /// `most` is from 2 to 2^27. Points have `colours`, which are asked for those that are kept for the moment.
@@ -66,23 +66,24 @@ class PageSample {
         if (thinned_ && key >= largest_key_) continue;
         const Vec3 position = point_of(shot, echo), back = shot.direction * -echo.range;
         if (!finite(position) || !finite(back)) continue;
-        points_.push_back({.position = position,
-                           .time = shot.tick.seconds(),
-                           .pulse = shot.index,
-                           .to_instrument = {static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)},
-                           .amplitude = static_cast<float>(echo.amplitude),
-                           .reflectance = static_cast<float>(echo.reflectance),
-                           .width = static_cast<float>(echo.width),
-                           .incidence = static_cast<float>(std::acos(std::clamp(echo.cos_incidence, -1.0, 1.0))),
-                           .scan_angle = static_cast<float>(shot.scan_angle),
-                           .object = echo.object,
-                           .key = key,
-                           .classification = echo.classification,
-                           .leg = shot.leg,
-                           .number = echo.number,
-                           .returns = static_cast<std::uint8_t>(std::min<std::uint32_t>(shot.echoes, 255)),
-                           .channel = shot.channel,
-                           .kind = echo.kind});
+        points_.push_back(
+            {.position = position,
+             .time = shot.tick.seconds(),
+             .pulse = shot.index,
+             .to_instrument = {static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)},
+             .amplitude = static_cast<float>(echo.amplitude),
+             .reflectance = static_cast<float>(echo.reflectance),
+             .width = static_cast<float>(echo.width),
+             .incidence = static_cast<float>(std::acos(std::clamp(echo.cos_incidence, -1.0, 1.0))),
+             .scan_angle = static_cast<float>(shot.scan_angle),
+             .object = echo.object,
+             .key = key,
+             .classification = echo.classification,
+             .leg = shot.leg,
+             .number = echo.number,
+             .returns = static_cast<std::uint8_t>(std::min<std::uint32_t>(shot.echoes, 255)),
+             .channel = shot.channel,
+             .kind = echo.kind});
         if (colours_) set_colour(colours_(batch, shot, echo), points_.back());
         if (points_.size() >= most_ + most_ / 4 + 1) thin();
       }
@@ -115,7 +116,8 @@ class PageSample {
     largest_key_ = *last;
     thinned_ = true;
     auto equal = 1 + std::count(keys_.begin(), last, largest_key_);  // number of them that stay
-    std::erase_if(points_, [&](const PagePoint& p) { return p.key > largest_key_ || (p.key == largest_key_ && equal-- <= 0); });
+    std::erase_if(points_,
+                  [&](const PagePoint& p) { return p.key > largest_key_ || (p.key == largest_key_ && equal-- <= 0); });
   }
 
   std::size_t most_;

@@ -18,7 +18,8 @@
 #include <pulsecast/base/namespace.hpp>
 
 // The structures of Arrow, under the guards that all its users share.
-// Source: Apache Arrow, The Arrow C Data Interface, Structure definitions; The Arrow C Stream Interface, Structure definition.
+// Source: Apache Arrow, The Arrow C Data Interface, Structure definitions; The Arrow C Stream Interface, Structure
+// definition.
 extern "C" {
 
 #ifndef ARROW_C_DATA_INTERFACE
@@ -83,7 +84,8 @@ class ArrowTable {
       const auto text = name.cast<std::string>();
       if (columns_.empty()) rows_ = array.size();
       if (array.ndim() != 1 || array.size() != rows_ || (rows_ > 1 && array.strides(0) != array.itemsize()))
-        throw pybind11::value_error("column '" + text + "': expected " + std::to_string(rows_) + " numbers one after another");
+        throw pybind11::value_error("column '" + text + "': expected " + std::to_string(rows_) +
+                                    " numbers one after another");
       columns_.push_back({text, format_of(text, array.dtype()), std::move(array)});
     }
   }
@@ -94,7 +96,8 @@ class ArrowTable {
     held->children.resize(columns_.size());
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       auto texts = std::make_unique<std::pair<std::string, std::string>>(columns_[k].format, columns_[k].name);
-      held->children[k] = {texts->first.c_str(), texts->second.c_str(), nullptr, 0, 0, nullptr, nullptr, &release_column, texts.get()};
+      held->children[k] = {
+          texts->first.c_str(), texts->second.c_str(), nullptr, 0, 0, nullptr, nullptr, &release_column, texts.get()};
       (void)texts.release();
       held->pointers.push_back(&held->children[k]);
     }
@@ -115,7 +118,8 @@ class ArrowTable {
       held->pointers.push_back(&held->children[k]);
     }
     const auto count = static_cast<std::int64_t>(columns_.size());
-    out = {rows_, 0, 0, 1, count, &held->validity, held->pointers.data(), nullptr, &release_table<ArrowArray>, held.get()};
+    out = {rows_,     0, 0, 1, count, &held->validity, held->pointers.data(), nullptr, &release_table<ArrowArray>,
+           held.get()};
     (void)held.release();
   }
 
@@ -183,7 +187,8 @@ class ArrowTable {
                                         {"f4", "f"},
                                         {"f8", "g"}})
       if (numpy == known) return format;
-    throw pybind11::value_error("column '" + name + "': expected numbers of this machine, not " + std::string(pybind11::repr(type)));
+    throw pybind11::value_error("column '" + name + "': expected numbers of this machine, not " +
+                                std::string(pybind11::repr(type)));
   }
 
   std::vector<Column> columns_;
@@ -197,7 +202,8 @@ class ArrowStream {
   /// Source: Apache Arrow, The Arrow PyCapsule Interface.
   [[nodiscard]] static pybind11::object capsule(const pybind11::dict& columns) {
     auto held = std::make_unique<ArrowStream>(ArrowTable(columns));
-    auto stream = std::make_unique<ArrowArrayStream>(ArrowArrayStream{&get_schema, &get_next, &get_last_error, &release, held.get()});
+    auto stream = std::make_unique<ArrowArrayStream>(
+        ArrowArrayStream{&get_schema, &get_next, &get_last_error, &release, held.get()});
     PyObject* const made = PyCapsule_New(stream.get(), name, [](PyObject* of_stream) {
       auto* const unused = static_cast<ArrowArrayStream*>(PyCapsule_GetPointer(of_stream, name));
       if (unused->release) unused->release(unused);
@@ -214,7 +220,9 @@ class ArrowStream {
  private:
   static constexpr const char* name = "arrow_array_stream";
 
-  [[nodiscard]] static ArrowStream& of(ArrowArrayStream* stream) noexcept { return *static_cast<ArrowStream*>(stream->private_data); }
+  [[nodiscard]] static ArrowStream& of(ArrowArrayStream* stream) noexcept {
+    return *static_cast<ArrowStream*>(stream->private_data);
+  }
 
   /// Calls `fill`; 0, or an error number of which `get_last_error` tells.
   template <class Fill>

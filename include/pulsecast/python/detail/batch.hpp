@@ -34,9 +34,10 @@ struct Batch {
   pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
   pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
   double sample_interval = 0;          ///< between samples [s]
-  pybind11::dict columns{};            ///< arrays by name, of a number an echo; without those of the rows unless `by_column` is set
-  bool by_column = false;              ///< true if points are kept by column, and not as rows
-  RunSummary summary{};                ///< of the whole run; empty in a batch for a callback
+  pybind11::dict
+      columns{};           ///< arrays by name, of a number an echo; without those of the rows unless `by_column` is set
+  bool by_column = false;  ///< true if points are kept by column, and not as rows
+  RunSummary summary{};    ///< of the whole run; empty in a batch for a callback
 };
 
 /// Kinds of data that a `RowSink` keeps.
@@ -50,17 +51,18 @@ struct KeptData {
 class RowSink {
  public:
   /// @throws SettingError for an attribute of the name of another column
-  explicit RowSink(KeptData kept) : keeps_pulses_(kept.pulses), by_column_(kept.columns), columns_(kept.columns, std::move(kept.extras)) {}
+  explicit RowSink(KeptData kept)
+      : keeps_pulses_(kept.pulses), by_column_(kept.columns), columns_(kept.columns, std::move(kept.extras)) {}
 
   void operator()(const EchoBatch& batch) {
     sample_interval_ = batch.sample_interval;
     pulse_count_ += batch.shots.size();
     for (const Shot& s : batch.shots) {
       if (keeps_pulses_) {
-        pulses_.push_back({static_cast<std::int64_t>(s.index), s.tick.seconds(), s.origin.x, s.origin.y, s.origin.z, s.direction.x,
-                           s.direction.y, s.direction.z, s.scan_angle, s.waveform_start, static_cast<std::int64_t>(samples_.size()),
-                           static_cast<std::int64_t>(point_count_), s.samples, s.echoes, s.leg, s.channel,
-                           static_cast<std::uint8_t>(s.fate)});
+        pulses_.push_back({static_cast<std::int64_t>(s.index), s.tick.seconds(), s.origin.x, s.origin.y, s.origin.z,
+                           s.direction.x, s.direction.y, s.direction.z, s.scan_angle, s.waveform_start,
+                           static_cast<std::int64_t>(samples_.size()), static_cast<std::int64_t>(point_count_),
+                           s.samples, s.echoes, s.leg, s.channel, static_cast<std::uint8_t>(s.fate)});
         for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
       }
       for (const Echo& e : batch.echoes_of(s)) {
@@ -102,7 +104,8 @@ class RowSink {
 /// State of a `Batch` for `pickle`.
 [[nodiscard]] inline pybind11::tuple state_of(const Batch& b) {
   return pybind11::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
-                              pybind11::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary), b.columns, b.by_column);
+                              pybind11::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary), b.columns,
+                              b.by_column);
 }
 
 /// Inverse of `state_of`. Throws a `ValueError` for the state of another version.
@@ -123,14 +126,16 @@ class RowSink {
 
 /// Rows of the points. Throws an `AttributeError` if they are kept by column.
 [[nodiscard]] inline pybind11::array_t<PointRow> points_of(const Batch& b) {
-  if (b.by_column) throw pybind11::attribute_error("points are kept by column: take `columns`, or run without columns=True");
+  if (b.by_column)
+    throw pybind11::attribute_error("points are kept by column: take `columns`, or run without columns=True");
   return b.points;
 }
 
 /// All columns of the points, as arrays by name: views of the rows, if there are any.
 [[nodiscard]] inline pybind11::dict columns_of(const Batch& b) {
   pybind11::dict all;
-  if (!b.by_column) std::apply([&](const auto&... member) { ((all[member.name] = b.points[member.name]), ...); }, point_members);
+  if (!b.by_column)
+    std::apply([&](const auto&... member) { ((all[member.name] = b.points[member.name]), ...); }, point_members);
   for (const auto& [name, column] : b.columns) all[name] = column;
   return all;
 }
@@ -140,13 +145,15 @@ class RowSink {
   return b.by_column ? pybind11::len(b.columns["x"]) : static_cast<std::size_t>(b.points.size());
 }
 
-/// Capsule of the columns, as `__arrow_c_stream__` returns it. The schema that a consumer asks for is a wish, which is not granted.
-/// Throws a `ValueError` if points are kept as rows, of which Arrow takes no columns without copies.
+/// Capsule of the columns, as `__arrow_c_stream__` returns it. The schema that a consumer asks for is a wish, which is
+/// not granted. Throws a `ValueError` if points are kept as rows, of which Arrow takes no columns without copies.
 [[nodiscard]] inline pybind11::object arrow_stream_of(const Batch& b, const pybind11::object& requested_schema) {
   if (!requested_schema.is_none() && PyCapsule_IsValid(requested_schema.ptr(), "arrow_schema") == 0)
     throw pybind11::type_error("__arrow_c_stream__ requested_schema: expected a capsule 'arrow_schema', not " +
                                std::string(pybind11::repr(requested_schema)));
-  if (!b.by_column) throw pybind11::value_error("points are kept as rows, which Arrow cannot take without copies: run with columns=True");
+  if (!b.by_column)
+    throw pybind11::value_error(
+        "points are kept as rows, which Arrow cannot take without copies: run with columns=True");
   return ArrowStream::capsule(b.columns);
 }
 
@@ -167,24 +174,31 @@ inline void bind_batch(pybind11::module_& m) {
     return all;
   };
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
+      .def_property_readonly("points", &points_of,
+                             "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity "
+                             "[W]; reflectance; echo_width [s]; "
+                             "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; "
+                             "channel; kind of light: "
+                             "0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the air, 5 scattered more "
+                             "than once. AttributeError after "
+                             "run(columns=True).")
       .def_property_readonly(
-          "points", &points_of,
-          "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
-          "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel; kind of light: "
-          "0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the air, 5 scattered more than once. AttributeError after "
-          "run(columns=True).")
-      .def_property_readonly("columns", &columns_of,
-                             "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "
-                             "65535) after run(colours=True), and the attributes of objects, NaN where an object has none. After "
-                             "run(columns=True) each is contiguous, else those of `points` are views of its rows.")
+          "columns", &columns_of,
+          "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "
+          "65535) after run(colours=True), and the attributes of objects, NaN where an object has none. After "
+          "run(columns=True) each is contiguous, else those of `points` are views of its rows.")
       .def("__arrow_c_stream__", &arrow_stream_of, py::arg("requested_schema") = py::none(),
-           "Capsule of an Arrow C stream of the columns, which shares their memory, for run(columns=True). Raises ValueError otherwise.")
-      .def_readonly("pulses", &Batch::pulses,
-                    "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
-                    "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; channel; fate, "
-                    "an index into FATES.")
+           "Capsule of an Arrow C stream of the columns, which shares their memory, for run(columns=True). Raises "
+           "ValueError otherwise.")
+      .def_readonly(
+          "pulses", &Batch::pulses,
+          "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
+          "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; "
+          "channel; fate, "
+          "an index into FATES.")
       .def_readonly("waveforms", &Batch::waveforms, "Samples of all pulses, concatenated, shape (n,) [W].")
-      .def_readonly("sample_interval", &Batch::sample_interval, "Sample spacing of the waveforms [s]; 0 without waveforms.")
+      .def_readonly("sample_interval", &Batch::sample_interval,
+                    "Sample spacing of the waveforms [s]; 0 without waveforms.")
       .def_property_readonly(
           "slots", [](const Batch& b) { return b.summary.slots; }, "Pulse slots done.")
       .def_property_readonly(
@@ -196,14 +210,15 @@ inline void bind_batch(pybind11::module_& m) {
       .def_property_readonly("fates", fates, "Pulse slots by fate.")
       .def_property_readonly(
           "energy", [](const Batch& b) { return dict_of(b.summary.energy); },
-          "Energy sent, and its parts by the end of their paths [J]: missed, out_of_range, absorbed, scattered, cut. received: energy at "
+          "Energy sent, and its parts by the end of their paths [J]: missed, out_of_range, absorbed, scattered, cut. "
+          "received: energy at "
           "the "
           "receiver, of that scattered.")
       .def("waveform_of", &waveform_of, py::arg("row"), "Samples of the pulse in a row of `pulses`, shape (n,) [W].")
       .def("__repr__",
            [](const Batch& b) {
-             return "<Batch of " + std::to_string(point_count(b)) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +
-                    std::to_string(b.waveforms.size()) + " samples>";
+             return "<Batch of " + std::to_string(point_count(b)) + " points, " + std::to_string(b.pulses.size()) +
+                    " pulses, " + std::to_string(b.waveforms.size()) + " samples>";
            })
       .def(py::pickle(&state_of, &batch_of));
 }

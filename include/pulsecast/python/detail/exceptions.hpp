@@ -35,12 +35,13 @@ void raise(pybind11::handle type, const std::string& message, std::pair<const ch
 
 /// Exception classes of the library in Python.
 struct Exceptions {
-  pybind11::handle setting =
-      shared_exception("SettingError", PyExc_ValueError, "Setting outside its allowed range. Attributes: field, value, unit, allowed.");
-  pybind11::handle file =
-      shared_exception("FileError", PyExc_OSError, "Missing, malformed or unwritable file. Attributes: path, place, problem.");
-  pybind11::handle interrupted = shared_exception("Interrupted", PyExc_KeyboardInterrupt,
-                                                  "Ctrl-C during a run. Attribute: result, the Batch up to then, which is complete.");
+  pybind11::handle setting = shared_exception(
+      "SettingError", PyExc_ValueError, "Setting outside its allowed range. Attributes: field, value, unit, allowed.");
+  pybind11::handle file = shared_exception("FileError", PyExc_OSError,
+                                           "Missing, malformed or unwritable file. Attributes: path, place, problem.");
+  pybind11::handle interrupted =
+      shared_exception("Interrupted", PyExc_KeyboardInterrupt,
+                       "Ctrl-C during a run. Attribute: result, the Batch up to then, which is complete.");
 };
 
 /// Adds the exception classes to a module, which translates those of C++ into them.
@@ -54,10 +55,11 @@ inline void bind_exceptions(pybind11::module_& m) {
     try {
       if (raised) std::rethrow_exception(raised);
     } catch (const SettingError& e) {
-      raise(types.setting, e.what(), std::pair{"field", e.field()}, std::pair{"value", e.value()}, std::pair{"unit", e.unit()},
-            std::pair{"allowed", e.allowed()});
+      raise(types.setting, e.what(), std::pair{"field", e.field()}, std::pair{"value", e.value()},
+            std::pair{"unit", e.unit()}, std::pair{"allowed", e.allowed()});
     } catch (const FileError& e) {
-      raise(types.file, e.what(), std::pair{"path", e.path()}, std::pair{"place", e.place()}, std::pair{"problem", e.problem()});
+      raise(types.file, e.what(), std::pair{"path", e.path()}, std::pair{"place", e.place()},
+            std::pair{"problem", e.problem()});
     }
   });
 }

@@ -17,8 +17,9 @@
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Lets Python handle its signals during work without the GIL, which it does on the main thread alone. A handler that raises, as that of
-/// Ctrl-C, stops the work; one that does not, as that of `asyncio` at the first Ctrl-C, is called meanwhile.
+/// Lets Python handle its signals during work without the GIL, which it does on the main thread alone. A handler that
+/// raises, as that of Ctrl-C, stops the work; one that does not, as that of `asyncio` at the first Ctrl-C, is called
+/// meanwhile.
 class InterruptWatch {
  public:
   explicit InterruptWatch(std::stop_source stopping) : stopping_(std::move(stopping)) {
@@ -26,7 +27,8 @@ class InterruptWatch {
     on_main_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
   }
 
-  /// Calls `work()` on a thread of its own and handles signals on this one; on any but the main thread, simply calls it. Needs the GIL.
+  /// Calls `work()` on a thread of its own and handles signals on this one; on any but the main thread, simply calls
+  /// it. Needs the GIL.
   template <class Work>
   void during(const Work& work) {
     const pybind11::gil_scoped_release free;

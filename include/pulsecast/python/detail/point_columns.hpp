@@ -39,7 +39,8 @@ struct PointExtras {
     std::apply([&](const auto&... member) { (taken.emplace_back(member.name), ...); }, point_members);
     for (const std::string& name : attributes.names())
       if (std::find(taken.begin(), taken.end(), name) != taken.end())
-        throw SettingError("Part::attributes '" + name + "' (number of such columns)", 2, "", "1: another name than those of points");
+        throw SettingError("Part::attributes '" + name + "' (number of such columns)", 2, "",
+                           "1: another name than those of points");
   }
 
   /// Columns of colours.
@@ -66,7 +67,8 @@ class PointColumns {
     if (whole_) push_members(row, std::make_index_sequence<std::tuple_size_v<Members>>());
     if (extras_.colours) {
       const PointColour c = extras_.colours(batch, shot, echo).value_or(PointColour{});
-      for (std::size_t k = 0; k < colours_.size(); ++k) colours_[k].push_back(std::array{c.red, c.green, c.blue, c.near_infrared}[k]);
+      for (std::size_t k = 0; k < colours_.size(); ++k)
+        colours_[k].push_back(std::array{c.red, c.green, c.blue, c.near_infrared}[k]);
     }
     if (attributes_.empty()) return;
     const std::span<const double> values = extras_.attributes.of(echo.object);
@@ -77,8 +79,10 @@ class PointColumns {
   [[nodiscard]] pybind11::dict take() {
     pybind11::dict columns;
     if (whole_) take_members(columns, std::make_index_sequence<std::tuple_size_v<Members>>());
-    for (std::size_t k = 0; extras_.colours && k < colours_.size(); ++k) columns[PointExtras::colour_names[k]] = colours_[k].take();
-    for (std::size_t k = 0; k < attributes_.size(); ++k) columns[extras_.attributes.names()[k].c_str()] = attributes_[k].take();
+    for (std::size_t k = 0; extras_.colours && k < colours_.size(); ++k)
+      columns[PointExtras::colour_names[k]] = colours_[k].take();
+    for (std::size_t k = 0; k < attributes_.size(); ++k)
+      columns[extras_.attributes.names()[k].c_str()] = attributes_[k].take();
     return columns;
   }
 

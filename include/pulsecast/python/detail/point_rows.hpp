@@ -14,7 +14,8 @@
 
 namespace PULSECAST_NAMESPACE::python {
 
-/// Echo as a row of a NumPy array, named as in point clouds. Numbers for calculation are signed, as NumPy makes fractions of unsigned ones.
+/// Echo as a row of a NumPy array, named as in point clouds. Numbers for calculation are signed, as NumPy makes
+/// fractions of unsigned ones.
 struct PointRow {
   double x, y, z;                  ///< position in the world [m]
   double time;                     ///< departure of its pulse, since the survey's start [s]
@@ -110,10 +111,10 @@ inline constexpr std::tuple point_members{PointMember{"x", &PointRow::x},
 /// Declares the rows to NumPy, in one registry for all modules.
 inline void bind_rows() {
   if (pybind11::detail::get_numpy_internals().get_type_info<PointRow>(false)) return;
-  PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
-                       leg, return_number, number_of_returns, channel, kind);
-  PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
-                       first_point, samples, points, leg, channel, fate);
+  PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object,
+                       classification, leg, return_number, number_of_returns, channel, kind);
+  PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle,
+                       waveform_start, first_sample, first_point, samples, points, leg, channel, fate);
 }
 
 }  // namespace gnu::visibility("hidden")]]python

@@ -20,7 +20,8 @@
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array never takes twice its memory.
+/// Rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array never takes
+/// twice its memory.
 template <class Row>
 requires std::is_trivially_copyable_v<Row>
 class Rows {

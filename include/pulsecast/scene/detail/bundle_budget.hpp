@@ -12,8 +12,9 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Limit of the search of an accelerator by a bundle, which asks for it after each leaf. A bundle meets all primitives between its rays:
-/// where they are many, as the leaves in a broad beam, single rays are faster, and the bundle gives up: nothing more is in its limit.
+/// Limit of the search of an accelerator by a bundle, which asks for it after each leaf. A bundle meets all primitives
+/// between its rays: where they are many, as the leaves in a broad beam, single rays are faster, and the bundle gives
+/// up: nothing more is in its limit.
 template <class Hits>
 struct BudgetedLimit {
   static constexpr int most = 128;  ///< leaves that cost about as much as single rays
@@ -31,7 +32,8 @@ struct BudgetedLimit {
   [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
 };
 
-/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a `BundleOfOne` to a `ClosestHit`.
+/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a
+/// `BundleOfOne` to a `ClosestHit`.
 template <class Rays, HitsOf<Rays> Hits, class Search>
 void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) noexcept {
   for (std::size_t j = 0; j < rays.size; ++j) {

@@ -15,11 +15,13 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Heights of the 4 by 2 cells of a node of level 1 of a pyramid: in the raster itself, or copied from its edge or from packed heights.
+/// Heights of the 4 by 2 cells of a node of level 1 of a pyramid: in the raster itself, or copied from its edge or from
+/// packed heights.
 class CellBlock {
  public:
   /// Sets the heights of the cells of a node, and returns the mask of those in the raster.
-  unsigned put(Box8<float>& boxes, const RasterGrid& grid, const PixelHeights& all, std::uint32_t column, std::uint32_t row) noexcept {
+  unsigned put(Box8<float>& boxes, const RasterGrid& grid, const PixelHeights& all, std::uint32_t column,
+               std::uint32_t row) noexcept {
     const std::uint32_t c = 4 * column, r = 2 * row;
     const bool is_whole = c + 5 <= grid.columns && r + 3 <= grid.rows;
     if (is_whole && !all.is_packed()) {
@@ -30,7 +32,9 @@ class CellBlock {
       return 0xFF;
     }
     const std::uint32_t wide = std::min(grid.columns - c, 5U), high = std::min(grid.rows - r, 3U);
-    all.read([&](const auto& heights) { is_whole ? copy(heights, grid, c, r) : copy_edge(heights, grid, c, r, wide, high); });
+    all.read([&](const auto& heights) {
+      is_whole ? copy(heights, grid, c, r) : copy_edge(heights, grid, c, r, wide, high);
+    });
     for (std::size_t i = 0; i < 3; ++i) rows_[i] = copied_[i];
     put(boxes);
     const unsigned part = (1U << (wide - 1)) - 1;
@@ -53,7 +57,8 @@ class CellBlock {
   void copy_edge(const Heights& heights, const RasterGrid& grid, std::uint32_t c, std::uint32_t r, std::uint32_t wide,
                  std::uint32_t high) noexcept {
     for (std::uint32_t i = 0; i < 3; ++i)
-      for (std::uint32_t j = 0; j < 5; ++j) copied_[i][j] = heights[grid.index(c + std::min(j, wide - 1), r + std::min(i, high - 1))];
+      for (std::uint32_t j = 0; j < 5; ++j)
+        copied_[i][j] = heights[grid.index(c + std::min(j, wide - 1), r + std::min(i, high - 1))];
   }
 
   void put(Box8<float>& boxes) const noexcept {

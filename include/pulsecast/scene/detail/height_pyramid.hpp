@@ -38,9 +38,9 @@ struct HeightInterval {
   }
 };
 
-/// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2 cells, then alternately 2 by 4 and 4 by
-/// 2 nodes. The pyramid holds the heights of the children, node by node: eight minima, then eight maxima; an empty interval where there is
-/// no triangle.
+/// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2 cells, then
+/// alternately 2 by 4 and 4 by 2 nodes. The pyramid holds the heights of the children, node by node: eight minima, then
+/// eight maxima; an empty interval where there is no triangle.
 struct PyramidLevel {
   std::uint32_t columns = 0, rows = 0;
   std::size_t begin = 0;                 ///< start in the pyramid
@@ -81,7 +81,8 @@ struct PyramidLayout {
       level.begin = size;
       level.below = below.shift;
       level.shift = {below.shift[0] + wide, below.shift[1] + tall};
-      level.size = {static_cast<float>((1U << below.shift[0]) * grid.pixel.x), static_cast<float>((1U << below.shift[1]) * grid.pixel.y)};
+      level.size = {static_cast<float>((1U << below.shift[0]) * grid.pixel.x),
+                    static_cast<float>((1U << below.shift[1]) * grid.pixel.y)};
       for (std::uint32_t i = 0; i < 8; ++i) {
         level.east[i] = static_cast<float>(((i & ((1U << wide) - 1)) << below.shift[0]) * grid.pixel.x);
         level.south[i] = static_cast<float>((i >> wide << below.shift[1]) * grid.pixel.y);
@@ -93,7 +94,8 @@ struct PyramidLayout {
 
 /// Bounding box of the triangles of a node of level 1: 4 by 2 cells.
 template <class Heights>
-[[nodiscard]] Box ground_of(const RasterGrid& grid, const Heights& heights, std::uint32_t node_column, std::uint32_t node_row) {
+[[nodiscard]] Box ground_of(const RasterGrid& grid, const Heights& heights, std::uint32_t node_column,
+                            std::uint32_t node_row) {
   const std::uint32_t west = 4 * node_column, north = 2 * node_row;
   const std::uint32_t east = std::min(west + 4, grid.columns - 1), south = std::min(north + 2, grid.rows - 1);
   HeightInterval range;
@@ -125,7 +127,8 @@ struct HeightPyramid {
   Box bounds{};
 
   template <class Heights>
-  HeightPyramid(const RasterGrid& grid, const Heights& pixels, const PyramidLayout& layout, Workers workers) : heights(layout.size) {
+  HeightPyramid(const RasterGrid& grid, const Heights& pixels, const PyramidLayout& layout, Workers workers)
+      : heights(layout.size) {
     constexpr HeightInterval empty;
     for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 16 < 8 ? empty.least : empty.greatest;
     std::vector<Box> grounds(layout.levels[1].rows);

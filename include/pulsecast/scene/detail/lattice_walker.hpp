@@ -21,7 +21,8 @@ struct LatticeWalker {
   std::array<double, 3> next;  ///< range of the exit plane along each axis
   bool inside = false;
 
-  LatticeWalker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept : ray(r), in{near, Crossing::begin} {
+  LatticeWalker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept
+      : ray(r), in{near, Crossing::begin} {
     if (!ray.valid()) return;
     for (int k = 0; k < 3; ++k) {
       if (ray.sense(k) == 0) continue;
@@ -47,7 +48,8 @@ struct LatticeWalker {
       next[axis] = std::numeric_limits<double>::infinity();
       return ray.above(k, c) && !ray.above(k, c + 1);
     }
-    const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0, back = 1 - front;
+    const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0,
+                       back = 1 - front;
     while (c != last && !in.before(ray.crossing(k, c + front))) c += sense;
     while (c != first && in.before(ray.crossing(k, c + back))) c -= sense;
     cell[axis] = c;
@@ -75,8 +77,8 @@ struct LatticeWalker {
     return neighbours(from, cell[axis]);
   }
 
-  /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by the mask `occupied`,
-  /// or outside of its 4 x 4 x 4. False if the ray never leaves.
+  /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by
+  /// the mask `occupied`, or outside of its 4 x 4 x 4. False if the ray never leaves.
   bool leap(int shift, std::uint64_t occupied) noexcept {
     LatticeCell at;
     std::array<double, 3> exit;

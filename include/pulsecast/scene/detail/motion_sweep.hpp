@@ -20,9 +20,9 @@ namespace PULSECAST_NAMESPACE::detail {
 
 [[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
 
-/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from an axis in uniform
-/// straight motion; in the unit of the distance.
-/// Source: the error of linear interpolation, |f''| h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
+/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from
+/// an axis in uniform straight motion; in the unit of the distance. Source: the error of linear interpolation, |f''|
+/// h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
 [[nodiscard]] inline double bulge(double distance, double angle) noexcept { return distance * angle * angle / 8; }
 
 /// Angle beyond which the bound of a turning point is its whole sphere [rad]; affects only the size of boxes.
@@ -35,7 +35,8 @@ inline constexpr double wide_turn = 2;
 }
 
 /// Box around a box after `first` to `last` repetitions of a rigid motion.
-[[nodiscard]] inline Box repeated_box(const Box& box, const Screw& once, std::int64_t first, std::int64_t last) noexcept {
+[[nodiscard]] inline Box repeated_box(const Box& box, const Screw& once, std::int64_t first,
+                                      std::int64_t last) noexcept {
   Box out = moved(box, repeated(once, first));
   out.extend(moved(box, repeated(once, last)));
   const RotationParts turn(once.turn);
@@ -62,7 +63,8 @@ struct SweptBody {
 
   /// Radius of a ball about the own centre that holds the body [m].
   [[nodiscard]] double radius() const noexcept { return length(offset) + length(half); }
-  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and these axes of the box [m].
+  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and these axes of the
+  /// box [m].
   [[nodiscard]] double corner_distance(const Vec3& middle, const Matrix3& axes) const noexcept {
     double mixed = 0;  // the corner in the octant of `middle`
     for (int k = 0; k < 3; ++k) mixed += std::fabs(dot(middle, axes[k])) * half[k];
@@ -83,8 +85,10 @@ struct SweptState {
   }
 };
 
-/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else as `extend_by_piece`.
-inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end, double span) noexcept {
+/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else as
+/// `extend_by_piece`.
+inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end,
+                           double span) noexcept {
   const MotionPiece& piece = *place.piece;
   const Vec3 first = state_at(place, body.start).centre, middle = piece.centre + piece.velocity * place.time.seconds();
   const double angle = std::fabs(piece.orbit.rate) * span, radius = length(first - middle);
@@ -96,7 +100,8 @@ inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& p
 }
 
 /// Extends a box by the path of a body, from a place in a piece to its time `end`, `span` seconds later.
-inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end, double span) noexcept {
+inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end,
+                            double span) noexcept {
   const MotionPiece& piece = *place.piece;
   if (piece.spins) return extend_by_ball(box, body, place, end, span);
   const BodyState state = state_at(place, body.start);
@@ -121,9 +126,10 @@ inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& 
   box.extend(grown(ends, bulge(radius, angle)));
 }
 
-/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that of a cycle.
-inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own, const MotionRun& run, std::int64_t first,
-                          std::int64_t last, double end) noexcept {
+/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that
+/// of a cycle.
+inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own, const MotionRun& run,
+                          std::int64_t first, std::int64_t last, double end) noexcept {
   const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);
   for (std::size_t k = run.first; k < run.end; ++k) {
     const MotionPiece& piece = motion.pieces[k];
@@ -146,7 +152,8 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
 }
 
 /// Box of all positions of the body's own centre between two times, from whole runs and cycles.
-[[nodiscard]] inline Box rough_path_box(const MotionTimeline& motion, const Vec3& start, const Tick& from, const Tick& to) noexcept {
+[[nodiscard]] inline Box rough_path_box(const MotionTimeline& motion, const Vec3& start, const Tick& from,
+                                        const Tick& to) noexcept {
   Box box, own;
   own.extend(start);
   const double end = to.seconds();
@@ -158,8 +165,8 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
           motion.runs[i].times > 1 ? Periods(since(motion.runs[i].start, to), motion.runs[i].pass_duration).whole : 0;
       const Tick early = motion.runs[i].start < from ? since(motion.runs[i].start, from) : Tick{};
       const std::int64_t first = motion.runs[i].times > 1 ? Periods(early, motion.runs[i].pass_duration).whole : 0;
-      extend_by_run(box, motion, own, motion.runs[i], std::min(first, motion.runs[i].times - 1), std::min(whole, motion.runs[i].times - 1),
-                    end);
+      extend_by_run(box, motion, own, motion.runs[i], std::min(first, motion.runs[i].times - 1),
+                    std::min(whole, motion.runs[i].times - 1), end);
     }
   if (cycles && !(to < motion.cycle_start)) {
     const Tick early = motion.cycle_start < from ? since(motion.cycle_start, from) : Tick{};
@@ -173,7 +180,8 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
 }
 
 /// Box that holds all points, relative to the reference [m], that a body passes between two times.
-[[nodiscard]] inline Box swept_box(const MotionTimeline& motion, const SweptBody& body, const Tick& from, const Tick& to) noexcept {
+[[nodiscard]] inline Box swept_box(const MotionTimeline& motion, const SweptBody& body, const Tick& from,
+                                   const Tick& to) noexcept {
   constexpr int max_pieces = 32;  // pieces bounded one by one; affects only the size of the box
   Box box;
   Tick tick = std::max(from, Tick{});

@@ -17,7 +17,8 @@
 /// Motion of a body as a list of steady pieces, in closed form over time.
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation about its own centre.
+/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation
+/// about its own centre.
 struct Change {
   Rotation attitude = no_rotation;
   Screw path{};
@@ -100,7 +101,8 @@ struct BodyState {
   const MotionPiece& p = *place.piece;
   if (p.about_itself) return p.velocity;
   const Turning& orbit = p.spins ? p.orbit : p.attitude;
-  const Vec3 axis_point = p.centre + p.velocity * static_cast<double>(place.time.second) + p.velocity * place.time.fraction;
+  const Vec3 axis_point =
+      p.centre + p.velocity * static_cast<double>(place.time.second) + p.velocity * place.time.fraction;
   return p.velocity + orbit.rate * cross(orbit.axis, centre - axis_point);
 }
 
@@ -114,7 +116,9 @@ struct MotionTimeline {
   double cycle_duration = 0;       ///< [s]
 
   [[nodiscard]] bool is_consistent() const noexcept {
-    const auto has_pieces = [this](const MotionRun& run) { return run.first < run.end && run.end <= pieces.size() && run.times > 0; };
+    const auto has_pieces = [this](const MotionRun& run) {
+      return run.first < run.end && run.end <= pieces.size() && run.times > 0;
+    };
     return !runs.empty() && cycle_first <= runs.size() && std::all_of(runs.begin(), runs.end(), has_pieces);
   }
 
@@ -140,7 +144,8 @@ struct MotionTimeline {
       first = end;
       end = runs.end();
     }
-    const MotionRun& run = *(std::upper_bound(first + 1, end, time, [](const Tick& t, const MotionRun& r) { return t < r.start; }) - 1);
+    const MotionRun& run =
+        *(std::upper_bound(first + 1, end, time, [](const Tick& t, const MotionRun& r) { return t < r.start; }) - 1);
     time = since(run.start, time);
     before = then(before, run.before);
     if (run.times > 1) {
@@ -155,7 +160,8 @@ struct MotionTimeline {
     const auto begin = pieces.begin();
     const auto from = begin + static_cast<std::ptrdiff_t>(run.first), to = begin + static_cast<std::ptrdiff_t>(run.end);
     const double seconds = time.seconds();
-    const MotionPiece& piece = *(std::upper_bound(from + 1, to, seconds, [](double t, const MotionPiece& p) { return t < p.start; }) - 1);
+    const MotionPiece& piece =
+        *(std::upper_bound(from + 1, to, seconds, [](double t, const MotionPiece& p) { return t < p.start; }) - 1);
     return {then(before, piece.before), &piece, piece.start > 0 ? since(Tick::of_seconds(piece.start), time) : time};
   }
 };

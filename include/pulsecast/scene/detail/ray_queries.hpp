@@ -15,7 +15,8 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
-/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a `HitBuffer`.
+/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a
+/// `HitBuffer`.
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Shape that takes such rays and hits.
@@ -30,14 +31,15 @@ concept SurfacedBySingleRay = requires(const Shape& shape, const BundleOfOne& ra
   shape.surface(PrimitiveIndex{}, ray, std::size_t{});
 };
 
-/// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays nor such hits is asked for the closest
-/// hit of a bundle.
+/// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays nor such hits is
+/// asked for the closest hit of a bundle.
 template <class Shape, class Rays, class Hits>
 void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   if constexpr (Intersects<Shape, Rays, Hits>) {
     shape.closest(rays, hits);
   } else if constexpr (std::is_same_v<Hits, HitBuffer>) {
-    hits.offer_chain(rays, [&shape](const BundleOfOne& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
+    hits.offer_chain(rays,
+                     [&shape](const BundleOfOne& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
   } else {
     const RayBundle bundle = bundle_of(rays, hits.limit_of(0));
     ClosestHits nearest(bundle);
@@ -95,12 +97,16 @@ std::size_t visit_hits(const Ray& ray, const Search& search,
 }
 
 template <class Part>
-[[nodiscard]] SurfacePoint surface_at(const RayHit& hit, const Ray& ray, const Part& part, const Similarity& placement) noexcept {
+[[nodiscard]] SurfacePoint surface_at(const RayHit& hit, const Ray& ray, const Part& part,
+                                      const Similarity& placement) noexcept {
   BundleOfOne before(ray);
-  before.near = std::nextafter(hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
+  before.near = std::nextafter(
+      hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
   const BundleOfOne local = placement.to_local(before);
-  SurfacePoint point{
-      .position = ray.origin + hit.range * ray.direction, .part = hit.part, .primitive = hit.primitive, .object = part.object};
+  SurfacePoint point{.position = ray.origin + hit.range * ray.direction,
+                     .part = hit.part,
+                     .primitive = hit.primitive,
+                     .object = part.object};
   const auto look = [&](const auto& shape) noexcept {
     using Shape = std::remove_cvref_t<decltype(*shape)>;
     const Surface surface = surface_of(*shape, hit.primitive, local);
@@ -109,7 +115,8 @@ template <class Part>
     point.material = &(*part.materials)[surface.material];
     point.material_index = surface.material;
     point.foliage = surface.foliage;
-    if constexpr (MadeOfTriangles<Shape>) point.weights = shape->triangle(hit.primitive).weights(local.origin, local.toward);
+    if constexpr (MadeOfTriangles<Shape>)
+      point.weights = shape->triangle(hit.primitive).weights(local.origin, local.toward);
     if constexpr (Textured<Shape>) point.texture = shape->texture(hit.primitive, *point.weights);
   };
   visit_shape(look, part.geometry);

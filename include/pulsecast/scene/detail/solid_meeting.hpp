@@ -12,8 +12,8 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray that begins inside a
-/// cube meets its far side, or the cube that touches it there.
+/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray
+/// that begins inside a cube meets its far side, or the cube that touches it there.
 template <class Columns, class Hits>
 class SolidMeeting {
  public:

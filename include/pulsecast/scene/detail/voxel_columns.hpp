@@ -21,7 +21,8 @@ class PackedVector {
  public:
   PackedVector() = default;
   explicit PackedVector(const std::array<float, 3>& v) noexcept {
-    for (const float x : v) bits_ = bits_ << 21 | static_cast<std::uint64_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * steps) + middle);
+    for (const float x : v)
+      bits_ = bits_ << 21 | static_cast<std::uint64_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * steps) + middle);
   }
 
   [[nodiscard]] Vec3 unpacked() const noexcept { return {part(42), part(21), part(0)}; }

@@ -23,14 +23,16 @@ namespace PULSECAST_NAMESPACE {
 namespace detail {
 
 /// Cell `a` relative to cell `b`.
-[[nodiscard]] inline LatticeCell cell_offset(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) noexcept {
-  return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]), static_cast<std::int32_t>(a[2] - b[2])};
+[[nodiscard]] inline LatticeCell cell_offset(const std::array<std::uint32_t, 3>& a,
+                                             const std::array<std::uint32_t, 3>& b) noexcept {
+  return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]),
+          static_cast<std::int32_t>(a[2] - b[2])};
 }
 
 /// Sort order in which the cells of a brick, and the bricks of a block, are contiguous.
 [[nodiscard]] inline std::uint64_t cell_sort_key(const LatticeCell& c) noexcept {
-  const std::uint64_t block =
-      static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 | static_cast<std::uint64_t>(c[2] >> 4) << 34;
+  const std::uint64_t block = static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 |
+                              static_cast<std::uint64_t>(c[2] >> 4) << 34;
   return block << 12 | std::uint64_t{cell_bit(c, 2)} << 6 | cell_bit(c, 0);
 }
 
@@ -67,7 +69,8 @@ class VoxelIndexBuilder {
     std::uint64_t last = no_key;
     for (const Keyed& cell : sorted) {
       if (cell.key == last)
-        throw SettingError("VoxelData::cells", cell.number, "", "unique; this entry repeats entry " + std::to_string(order.back()));
+        throw SettingError("VoxelData::cells", cell.number, "",
+                           "unique; this entry repeats entry " + std::to_string(order.back()));
       bricks += cell.key >> 6 != last >> 6;
       blocks += cell.key >> 12 != last >> 12;
       last = cell.key;
@@ -123,8 +126,8 @@ class VoxelIndexBuilder {
   }
 
   /// Sets the bricks and blocks of the index and returns the keys of the roots.
-  std::vector<std::uint64_t> group(const VoxelData& data, const std::array<std::uint32_t, 3>& least, const std::vector<Keyed>& sorted,
-                                   std::size_t bricks, std::size_t roots) {
+  std::vector<std::uint64_t> group(const VoxelData& data, const std::array<std::uint32_t, 3>& least,
+                                   const std::vector<Keyed>& sorted, std::size_t bricks, std::size_t roots) {
     const int height = index_.height_;
     VoxelNodes brick(bricks), block(height == 2 ? roots : 0);
     std::vector<std::uint64_t> keys;
@@ -134,7 +137,8 @@ class VoxelIndexBuilder {
       const std::uint64_t key = sorted[i].key;
       const bool new_brick = key >> 6 != last >> 6, new_root = key >> 6 * height != last >> 6 * height;
       if (new_root) keys.push_back(packed_cell(cell_offset(data.cells[sorted[i].number], least), 2 * height));
-      if (new_brick && height == 2) block.put(static_cast<unsigned>(key >> 6) & 63, brick.first.size(), key >> 12 != last >> 12);
+      if (new_brick && height == 2)
+        block.put(static_cast<unsigned>(key >> 6) & 63, brick.first.size(), key >> 12 != last >> 12);
       brick.put(static_cast<unsigned>(key) & 63, i, new_brick);
     }
     index_.brick_masks_ = SharedArray<std::uint64_t>(std::move(brick.mask));
@@ -154,8 +158,8 @@ class VoxelIndexBuilder {
     index_.slots_ = SharedArray<std::uint32_t>(std::move(slots));
   }
 
-  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A fourth of the budget bounds each level
-  /// indexed directly; hashed levels share the rest.
+  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A fourth of the
+  /// budget bounds each level indexed directly; hashed levels share the rest.
   void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
     const std::size_t affordable = budget / sizeof(std::uint64_t);
     std::vector<VoxelLevel> levels;
@@ -163,11 +167,12 @@ class VoxelIndexBuilder {
     for (std::int32_t shift = 2 * index_.height_; levels.empty() || whole.back() > 1; shift += 2) {
       std::array<std::size_t, 3> n;
       for (std::size_t k = 0; k < 3; ++k) n[k] = (static_cast<std::size_t>(index_.extent_[k] - 1) >> (shift + 2)) + 1;
-      levels.push_back({.extent = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])}, .shift = shift});
+      levels.push_back(
+          {.extent = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])}, .shift = shift});
       whole.push_back(n[0] * n[1] * n[2]);
     }
-    const auto hashed =
-        static_cast<std::size_t>(std::count_if(whole.begin(), whole.end(), [&](std::size_t words) { return words > affordable / 4; }));
+    const auto hashed = static_cast<std::size_t>(
+        std::count_if(whole.begin(), whole.end(), [&](std::size_t words) { return words > affordable / 4; }));
     std::vector<std::uint64_t> pyramid;
     for (std::size_t i = 0; i < levels.size(); ++i) {
       VoxelLevel& level = levels[i];
@@ -181,7 +186,8 @@ class VoxelIndexBuilder {
         pyramid[level.word(c)] |= std::uint64_t{1} << cell_bit(c, level.shift);
       }
       std::size_t set = 0;
-      for (std::size_t w = level.first; w < pyramid.size(); ++w) set += static_cast<std::size_t>(std::popcount(pyramid[w]));
+      for (std::size_t w = level.first; w < pyramid.size(); ++w)
+        set += static_cast<std::size_t>(std::popcount(pyramid[w]));
       if (level.words > 0 && set > words * 60)
         pyramid.resize(pyramid.size() - words);  // almost full
       else

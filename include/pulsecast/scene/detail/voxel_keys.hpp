@@ -34,8 +34,8 @@ inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
 
 /// Inverse of `packed_cell`, of no shift.
 [[nodiscard]] inline LatticeCell unpacked_cell(std::uint64_t key) noexcept {
-  return {static_cast<std::int32_t>(key & (max_lattice_extent - 1)), static_cast<std::int32_t>(key >> 21 & (max_lattice_extent - 1)),
-          static_cast<std::int32_t>(key >> 42)};
+  return {static_cast<std::int32_t>(key & (max_lattice_extent - 1)),
+          static_cast<std::int32_t>(key >> 21 & (max_lattice_extent - 1)), static_cast<std::int32_t>(key >> 42)};
 }
 
 /// Slot of a key in a hash table. Source: multiplicative hashing by the golden ratio, Knuth 1973.
@@ -44,8 +44,8 @@ inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
   return static_cast<std::size_t>(mixed * slots >> 32);
 }
 
-/// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a hash; an unset bit
-/// still proves its cube empty.
+/// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a
+/// hash; an unset bit still proves its cube empty.
 struct VoxelLevel {
   std::uint64_t first = 0;                ///< first word
   std::uint64_t words = 0;                ///< words of a hashed level; 0 if indexed directly
@@ -56,7 +56,8 @@ struct VoxelLevel {
   /// Index of the word that holds the bit of a cell.
   [[nodiscard]] std::size_t word(const LatticeCell& c) const noexcept {
     const int word_shift = shift + 2;
-    if (words > 0) return static_cast<std::size_t>(first) + hash_slot(packed_cell(c, word_shift), static_cast<std::size_t>(words));
+    if (words > 0)
+      return static_cast<std::size_t>(first) + hash_slot(packed_cell(c, word_shift), static_cast<std::size_t>(words));
     const auto x = static_cast<std::size_t>(c[0] >> word_shift), y = static_cast<std::size_t>(c[1] >> word_shift),
                z = static_cast<std::size_t>(c[2] >> word_shift);
     return static_cast<std::size_t>(first) + (z * extent[1] + y) * extent[0] + x;

@@ -18,11 +18,12 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Rain and snow that a beam meets drop by drop: a Poisson process in its volume, which reaches to two of its radii, where 99.97 % of its
-/// light is. Pure in the pulse.
+/// Rain and snow that a beam meets drop by drop: a Poisson process in its volume, which reaches to two of its radii,
+/// where 99.97 % of its light is. Pure in the pulse.
 class BeamParticles {
  public:
-  static constexpr double most = 1000;  ///< expected number of particles from the beam's beginning on that are met one by one
+  static constexpr double most =
+      1000;  ///< expected number of particles from the beam's beginning on that are met one by one
 
   BeamParticles(const Illumination& light, LightLedger& ledger) noexcept : light_(light), ledger_(ledger) {}
 
@@ -33,10 +34,11 @@ class BeamParticles {
     return std::clamp(range_of(0, most / per_volume), from, to);
   }
 
-  /// Adds the echoes of the particles between two ranges [m]. `both`: share of the light that is there on both ways at the first;
-  /// `occluded(ray, range)` tells if a ray meets a surface.
+  /// Adds the echoes of the particles between two ranges [m]. `both`: share of the light that is there on both ways at
+  /// the first; `occluded(ray, range)` tells if a ray meets a surface.
   template <class Occluded>
-  void meet(double from, double to, const MediumRegion& region, double density, double both, const Occluded& occluded) noexcept {
+  void meet(double from, double to, const MediumRegion& region, double density, double both,
+            const Occluded& occluded) noexcept {
     const double all = volume(from, to), per_volume = density * region.particles.number();
     const Vec3 origin = light_.pulse.origin();
     const Rotation& turn = light_.pulse.pose.rotation;
@@ -47,15 +49,19 @@ class BeamParticles {
       if (!(at < all)) return;
       const auto [size, around] = draw(1);
       const double range = range_of(from, at), radius = 2 * std::sqrt(place);
-      const Vec2 w = radii(range), aside{radius * std::cos(2 * pi * around) * w.x, radius * std::sin(2 * pi * around) * w.y};
+      const Vec2 w = radii(range),
+                 aside{radius * std::cos(2 * pi * around) * w.x, radius * std::sin(2 * pi * around) * w.y};
       const Vec3 to_it = range * ahead + aside.x * right + aside.y * up;
       const double distance = length(to_it);
       if (occluded(Ray{.origin = origin, .direction = to_it / distance, .tick = light_.pulse.tick}, distance)) continue;
-      const double irradiance = 2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // by the power of the beam [1/m^2]
-      const double scattered = pi * region.particles.backscatter_cross_section(region.particles.diameter(size)) * irradiance;
+      const double irradiance =
+          2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // by the power of the beam [1/m^2]
+      const double scattered =
+          pi * region.particles.backscatter_cross_section(region.particles.diameter(size)) * irradiance;
       const double left = both * std::exp(-2 * density * region.medium.extinction() * (range - from));
       const double power = light_.budget.power(left, scattered, distance);
-      if (power > 0 && light_.gate.contains(distance)) ledger_.reflect({.range = distance}, power, {ReflectionKind::air});
+      if (power > 0 && light_.gate.contains(distance))
+        ledger_.reflect({.range = distance}, power, {ReflectionKind::air});
     }
   }
 
@@ -66,7 +72,9 @@ class BeamParticles {
   }
 
   /// Semi-axes of the beam at a range, at 1/e^2 [m].
-  Vec2 radii(double range) const noexcept { return light_.emitter.footprint_scale * beam_radius(light_.emitter.laser, range); }
+  Vec2 radii(double range) const noexcept {
+    return light_.emitter.footprint_scale * beam_radius(light_.emitter.laser, range);
+  }
 
   /// Volume of the beam up to two of its radii, between two ranges [m^3].
   double volume(double from, double to) const noexcept {

@@ -20,11 +20,12 @@ struct LightWay {
   double velocity = 0;                            ///< rate at which the optical path to the place grows [m/s]
 };
 
-/// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by that of a lobe much
-/// wider than it; 1 without a width.
+/// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by
+/// that of a lobe much wider than it; 1 without a width.
 inline double caught(const LinkBudget& budget, const Material& material, double range) noexcept {
   if (!(material.retroreflection_width > 0)) return 1;
-  const double apertures = budget.aperture_radius() / (material.retroreflection_width * range), x = 2 * apertures * apertures;
+  const double apertures = budget.aperture_radius() / (material.retroreflection_width * range),
+               x = 2 * apertures * apertures;
   return x > 0 ? -std::expm1(-x) / x : 1;
 }
 
@@ -42,8 +43,8 @@ class LightLedger {
     shares.missed += share;
   }
 
-  /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the hit is half the
-  /// optical path [m].
+  /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the
+  /// hit is half the optical path [m].
   void end_at(const Hit& hit, const Material& material, double scattered, double power, const LightWay& way) noexcept {
     met_ = true;
     const double kept = material.smooth.passes_light() ? 0 : 1 - scattered;
@@ -60,7 +61,8 @@ class LightLedger {
       shares.scattered += scattered * way.share;
   }
 
-  /// Adds a reflection of a power [W], for light that is scattered or comes back into the aperture: cut, if there is no room.
+  /// Adds a reflection of a power [W], for light that is scattered or comes back into the aperture: cut, if there is no
+  /// room.
   void reflect(const Hit& hit, double power, const LightWay& way) noexcept {
     met_ = true;
     if (!light_.gate.contains(hit.range)) {

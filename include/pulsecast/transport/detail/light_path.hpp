@@ -15,8 +15,8 @@
 #include <pulsecast/scene/fresnel.hpp>
 #include <pulsecast/scene/material.hpp>
 
-/// Contract: light on its way. A `Pencil` is the subrays of a pulse that still seem to come from one point, a `LightPath` a subray that was
-/// refracted.
+/// Contract: light on its way. A `Pencil` is the subrays of a pulse that still seem to come from one point, a
+/// `LightPath` a subray that was refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
 inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than this are one [m]
@@ -26,8 +26,8 @@ inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than t
   return dot(normal, direction) > 0 ? -normal : normal;
 }
 
-/// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are counted from there, so
-/// that they are lengths of the whole way.
+/// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are
+/// counted from there, so that they are lengths of the whole way.
 struct Pencil {
   StaggeredBundle rays{};              ///< with the range from which each exists
   alignas(64) RayBundle::Column sent;  ///< share of the pulse's energy on its way
@@ -67,7 +67,8 @@ struct LightPath {
     static constexpr Medium air_{};
     return depth > 0 ? bodies[depth - 1]->smooth.inside : air_;
   }
-  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it. Bodies are told by their material.
+  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it. Bodies are told by their
+  /// material.
   [[nodiscard]] const Medium& behind(const Material& body) const noexcept {
     LightPath after = *this;
     after.cross_face(body);
@@ -96,9 +97,11 @@ struct LightPath {
       if (slope != 0) place[k] -= dot(place[k], normal) / slope * ray.direction;
     }
   }
-  /// Range at which light in air would have spread as far as here at a distance along the ray, and come back as weak [m].
+  /// Range at which light in air would have spread as far as here at a distance along the ray, and come back as weak
+  /// [m].
   [[nodiscard]] double spread(double distance = 0) const noexcept {
-    return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]), ray.direction)));
+    return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]),
+                                                    ray.direction)));
   }
 
   /// Takes a share of the light along.

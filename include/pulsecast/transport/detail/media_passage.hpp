@@ -26,10 +26,10 @@ namespace PULSECAST_NAMESPACE::detail {
 /// Takes the light of one pulse through media: what they absorb and scatter, and what they send back.
 class MediaPassage {
  public:
-  /// `air`: media between the surfaces; `least_share` as in `LightPaths`; `in_air`, `in_water`: memory for what media in the air and bodies
-  /// send back; `returns`: memory for both.
-  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger, VolumeProfile& in_air,
-               VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
+  /// `air`: media between the surfaces; `least_share` as in `LightPaths`; `in_air`, `in_water`: memory for what media
+  /// in the air and bodies send back; `returns`: memory for both.
+  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger,
+               VolumeProfile& in_air, VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
       : light_(light),
         air_(air),
         least_share_(least_share),
@@ -49,8 +49,8 @@ class MediaPassage {
     in_water_.classification = classification;
   }
 
-  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all. `occluded(ray, range)`
-  /// tells if a ray meets a surface.
+  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all.
+  /// `occluded(ray, range)` tells if a ray meets a surface.
   template <class Occluded>
   void pass_air(Pencil& p, std::span<const Hit> hits, const Occluded& occluded) noexcept {
     if (air_.empty()) return;
@@ -64,7 +64,8 @@ class MediaPassage {
       ends[j] = {hits[j].met() ? hits[j].range : std::numeric_limits<double>::infinity(), p.both[j]};
       together += p.both[j];
     }
-    std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
+    std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size),
+              [](const End& a, const End& b) { return a.range < b.range; });
     const double resolution = pulse_ / 32;
     for (std::size_t j = 0, next = 0; j < size; j = next) {  // rays that end together end at their mean
       double both = 0, moment = 0;
@@ -82,7 +83,8 @@ class MediaPassage {
     const auto same = [](double s) noexcept { return s; };
     const auto stretch = [&](double from, double to, const MediumRegion& region, double density) noexcept {
       const Medium& medium = region.medium;
-      const double loss = density * medium.extinction(), grains = of_beam ? particles_.end(from, to, region, density) : from;
+      const double loss = density * medium.extinction(),
+                   grains = of_beam ? particles_.end(from, to, region, density) : from;
       if (meets_particles && grains > from) particles_.meet(from, grains, region, density, passed, occluded);
       for (double at = from; at < to;) {
         for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
@@ -90,7 +92,8 @@ class MediaPassage {
         double end = std::min(to, ends[ended].range);
         if (at < grains) end = std::min(end, grains);
         const bool straight = of_beam && at == 0 && p.rays.begin[middle] == 0;
-        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle], 1, straight};
+        const VolumeWay way{
+            at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle], 1, straight};
         if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
         passed *= std::exp(-2 * loss * (end - at));
         at = end;
@@ -109,7 +112,8 @@ class MediaPassage {
   /// Takes a path through the media up to its next surface, at a range [m].
   void pass(LightPath& path, double range) noexcept {
     const double least = least_return() * path.both;
-    const auto stretch = [&](double from, double to, const Medium& medium, double density, VolumeProfile& bins) noexcept {
+    const auto stretch = [&](double from, double to, const Medium& medium, double density,
+                             VolumeProfile& bins) noexcept {
       if (medium.backscatter > 0) {
         const VolumeWay way{from,
                             to,
@@ -171,13 +175,15 @@ class MediaPassage {
     double delay = 1;         ///< optical path by way
     bool straight = false;    ///< true if it began at the instrument, and all of the way so far was through the medium
   };
-  /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air [m].
+  /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air
+  /// [m].
   ///
-  /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the mean. Nodes are lowered by that: f'' h^2
-  /// / 12, for f as exp(-k s) / (s^2 + a^2).
+  /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the mean. Nodes are
+  /// lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).
   template <class Spread, class Air>
   void add_volume(VolumeProfile& profile, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
-    const double aperture2 = light_.budget.aperture_radius() * light_.budget.aperture_radius(), white = pi * way.backscatter / way.delay;
+    const double aperture2 = light_.budget.aperture_radius() * light_.budget.aperture_radius(),
+                 white = pi * way.backscatter / way.delay;
     const double loss = 2 * way.extinction + light_.budget.loss(), most = loss > 0 ? loss_step / loss : infinity;
     const auto density_at = [&](double at, double both) noexcept {
       const double s = spread(at), square = s * s + aperture2, wide = std::sqrt(square);
@@ -189,15 +195,19 @@ class MediaPassage {
     const auto place_of = [&](double range) noexcept { return way.from + (range - way.optical) / way.delay; };
     const double begin = std::max(way.from, place_of(light_.gate.near));
     double end = std::min(way.to, place_of(light_.gate.far));
-    if (way.extinction > 0 && way.least > 0) end = std::min(end, way.from + std::log(way.both / way.least) / (2 * way.extinction));
+    if (way.extinction > 0 && way.least > 0)
+      end = std::min(end, way.from + std::log(way.both / way.least) / (2 * way.extinction));
     if (!(begin < end)) return;
     double both = way.both * std::exp(-2 * way.extinction * (begin - way.from)), density = density_at(begin, both);
     std::size_t cell = profile.cell_of(range_at(begin));
     bool at_node = range_at(begin) == 0;
     for (double at = begin; at < end;) {
-      if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density)) continue;
-      const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity, to = std::min(node, end);
-      const double s = spread(at), widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
+      if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density))
+        continue;
+      const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity,
+                   to = std::min(node, end);
+      const double s = spread(at),
+                   widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
       const bool whole = to - at <= widest;
       const double next = whole ? to : to < infinity ? at + (to - at) / std::ceil((to - at) / widest) : at + widest;
       both *= std::exp(-2 * way.extinction * (next - at));
@@ -212,11 +222,11 @@ class MediaPassage {
       density = then;
     }
   }
-  /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no wider than `most` [m];
-  /// false if there are none.
+  /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no
+  /// wider than `most` [m]; false if there are none.
   template <class DensityAt>
-  bool add_straight(VolumeProfile& profile, const VolumeWay& way, double end, double most, const DensityAt& density_at, std::size_t& cell,
-                    double& at, double& both, double& density) noexcept {
+  bool add_straight(VolumeProfile& profile, const VolumeWay& way, double end, double most, const DensityAt& density_at,
+                    std::size_t& cell, double& at, double& both, double& density) noexcept {
     VolumeProfile::Straight& known = profile.straight(light_.budget, way.extinction, way.backscatter);
     const auto node = [&](std::size_t k) noexcept { return k > 0 ? profile.end_of(k - 1) : 0; };
     std::size_t to = profile.cell_of(end);
@@ -225,7 +235,8 @@ class MediaPassage {
       const std::size_t k = known.known;
       known.left[k] = std::exp(-2 * way.extinction * node(k));
       known.density[k] = density_at(node(k), known.left[k]);
-      known.power[k] = k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
+      known.power[k] =
+          k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
     }
     to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
     if (!(to > cell)) return false;

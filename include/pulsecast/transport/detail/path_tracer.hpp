@@ -59,8 +59,8 @@ struct PathWorkspace {
 template <bool with_velocity, OpticalTarget Map>
 class PathTracer {
  public:
-  PathTracer(const Map& map, const Illumination& light, const PathSettings& settings, PathWorkspace& w, std::span<Reflection> reflections,
-             TransportResult& result) noexcept
+  PathTracer(const Map& map, const Illumination& light, const PathSettings& settings, PathWorkspace& w,
+             std::span<Reflection> reflections, TransportResult& result) noexcept
       : map_(map),
         light_(light),
         least_share_(settings.least_share),
@@ -108,7 +108,8 @@ class PathTracer {
     if (level > 0) meet_late(level);
     media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return map_.occluded(ray, range); });
     received_power(light_, p.both.data(), p.rays.size, hits, power);
-    if (level == 0 && !light_.record.empty()) record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
+    if (level == 0 && !light_.record.empty())
+      record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
     bool goes_on = false;
     for (std::size_t j = 0; j < p.rays.size; ++j) {
       if (!hits[j].met()) {
@@ -117,7 +118,8 @@ class PathTracer {
       }
       goes_on |= surfaces[j].material->smooth.passes_light();
       if (refracts(surfaces[j])) continue;  // its path meets the surface once more
-      const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object, hits[j].classification};
+      const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object,
+                   hits[j].classification};
       power[j] *= caught(light_.budget, *surfaces[j].material, at.range);
       LightWay way{p.kind, p.sent[j]};
       if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, ray_of(p, j));
@@ -210,7 +212,8 @@ class PathTracer {
   }
 
   /// Reflects rays at a pane, and lets them through.
-  void pass_pane(std::size_t level, std::size_t first, std::size_t end, const SmoothInterface& pane, double reaching) noexcept {
+  void pass_pane(std::size_t level, std::size_t first, std::size_t end, const SmoothInterface& pane,
+                 double reaching) noexcept {
     const PencilHits& met = w_.levels[level];
     const Pencil& p = met.pencil;
     const auto& hits = met.hits;
@@ -225,8 +228,10 @@ class PathTracer {
     send_mirrored(level, first, end, [&](std::size_t j) noexcept { return reaching * split[j].reflected; });
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const auto next = [&](std::size_t j) noexcept -> Next {
-      const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
-      return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside, p.delay[j] + split[j].delay};
+      const double inside =
+          pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
+      return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside,
+              p.delay[j] + split[j].delay};
     };
     const bool together = most - least < apart;  // no ray is out of place by more than half of that
     for (std::size_t from = first, to = 0; from < end; from = to) {
@@ -246,7 +251,8 @@ class PathTracer {
 
   /// Sends rays of a level on from a common origin; `next(j)` tells of each how.
   template <class NextOf>
-  void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind, const NextOf& next) noexcept {
+  void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind,
+            const NextOf& next) noexcept {
     const Pencil& p = w_.levels[level].pencil;
     Pencil& to = w_.levels[level + 1].pencil;
     static_cast<BundleOrigin&>(to.rays) = p.rays;

@@ -21,8 +21,8 @@ template <bool with_velocity, OpticalTarget Map>
 class RefractedPaths {
  public:
   /// `passages`: greatest number of surfaces that pass light on.
-  RefractedPaths(const Map& map, const Illumination& light, double least_share, std::size_t passages, LightLedger& ledger,
-                 MediaPassage& media) noexcept
+  RefractedPaths(const Map& map, const Illumination& light, double least_share, std::size_t passages,
+                 LightLedger& ledger, MediaPassage& media) noexcept
       : map_(map), light_(light), least_share_(least_share), passages_(passages), ledger_(ledger), media_(media) {}
 
   /// Follows a path to its end. `passed_air`: the media up to the first surface are passed already.
@@ -60,17 +60,20 @@ class RefractedPaths {
     Face face{towards(at.normal, path.ray.direction)};
     if (at.normal != Vec3{}) face.cosine = std::min(1.0, -dot(face.normal, path.ray.direction));
     face.relative = path.behind(*at.material).index / path.medium().index;
-    face.scattered = at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine, at.texture,
-                                                  at.material->smooth.passes_light() ? face.relative : at.material->facets().index);
+    face.scattered =
+        at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine, at.texture,
+                                     at.material->smooth.passes_light() ? face.relative : at.material->facets().index);
     return face;
   }
 
   /// Light that a surface sends back to a path that ends there.
   template <class Point>
   void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
-    Hit hit{.range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
+    Hit hit{
+        .range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
     hit.backscatter = at.material->backscatter(light_.emitter.laser.wavelength, at.texture)(hit.cos_incidence);
-    const double spread = path.spread(), wide = light_.budget.power_through(path.both, hit.backscatter, spread, path.air);
+    const double spread = path.spread(),
+                 wide = light_.budget.power_through(path.both, hit.backscatter, spread, path.air);
     const double power = wide * caught(light_.budget, *at.material, spread);
     LightWay way{path.kind, path.sent};
     if constexpr (with_velocity) way.velocity = path.drift + path.medium().index * dot(at.velocity, path.ray.direction);
@@ -89,7 +92,8 @@ class RefractedPaths {
       return false;
     }
     const auto moved = [&](LightPath& p) noexcept {
-      if constexpr (with_velocity) p.drift += dot(at.velocity, around.index * before - p.medium().index * p.ray.direction);
+      if constexpr (with_velocity)
+        p.drift += dot(at.velocity, around.index * before - p.medium().index * p.ray.direction);
     };
     const auto reflect = [&](LightPath& p, double share) noexcept {
       p.keep(share);
@@ -128,7 +132,8 @@ class RefractedPaths {
     }
     if (!rough) reflect_too(reaching * split.reflected);
     path.keep(rough ? reaching : reaching * split.refracted());
-    path.kind = std::max(path.kind, smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass);
+    path.kind =
+        std::max(path.kind, smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass);
     path.refract(n, face.relative, split);
     path.cross_face(*at.material);
     media_.label_body(at.object, at.classification);

@@ -14,12 +14,13 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Takes away what the receiver does not see of the power of a bundle [W].
-[[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits, RayBundle::Column& power) noexcept {
+[[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits,
+                                           RayBundle::Column& power) noexcept {
   for (std::size_t j = 0; j < hits.size(); ++j) power[j] *= budget.overlap_at(hits[j].range);
 }
 
-/// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W]. Undefined for
-/// misses.
+/// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W].
+/// Undefined for misses.
 [[gnu::always_inline]] inline void received_power(const Illumination& light, const double* shares, std::size_t size,
                                                   std::span<const Hit> hits, RayBundle::Column& power) noexcept {
   if (size == 1) {
@@ -65,7 +66,8 @@ inline void record_subrays(const Illumination& light, std::size_t first, std::sp
 template <class Map>
 [[nodiscard]] double radial_velocity(const Map& map, const Ray& ray) noexcept {
   static_assert(VelocityTarget<Map>,
-                "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and surface(hit, ray), as Scene");
+                "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and "
+                "surface(hit, ray), as Scene");
   if constexpr (VelocityTarget<Map>) {
     if (const auto hit = map.closest_hit(ray)) return dot(map.surface(*hit, ray).velocity, ray.direction);
   }

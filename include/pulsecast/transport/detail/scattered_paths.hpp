@@ -23,9 +23,10 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows light from surface to surface at random, and at each takes what returns straight to the receiver.
-/// Foliage scatters as a leaf of it: of the normals of leaves of all directions, light meets each as often as its cosine of incidence says,
-/// so that they are by the cosine about its way back. Their mean is the phase function of a turbid medium of such leaves.
-/// Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine, from a uniform disk; leaves: Ross 1981.
+/// Foliage scatters as a leaf of it: of the normals of leaves of all directions, light meets each as often as its
+/// cosine of incidence says, so that they are by the cosine about its way back. Their mean is the phase function of a
+/// turbid medium of such leaves. Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine,
+/// from a uniform disk; leaves: Ross 1981.
 template <OpticalTarget Map>
 class ScatteredPaths {
  public:
@@ -33,7 +34,8 @@ class ScatteredPaths {
                  LightLedger& ledger) noexcept
       : map_(map), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
 
-  /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all paths.
+  /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all
+  /// paths.
   void start(const Pencil& p, std::span<const Hit> hits, std::span<const HitSurface> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);
@@ -41,8 +43,11 @@ class ScatteredPaths {
       const double share = light_.beam.shares[p.rays.first_subray + j];
       passed_ += share;
       // the k-th path belongs to the subray in which the sum of shares reaches (k + u) / paths
-      for (; next_ < settings_.paths && (static_cast<double>(next_) + draw(next_, 0).turn[0]) / paths < passed_; ++next_) {
-        if (!hits[j].met() || !light_.gate.contains(hits[j].range) || !(share > 0) || surfaces[j].material->smooth.passes_light()) continue;
+      for (; next_ < settings_.paths && (static_cast<double>(next_) + draw(next_, 0).turn[0]) / paths < passed_;
+           ++next_) {
+        if (!hits[j].met() || !light_.gate.contains(hits[j].range) || !(share > 0) ||
+            surfaces[j].material->smooth.passes_light())
+          continue;
         const Vec3 direction = p.rays.direction(j);
         follow({p.rays.origin + hits[j].range * direction, direction, normal_at(surfaces[j], direction, draw(next_, 0)),
                 surfaces[j].material, p.sent[j] / (share * paths), hits[j].range, surfaces[j].texture},
@@ -68,7 +73,8 @@ class ScatteredPaths {
     std::array<double, 2> leaf;  ///< for the normal of the leaf that it meets there
   };
   Draw draw(std::size_t path, std::uint32_t order) const noexcept {
-    const auto words = random_words({light_.seed, light_.index, static_cast<std::uint32_t>(path), Purpose::scattering, order});
+    const auto words =
+        random_words({light_.seed, light_.index, static_cast<std::uint32_t>(path), Purpose::scattering, order});
     const auto number = [&](std::size_t k) noexcept { return (words[k] + 0.5) * 0x1p-32; };
     return {{number(0), number(1)}, {number(2), number(3)}};
   }
@@ -85,7 +91,10 @@ class ScatteredPaths {
       const Draw any = draw(path, static_cast<std::uint32_t>(order - 1));
       const auto [u, v] = any.turn;
       const bool even = at.normal == Vec3{};
-      Ray ray{.origin = at.place, .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v), .near = apart, .tick = light_.pulse.tick};
+      Ray ray{.origin = at.place,
+              .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v),
+              .near = apart,
+              .tick = light_.pulse.tick};
       name(ray);
       const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
       at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength, at.texture);
@@ -121,7 +130,8 @@ class ScatteredPaths {
     const Divergence& beam = light_.emitter.laser.divergence;
     const double view = std::max({settings_.field_of_view, beam.across, beam.up});
     if (!(cosine > 0 && cosine >= std::cos(view / 2))) return;
-    const double scattered = at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength, at.texture);
+    const double scattered =
+        at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength, at.texture);
     if (!(scattered > 0)) return;
     Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
     name(ray);
@@ -140,9 +150,10 @@ class ScatteredPaths {
   /// Share of the light that the media leave over on a way [m].
   double left(const Vec3& origin, const Vec3& direction, double way) const noexcept {
     double depth = 0;
-    air_.along(origin, direction, 0, way, [&](double from, double to, const MediumRegion& region, double density) noexcept {
-      depth += density * region.medium.extinction() * (to - from);
-    });
+    air_.along(origin, direction, 0, way,
+               [&](double from, double to, const MediumRegion& region, double density) noexcept {
+                 depth += density * region.medium.extinction() * (to - from);
+               });
     return depth > 0 ? std::exp(-depth) : 1;
   }
 
@@ -151,9 +162,11 @@ class ScatteredPaths {
     return {r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), z};
   }
   static Vec3 by_cosine(const Vec3& normal, double u, double v) noexcept {
-    const Vec3 aside = normalize(cross(normal, std::fabs(normal.z) < 0.9 ? axis::up : axis::right)), other = cross(normal, aside);
+    const Vec3 aside = normalize(cross(normal, std::fabs(normal.z) < 0.9 ? axis::up : axis::right)),
+               other = cross(normal, aside);
     const double r = std::sqrt(u);
-    return normalize(r * std::cos(2 * pi * v) * aside + r * std::sin(2 * pi * v) * other + std::sqrt(std::max(0.0, 1 - u)) * normal);
+    return normalize(r * std::cos(2 * pi * v) * aside + r * std::sin(2 * pi * v) * other +
+                     std::sqrt(std::max(0.0, 1 - u)) * normal);
   }
 
   const Map& map_;

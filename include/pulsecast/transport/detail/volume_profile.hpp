@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Light that a medium scatters back, by range. Stretches between neighbouring nodes are added up; others are kept apart as long as there
-/// is room.
+/// Light that a medium scatters back, by range. Stretches between neighbouring nodes are added up; others are kept
+/// apart as long as there is room.
 class VolumeProfile {
  public:
   ObjectId object = 0;               ///< label of the returns
@@ -26,9 +26,12 @@ class VolumeProfile {
 
   static constexpr std::size_t cells = 512;
 
-  /// Distance from a node to the next [m], where light has spread by `wide`, the root of the squares of range and aperture [m]: power by
-  /// its inverse square is linear to 0.35 % there. Closer than a sixteenth of a pulse, of a length in range [m], only the mean counts.
-  [[nodiscard]] static double step(double wide, double pulse) noexcept { return std::max(wide / 12, std::min(wide / 2, pulse / 16)); }
+  /// Distance from a node to the next [m], where light has spread by `wide`, the root of the squares of range and
+  /// aperture [m]: power by its inverse square is linear to 0.35 % there. Closer than a sixteenth of a pulse, of a
+  /// length in range [m], only the mean counts.
+  [[nodiscard]] static double step(double wide, double pulse) noexcept {
+    return std::max(wide / 12, std::min(wide / 2, pulse / 16));
+  }
 
   /// Room for `capacity` other stretches.
   explicit VolumeProfile(std::size_t capacity) { parts_.reserve(capacity); }
@@ -36,8 +39,8 @@ class VolumeProfile {
   /// Greatest number of returns.
   [[nodiscard]] std::size_t size_max() const noexcept { return cells + parts_.capacity() + 1; }
 
-  /// Densities at the nodes of light that leaves the instrument with a share of 1 through a medium, by a link budget: the same for all
-  /// pulses.
+  /// Densities at the nodes of light that leaves the instrument with a share of 1 through a medium, by a link budget:
+  /// the same for all pulses.
   struct Straight {
     LinkBudget budget{};
     double extinction = 0, backscatter = 0;
@@ -107,7 +110,8 @@ class VolumeProfile {
     }
     return share * (straight_.power[end] - straight_.power[first]);
   }
-  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. If there is no room, cells take the light of all such stretches.
+  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. If there is no room, cells take the light of
+  /// all such stretches.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
     const Part part{begin, end, at_begin, at_end};
     if (parts_.size() == parts_.capacity()) {
@@ -122,14 +126,18 @@ class VolumeProfile {
     return part.power();
   }
 
-  /// Writes the returns in order of range, from a number on; there is room for `size_max()` more. Returns the number after the last. Those
-  /// of known light are there already if the last pulse had as much of it, and nothing else wrote to them.
+  /// Writes the returns in order of range, from a number on; there is room for `size_max()` more. Returns the number
+  /// after the last. Those of known light are there already if the last pulse had as much of it, and nothing else wrote
+  /// to them.
   std::size_t write_to(std::vector<ContinuousReturn>& returns, std::size_t count, ReflectionKind kind) noexcept {
     if (parts_.empty() && first_ >= end_ && lit_.share == 0) return count;
     const auto nearer = [](const Part& a, const Part& b) { return a.from < b.from; };
     if (!std::is_sorted(parts_.begin(), parts_.end(), nearer)) std::sort(parts_.begin(), parts_.end(), nearer);
-    const auto parts_from = [&](double range) { return std::lower_bound(parts_.begin(), parts_.end(), Part{range, 0, 0, 0}, nearer); };
-    if ((first_ < end_ && first_ < lit_.end) || parts_from(nodes_[lit_.first]) != parts_from(nodes_[lit_.end])) part_lit();
+    const auto parts_from = [&](double range) {
+      return std::lower_bound(parts_.begin(), parts_.end(), Part{range, 0, 0, 0}, nearer);
+    };
+    if ((first_ < end_ && first_ < lit_.end) || parts_from(nodes_[lit_.first]) != parts_from(nodes_[lit_.end]))
+      part_lit();
     const std::size_t most = count + parts_.size() + (end_ > first_ ? end_ - first_ : 0) + lit_.end - lit_.first + 1;
     if (returns.size() < most) returns.resize(most);
     const auto append = [&](double from, double to, double at_begin, double at_end) noexcept {
@@ -138,15 +146,18 @@ class VolumeProfile {
     };
     auto part = parts_.begin();
     const auto append_parts = [&](double before) noexcept {
-      for (; part != parts_.end() && part->from < before; ++part) append(part->from, part->to, part->at_begin, part->at_end);
+      for (; part != parts_.end() && part->from < before; ++part)
+        append(part->from, part->to, part->at_begin, part->at_end);
     };
     if (lit_.share > 0) {
       append_parts(nodes_[lit_.first]);
-      if (count != written_at_ || lit_.first != written_.first || lit_.share != written_.share) written_.end = lit_.first;
+      if (count != written_at_ || lit_.first != written_.first || lit_.share != written_.share)
+        written_.end = lit_.first;
       written_at_ = count;
       const auto density = [&](std::size_t k) noexcept { return lit_.share * straight_.density[k]; };
       for (std::size_t k = written_.end; k < lit_.end; ++k)
-        returns[count + k - lit_.first] = {nodes_[k], nodes_[k + 1], density(k), density(k + 1), object, classification, kind};
+        returns[count + k - lit_.first] = {nodes_[k], nodes_[k + 1],  density(k), density(k + 1),
+                                           object,    classification, kind};
       written_ = lit_;
       count += lit_.end - lit_.first;
     } else {

@@ -59,8 +59,8 @@ struct Library {
     const XmlInput io(survey.document(), survey.document().root().child("survey"), report, survey.search());
     const XmlReference reference = library.find(io, survey, "scanner", text, element);
     if (reference)
-      return std::filesystem::path(reference.document->document().path()).filename().string() + " " + reference.node.name() + " " +
-             reference.node.attribute("id").value();
+      return std::filesystem::path(reference.document->document().path()).filename().string() + " " +
+             reference.node.name() + " " + reference.node.attribute("id").value();
     try {
       report.require_clean();
     } catch (const XmlFaults& faults) {
@@ -76,7 +76,8 @@ struct Library {
 
 TEST_CASE("every element and attribute has its place") {
   const auto xml = document(
-      "\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<!-- a=\"1\" -->\r\n<a x='1'\n   y = \"a>b='2'\"\n\tz=\"3\"><b\n/>text<c z=''/></a>\n");
+      "\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<!-- a=\"1\" -->\r\n<a x='1'\n   y = \"a>b='2'\"\n\tz=\"3\"><b\n/>text<c "
+      "z=''/></a>\n");
   const pugi::xml_node a = xml->root();
   CHECK(at(xml->place()) == "1:1");
   CHECK(at(xml->place(a)) == "3:2");
@@ -158,7 +159,8 @@ TEST_CASE("a reference that leads nowhere is told") {
   (void)other.read(library.root / "assets/odd.xml");
   CHECK(report.is_clean());
   REQUIRE(report.warnings().size() == 1);
-  CHECK(contains(report.warnings()[0], "odd.xml:1:12: element <scaner> in <document> is not known; did you mean 'scanner'?"));
+  CHECK(contains(report.warnings()[0],
+                 "odd.xml:1:12: element <scaner> in <document> is not known; did you mean 'scanner'?"));
 }
 
 TEST_CASE("a document outside the folders is read, with a warning") {

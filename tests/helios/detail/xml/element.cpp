@@ -107,7 +107,8 @@ TEST_CASE("a number has as few digits as it needs, and reads back the same") {
   CHECK(xml_number(1e300) == "1e+300");
   CHECK(number_of("1e5") == 1e5);
   CHECK(number_of(" +2.5\t") == 2.5);
-  for (const char* text : {"", " ", "x", "1x", "1,5", "nan", "--1", "+-1", "0x10", "1e999", "1 2"}) CHECK_FALSE(number_of(text));
+  for (const char* text : {"", " ", "x", "1x", "1,5", "nan", "--1", "+-1", "0x10", "1e999", "1 2"})
+    CHECK_FALSE(number_of(text));
 }
 
 TEST_CASE("what was read in a unit is written as it was read, and what was not, to the last digit but one") {
@@ -118,7 +119,8 @@ TEST_CASE("what was read in a unit is written as it was read, and what was not, 
   support::Generator random(20);
   for (int i = 0; i < 20000; ++i) {
     const double number = random.log_uniform(1e-12, 1e12);
-    for (const XmlUnit& unit : {units::degree, units::nanosecond, units::kilometre, units::nanometre, units::nanowatt, units::metre}) {
+    for (const XmlUnit& unit :
+         {units::degree, units::nanosecond, units::kilometre, units::nanometre, units::nanowatt, units::metre}) {
       const double value = unit.si(number);
       CAPTURE(number);
       CAPTURE(unit.symbol);
@@ -142,7 +144,8 @@ TEST_CASE("every kind of field is read, as attribute and as param, and what is n
     Everything s;
     all_fields(reading.io, s);
     CHECK(reading.faults().empty());
-    CHECK(s == Everything{4e-9, radians(30), -3, true, "", "k", Colour::green, Vec3(1, -2, 3.5), Vec3(0, 0, 1), folder / "a.xml"});
+    CHECK(s == Everything{4e-9, radians(30), -3, true, "", "k", Colour::green, Vec3(1, -2, 3.5), Vec3(0, 0, 1),
+                          folder / "a.xml"});
   }
   Reading nothing("<a/>");
   Everything s;
@@ -152,7 +155,8 @@ TEST_CASE("every kind of field is read, as attribute and as param, and what is n
 }
 
 TEST_CASE("what was written is read the same, as attribute and as param") {
-  const Everything full{0.1, 0.2, 5, true, "<&>\"'\n", "", Colour::green, Vec3(1e-9, -2e8, 3), Vec3(0, 1, 0), folder / "a.xml"};
+  const Everything full{
+      0.1, 0.2, 5, true, "<&>\"'\n", "", Colour::green, Vec3(1e-9, -2e8, 3), Vec3(0, 1, 0), folder / "a.xml"};
   for (const Everything& s : {full, Everything{}})
     for (const bool params : {false, true}) {
       pugi::xml_document document;
@@ -202,7 +206,8 @@ TEST_CASE("what is odd about a field, but leaves no doubt, is told and read") {
   const auto takes = [](const std::string& attribute, const std::string& part, const Everything& expected) {
     for (const bool params : {false, true}) {
       const std::size_t equals = attribute.find('=');
-      const std::string param = "<filter type=\"x\">\n <param key=\"" + attribute.substr(0, equals) + "\" value" + attribute.substr(equals);
+      const std::string param =
+          "<filter type=\"x\">\n <param key=\"" + attribute.substr(0, equals) + "\" value" + attribute.substr(equals);
       Reading reading(params ? param + "/></filter>" : "<a\n " + attribute + "/>", params);
       Everything s;
       all_fields(reading.io, s);
@@ -269,10 +274,13 @@ TEST_CASE("params are checked as attributes are") {
   CHECK(warning(R"(<param type="int" key="count" value="3"/>)", 3).empty());
   CHECK(contains(warning(R"(<param type="int" key="cuont" value="3"/>)", 0),
                  "param 'cuont' of filter 'x' is not known; did you mean 'count'?"));
-  CHECK(contains(warning(R"(<param type="itn" key="count" value="3"/>)", 3), "type=\"itn\" is not known; did you mean 'int'?"));
+  CHECK(contains(warning(R"(<param type="itn" key="count" value="3"/>)", 3),
+                 "type=\"itn\" is not known; did you mean 'int'?"));
   CHECK(contains(fault(R"(<param type="int" key="count" value="x"/>)"), "count=\"x\": expected a whole number"));
-  CHECK(contains(warning(R"(<param type="int" key="count" vlaue="3"/>)", 0), "attribute 'vlaue' of <param> is not known"));
-  CHECK(contains(fault(R"(<param key="count" value="3"/><param key="count" value="4"/>)"), "is given twice, with another value"));
+  CHECK(contains(warning(R"(<param type="int" key="count" vlaue="3"/>)", 0),
+                 "attribute 'vlaue' of <param> is not known"));
+  CHECK(contains(fault(R"(<param key="count" value="3"/><param key="count" value="4"/>)"),
+                 "is given twice, with another value"));
   CHECK(contains(warning(R"(<param key="count" value="3"/><param key="count" value="3"/>)", 3), "is given twice"));
   CHECK(contains(warning(R"(<parm key="count" value="3"/>)", 0), "did you mean 'param'?"));
   CHECK(contains(warning(R"(<param key="count" value="3"><rot/></param>)", 3), "element <rot> in <param>"));

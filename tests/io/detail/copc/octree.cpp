@@ -45,7 +45,8 @@ TEST_CASE("the distance from a cell's centre is the same for points on either si
 /// Path from the root down, as text that compares as nodes do.
 std::string path_of(const CopcKey& key) {
   std::string path;
-  for (CopcKey k = key; k.level > 0; k = k.parent()) path += static_cast<char>('0' + (k.x & 1) + 2 * (k.y & 1) + 4 * (k.z & 1));
+  for (CopcKey k = key; k.level > 0; k = k.parent())
+    path += static_cast<char>('0' + (k.x & 1) + 2 * (k.y & 1) + 4 * (k.z & 1));
   std::reverse(path.begin(), path.end());
   return path;
 }
@@ -55,7 +56,8 @@ TEST_CASE("nodes come in order of the paths down to them, parents first") {
   std::vector<CopcKey> keys;
   for (int i = 0; i < 300; ++i) {
     CopcKey key;
-    for (std::uint64_t depth = random.whole(i < 200 ? 4 : 26); depth > 0; --depth) key = key.child(static_cast<unsigned>(random.whole(8)));
+    for (std::uint64_t depth = random.whole(i < 200 ? 4 : 26); depth > 0; --depth)
+      key = key.child(static_cast<unsigned>(random.whole(8)));
     keys.push_back(key);
   }
   for (const CopcKey& a : keys)
@@ -70,7 +72,8 @@ TEST_CASE("ranks are sorted by key, then by number, whether few or many, and wha
       CAPTURE(bits);
       std::vector<CopcRank> ranks(count);
       for (CopcRank& rank : ranks)
-        rank = {random.whole(std::uint64_t{1} << 63) * 2 >> (64 - bits), static_cast<std::uint32_t>(random.whole(1000))};
+        rank = {random.whole(std::uint64_t{1} << 63) * 2 >> (64 - bits),
+                static_cast<std::uint32_t>(random.whole(1000))};
       std::vector<std::pair<std::uint64_t, std::uint32_t>> expected, found;
       for (const CopcRank& rank : ranks) expected.emplace_back(rank.key, rank.number);
       std::sort(expected.begin(), expected.end());
@@ -92,7 +95,8 @@ TEST_CASE("of each cell the point nearest to the centre is picked, the first of 
   CHECK(picked == std::vector<std::vector<std::uint32_t>>{{1, 3}, {}, {0}});
   std::string taken, left;
   copc_part(
-      4, picked[0], [&](std::uint32_t i) { taken += std::to_string(i); }, [&](std::uint32_t i) { left += std::to_string(i); });
+      4, picked[0], [&](std::uint32_t i) { taken += std::to_string(i); },
+      [&](std::uint32_t i) { left += std::to_string(i); });
   CHECK(taken == "13");
   CHECK(left == "02");
 }

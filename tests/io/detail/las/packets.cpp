@@ -42,7 +42,8 @@ Descriptor descriptor(const LasPackets& packets, unsigned index) {
     CHECK(bytes.substr(at + 2, 10) == std::string("LASF_Spec\0", 10));
     CHECK(whole(bytes, at + 20, 2) == 26);
     CHECK(whole(bytes, at + 54, 2) == 16);  // bits; not compressed
-    const double gain = std::bit_cast<double>(whole(bytes, at + 64, 8)), offset = std::bit_cast<double>(whole(bytes, at + 72, 8));
+    const double gain = std::bit_cast<double>(whole(bytes, at + 64, 8)),
+                 offset = std::bit_cast<double>(whole(bytes, at + 72, 8));
     return {whole(bytes, at + 56, 4), whole(bytes, at + 60, 4), gain * 0x1p52, offset / gain};
   }
   FAIL("no descriptor");
@@ -145,8 +146,8 @@ TEST_CASE("samples are a whole number of picoseconds apart, one and the same in 
   for (const double bad : {0.25e-12, 1.5e-12, 0.0, -1e-9, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     CAPTURE(bad);
     LasPackets packets(folder / "a.wdp");
-    CHECK_THROWS_WITH_AS(static_cast<void>(packets.add(waveform, bad)), doctest::Contains("expected a whole number from 1 to 2^32 - 1"),
-                         FileError);
+    CHECK_THROWS_WITH_AS(static_cast<void>(packets.add(waveform, bad)),
+                         doctest::Contains("expected a whole number from 1 to 2^32 - 1"), FileError);
   }
   LasPackets packets(folder / "a.wdp");
   for (int i = 0; i < 3; ++i) static_cast<void>(packets.add(waveform, 0.1e-9 + 1e-20 * i));

@@ -65,7 +65,9 @@ LasBuilder random_file(support::Generator& random, unsigned minor, unsigned form
   return las;
 }
 
-bool has_colours(unsigned format) { return format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10; }
+bool has_colours(unsigned format) {
+  return format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10;
+}
 
 TEST_CASE("every version and point format is read") {
   constexpr std::uint64_t seed = 3;
@@ -125,7 +127,8 @@ TEST_CASE("points that are withheld are passed over, with a warning") {
     REQUIRE(found.warnings.size() == 1);
     CHECK(found.warnings[0].ends_with("a.las: 1 of 3 points are marked as withheld and left out"));
   }
-  CHECK(read(LasBuilder{.minor = 0, .format = 0, .points = {{.withheld = true}}}.bytes()).positions.size() == 1);  // a bit of the class
+  CHECK(read(LasBuilder{.minor = 0, .format = 0, .points = {{.withheld = true}}}.bytes()).positions.size() ==
+        1);  // a bit of the class
 }
 
 TEST_CASE("what follows the points does not count") {
@@ -143,22 +146,24 @@ TEST_CASE("headers that cannot be right are refused, with the byte") {
     const char *place, *problem;
   };
   const std::uint64_t nan = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN());
-  for (const Case& c : {Case{24, 2, 1, "byte 24", "is LAS 2.2: expected a version from 1.0 to 1.4"},
-                        {25, 5, 1, "byte 24", "is LAS 1.5: expected a version from 1.0 to 1.4"},
-                        {25, 4, 1, "byte 94", "the header has 227 bytes: expected at least 375"},
-                        {94, 100, 2, "byte 94", "the header has 100 bytes: expected at least 227"},
-                        {96, 100, 4, "byte 96", "the points begin at byte 100: expected one from 227 to the file's size of 295"},
-                        {96, 4000000000, 4, "byte 96", "the points begin at byte 4000000000"},
-                        {104, 131, 1, "byte 104", "the points are compressed (LAZ): expected LAS"},
-                        {104, 11, 1, "byte 104", "has the point format 11: expected one from 0 to 10"},
-                        {105, 33, 2, "byte 105", "a point has 33 bytes: expected at least the 34 of format 3"},
-                        {105, 0, 2, "byte 105", "a point has 0 bytes"},
-                        {107, 0, 4, "byte 107", "holds no point: expected at least one"},
-                        {107, 3, 4, "byte 107", "claims 3 points of 34 bytes from byte 227: expected no more than fit into the file's 295"},
-                        {107, 0xFFFFFFFF, 4, "byte 107", "claims 4294967295 points"},
-                        {131, 0, 8, "byte 131", "the scale is 0: expected one above 0"},
-                        {139, nan, 8, "byte 139", "the scale is nan"},
-                        {171, nan, 8, "byte 171", "the offset is nan: expected a finite one"}}) {
+  for (const Case& c :
+       {Case{24, 2, 1, "byte 24", "is LAS 2.2: expected a version from 1.0 to 1.4"},
+        {25, 5, 1, "byte 24", "is LAS 1.5: expected a version from 1.0 to 1.4"},
+        {25, 4, 1, "byte 94", "the header has 227 bytes: expected at least 375"},
+        {94, 100, 2, "byte 94", "the header has 100 bytes: expected at least 227"},
+        {96, 100, 4, "byte 96", "the points begin at byte 100: expected one from 227 to the file's size of 295"},
+        {96, 4000000000, 4, "byte 96", "the points begin at byte 4000000000"},
+        {104, 131, 1, "byte 104", "the points are compressed (LAZ): expected LAS"},
+        {104, 11, 1, "byte 104", "has the point format 11: expected one from 0 to 10"},
+        {105, 33, 2, "byte 105", "a point has 33 bytes: expected at least the 34 of format 3"},
+        {105, 0, 2, "byte 105", "a point has 0 bytes"},
+        {107, 0, 4, "byte 107", "holds no point: expected at least one"},
+        {107, 3, 4, "byte 107",
+         "claims 3 points of 34 bytes from byte 227: expected no more than fit into the file's 295"},
+        {107, 0xFFFFFFFF, 4, "byte 107", "claims 4294967295 points"},
+        {131, 0, 8, "byte 131", "the scale is 0: expected one above 0"},
+        {139, nan, 8, "byte 139", "the scale is nan"},
+        {171, nan, 8, "byte 171", "the offset is nan: expected a finite one"}}) {
     CAPTURE(c.at);
     CAPTURE(c.value);
     std::string bad = good;

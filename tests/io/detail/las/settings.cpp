@@ -20,7 +20,8 @@ TEST_CASE("the full scale of intensities is positive, in the unit of what they a
   CHECK_NOTHROW((LasSettings{.intensity = LasIntensity::amplitude, .intensity_full_scale = 1e-6}.validate()));
   CHECK_THROWS_WITH_AS((LasSettings{.intensity = LasIntensity::amplitude, .intensity_full_scale = -1}.validate()),
                        doctest::Contains("-1 W,"), SettingError);
-  CHECK_THROWS_WITH_AS((LasSettings{.intensity_full_scale = 0}.validate()), doctest::Contains("is 0, but"), SettingError);
+  CHECK_THROWS_WITH_AS((LasSettings{.intensity_full_scale = 0}.validate()), doctest::Contains("is 0, but"),
+                       SettingError);
 }
 
 }  // namespace

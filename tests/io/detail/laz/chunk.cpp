@@ -39,14 +39,16 @@ LazReadChunk through(const std::string& records, std::size_t record, std::size_t
   CAPTURE(same / record);  // the first point that is not as it was, and which of its bytes
   CAPTURE(same % record);
   CHECK(chunk.records == records);
-  // The models, and so the bits, are the format's: nobody can do with fewer, and these are no more than are needed to end a layer.
+  // The models, and so the bits, are the format's: nobody can do with fewer, and these are no more than are needed to
+  // end a layer.
   for (std::size_t i = 0; i < chunk.layers.size(); ++i)
     if (chunk.layers[i] > 0) CHECK(8 * static_cast<double>(chunk.layers[i]) <= chunk.information[i] + 8 + 32);
   return chunk;
 }
 
 /// Points that are all alike but for what `change(record, i)` does to each.
-std::string points(std::size_t count, std::size_t record, const std::function<void(std::string&, std::size_t)>& change) {
+std::string points(std::size_t count, std::size_t record,
+                   const std::function<void(std::string&, std::size_t)>& change) {
   std::string one(record, '\0'), all;
   one[14] = 0x11;
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,8 +74,8 @@ TEST_CASE("one point stands as it is, with the layers of positions and heights a
 
 TEST_CASE("a layer is there if its attribute changes, and only then") {
   const auto layers = [](std::size_t at) {
-    const auto chunk =
-        through(points(1000, 32, [at](std::string& p, std::size_t i) { p[at] = static_cast<char>(i == 500 ? 3 : p[at]); }), 32);
+    const auto chunk = through(
+        points(1000, 32, [at](std::string& p, std::size_t i) { p[at] = static_cast<char>(i == 500 ? 3 : p[at]); }), 32);
     std::vector<std::size_t> there;
     for (std::size_t i = 2; i < chunk.layers.size(); ++i)
       if (chunk.layers[i] > 0) there.push_back(i);
@@ -94,7 +96,8 @@ TEST_CASE("a layer is there if its attribute changes, and only then") {
 
 TEST_CASE("a grey that changes costs no more than red alone, and less than half of a colour that changes") {
   const auto colours = [](const std::function<std::array<std::uint16_t, 3>(std::size_t)>& colour) {
-    return through(points(10'000, 36, [&](std::string& p, std::size_t i) { put(p, 30, colour(i)); }), 36, 6).layers.at(9);
+    return through(points(10'000, 36, [&](std::string& p, std::size_t i) { put(p, 30, colour(i)); }), 36, 6)
+        .layers.at(9);
   };
   const auto any = [](std::size_t i) { return static_cast<std::uint16_t>(i * i * 40'503 >> 4 & 255); };
   const auto grey = colours([&](std::size_t i) { return std::array{any(i), any(i), any(i)}; });
@@ -125,7 +128,8 @@ struct Change {
     return points(count, record, [&](std::string& p, std::size_t i) {
       for (std::size_t at = 0; at < record; ++at)
         if (random.uniform() < chance || i == 0) {
-          const std::uint64_t any = random.coin() ? random.whole(256) : static_cast<unsigned char>(p[at]) + random.whole(5) - 2;
+          const std::uint64_t any =
+              random.coin() ? random.whole(256) : static_cast<unsigned char>(p[at]) + random.whole(5) - 2;
           p[at] = static_cast<char>(any);
         }
       p[15] = static_cast<char>((p[15] & ~0x30) | static_cast<char>(random.whole(channels) << 4));
@@ -176,7 +180,8 @@ TEST_CASE("times come back at every multiple of the usual step and beside it, an
     at_times(times);
   }
   constexpr std::int64_t step = INT32_MIN;
-  at_times({0, INT64_MIN, INT64_MAX, 0, INT64_MAX, INT64_MIN, -1, 1, INT64_MIN + 1, INT64_MAX - 1, INT64_MIN, INT64_MAX});
+  at_times(
+      {0, INT64_MIN, INT64_MAX, 0, INT64_MAX, INT64_MIN, -1, 1, INT64_MIN + 1, INT64_MAX - 1, INT64_MIN, INT64_MAX});
   at_times({0, step, 2 * step, 0, -step, 0, step, step - 1, 0, -1, step, 0});
 }
 

@@ -67,7 +67,8 @@ std::filesystem::path written(const std::filesystem::path& path, const std::stri
 /// A ground of 30 triangles in two objects and materials, in a format of assimp's exporter.
 std::string sound_file(const std::filesystem::path& folder, const std::string& format, const std::string& ending) {
   std::string text = "mtllib a.mtl\no a\nusemtl red\n";
-  for (int i = 0; i < 34; ++i) text += "v " + std::to_string(i % 5) + " " + std::to_string(i / 5) + " " + std::to_string(i % 3) + "\n";
+  for (int i = 0; i < 34; ++i)
+    text += "v " + std::to_string(i % 5) + " " + std::to_string(i / 5) + " " + std::to_string(i % 3) + "\n";
   for (int i = 1; i <= 30; ++i) {
     if (i == 15) text += "o b\nusemtl blue\n";
     text += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 4) + "\n";
@@ -88,8 +89,9 @@ TEST_CASE("mesh files that are cut off or spoilt are read or explained") {
   struct Format {
     std::string name, ending;
   };
-  const std::vector<Format> formats{{"ply", "ply"},  {"plyb", "ply"},    {"gltf2", "gltf"}, {"glb2", "glb"}, {"stl", "stl"},
-                                    {"stlb", "stl"}, {"collada", "dae"}, {"fbxa", "fbx"},   {"fbx", "fbx"}};
+  const std::vector<Format> formats{{"ply", "ply"},     {"plyb", "ply"}, {"gltf2", "gltf"},
+                                    {"glb2", "glb"},    {"stl", "stl"},  {"stlb", "stl"},
+                                    {"collada", "dae"}, {"fbxa", "fbx"}, {"fbx", "fbx"}};
   const std::array<const char*, 16> words{
       "4294967295", "-1",  "99999999999999999999", "nan", "1e999",   "inf", "\xFF\xFF\xFF\xFF", "0", "{", "]", "\"",
       "</",         "<a>", "../../etc/passwd",     "\n",  "00000000"};
@@ -182,7 +184,8 @@ TEST_CASE("glTF files that lie are read or explained") {
   Gltf doubling;  // each node shows the next twice: 2^60 nodes
   doubling.primitive({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   doubling.mesh("m");
-  for (int i = 0; i < 60; ++i) doubling.node("\"children\":[" + std::to_string(i + 1) + "," + std::to_string(i + 1) + "]");
+  for (int i = 0; i < 60; ++i)
+    doubling.node("\"children\":[" + std::to_string(i + 1) + "," + std::to_string(i + 1) + "]");
   doubling.node("\"mesh\":0");
   Gltf deep;
   deep.primitive({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});

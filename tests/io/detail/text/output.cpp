@@ -40,7 +40,8 @@ TEST_CASE("numbers stand with one blank between them, and rows end and begin ane
 
 TEST_CASE("a zero has no sign, however it came about") {
   TextRow row;
-  CHECK(row.add(-0.0, 4).add(-0.00004, 4).add(-0.00006, 4).add(-1e-300, 0).add(-10.0, 1).end() == "0.0000 0.0000 -0.0001 0 -10.0\n");
+  CHECK(row.add(-0.0, 4).add(-0.00004, 4).add(-0.00006, 4).add(-1e-300, 0).add(-10.0, 1).end() ==
+        "0.0000 0.0000 -0.0001 0 -10.0\n");
 }
 
 TEST_CASE("a number without a count of decimals is as short as it can be, and reads back the same") {
@@ -56,7 +57,8 @@ TEST_CASE("a number without a count of decimals is as short as it can be, and re
 
 TEST_CASE("a word stands as it is, and what is not a number has no sign") {
   TextRow row;
-  CHECK(row.add(1).add(std::string_view("word")).add(-std::numeric_limits<double>::quiet_NaN(), 4).end() == "1 word nan\n");
+  CHECK(row.add(1).add(std::string_view("word")).add(-std::numeric_limits<double>::quiet_NaN(), 4).end() ==
+        "1 word nan\n");
 }
 
 TEST_CASE("numbers are written as the C library does, and the largest finds room") {
@@ -73,7 +75,8 @@ TEST_CASE("numbers are written as the C library does, and the largest finds room
     CAPTURE(seed);
     support::Generator random(seed);
     const int decimals = static_cast<int>(random.whole(12));
-    double value = static_cast<double>(random.whole(std::uint64_t{1} << random.whole(50)) * 2 + 1) / 2 / std::pow(10, random.whole(12));
+    double value = static_cast<double>(random.whole(std::uint64_t{1} << random.whole(50)) * 2 + 1) / 2 /
+                   std::pow(10, random.whole(12));
     if (random.coin()) value = std::nextafter(value, random.coin() ? 0 : 1e300);
     if (random.coin()) value = -value;
     std::array<char, 400> expected{};
@@ -84,7 +87,8 @@ TEST_CASE("numbers are written as the C library does, and the largest finds room
     CHECK(row.add(value, decimals).end() == text);
   }
   TextRow row;
-  CHECK(row.add(0.5, 0).add(1.5, 0).add(0.125, 2).add(0.375, 2).add(1e-9, 9).add(-0.999, 2).end() == "0 2 0.12 0.38 0.000000001 -1.00\n");
+  CHECK(row.add(0.5, 0).add(1.5, 0).add(0.125, 2).add(0.375, 2).add(1e-9, 9).add(-0.999, 2).end() ==
+        "0 2 0.12 0.38 0.000000001 -1.00\n");
   CHECK(row.add(std::numeric_limits<double>::lowest(), 9).end().size() == 1 + 309 + 1 + 9 + 1);
 }
 
@@ -120,8 +124,9 @@ TEST_CASE("a vector that is not finite is an error that says whose it is, and le
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     TextOutput text{OutputFile(folder / "a.txt")};
     text.wholes(1).end_row();
-    CHECK_THROWS_WITH_AS(text.vector("a place", Vec3{0, bad, 0}, 4),
-                         doctest::Contains("line 2: cannot be written: a place is not finite; expected finite coordinates"), FileError);
+    CHECK_THROWS_WITH_AS(
+        text.vector("a place", Vec3{0, bad, 0}, 4),
+        doctest::Contains("line 2: cannot be written: a place is not finite; expected finite coordinates"), FileError);
     CHECK_THROWS_AS(text.close(), FileError);
   }
   CHECK(folder.empty());

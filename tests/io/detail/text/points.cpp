@@ -71,7 +71,8 @@ TEST_CASE("comments and blank rows do not count, lines do") {
 }
 
 TEST_CASE("columns stand in any order") {
-  const PointColumns columns{.position = {4, 0, 2}, .normal = PointColumns::Columns{1, 1, 3}, .colour = PointColumns::Columns{5, 6, 7}};
+  const PointColumns columns{
+      .position = {4, 0, 2}, .normal = PointColumns::Columns{1, 1, 3}, .colour = PointColumns::Columns{5, 6, 7}};
   const Read found = read("2 0.5 3 0.25 1 10 20 30\n5e3 -1 .25 7 -4.5 40 50 60 tree 5\n", columns);
   CHECK(found.positions == two);
   CHECK(found.normals == Points{{0.5, 0.5, 0.25}, {-1, -1, 7}});
@@ -79,7 +80,8 @@ TEST_CASE("columns stand in any order") {
 }
 
 TEST_CASE("columns that are not asked for may hold anything") {
-  CHECK(read("a 1 b 2 c 3\n\x01 -4.5 nan 5e3 - .25\n", {.position = {1, 3, 5}, .normal = {}, .colour = {}}).positions == two);
+  CHECK(read("a 1 b 2 c 3\n\x01 -4.5 nan 5e3 - .25\n", {.position = {1, 3, 5}, .normal = {}, .colour = {}}).positions ==
+        two);
 }
 
 TEST_CASE("the first row decides whether there are normals and colours") {
@@ -112,7 +114,8 @@ TEST_CASE("one first row of names or a count is skipped with a warning, unless i
   skipped("# time x y z\n", "1: names x, y and z of other columns");
   CHECK(read("# x y z\n1 2 3\n").warnings.empty());
   CHECK(read("# by x\n1 2 3\n").warnings.empty());
-  CHECK(error("time,x,y,z\n9,1,2,3\n").problem() == "names x, y and z of other columns than those that are read: expected these first");
+  CHECK(error("time,x,y,z\n9,1,2,3\n").problem() ==
+        "names x, y and z of other columns than those that are read: expected these first");
   CHECK(read("time,x,y,z\n9,1,2,3\n", {.position = {1, 2, 3}}).positions == Points{{1, 2, 3}});
   for (const char* bad : {"x y z\nx y z\n1 2 3\n", "2\n2\n1 2 3\n", "x 2 z\n1 2 3\n", "x y\n1 2 3\n", "2.5\n1 2 3\n"}) {
     CAPTURE(bad);
@@ -151,7 +154,8 @@ TEST_CASE("a last line without an end is read, with a warning") {
 TEST_CASE("columns and separators that cannot be are refused") {
   for (const char* separators : {"1", ",e", "E", ".", "+", "-", "#", "/", "\n"}) {
     CAPTURE(separators);
-    CHECK_THROWS_WITH_AS((PointColumns{.separators = separators}.validate()), doctest::Contains("PointColumns::separators"), SettingError);
+    CHECK_THROWS_WITH_AS((PointColumns{.separators = separators}.validate()),
+                         doctest::Contains("PointColumns::separators"), SettingError);
   }
   CHECK_THROWS_AS((PointColumns{.position = {0, 1, 1000}}.validate()), SettingError);
   CHECK_THROWS_AS((PointColumns{.normal = PointColumns::Columns{0, 1, 1000}}.validate()), SettingError);

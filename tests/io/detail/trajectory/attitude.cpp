@@ -34,7 +34,8 @@ Rotation of(double roll_deg, double pitch_deg, double yaw_deg, const AngleConven
 
 /// Every order of the three angles, each about its axis in either sense, and level at some heading.
 std::vector<AngleConvention> every_convention() {
-  std::vector<AngleConvention> all{heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw};
+  std::vector<AngleConvention> all{heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical,
+                                   ros_roll_pitch_yaw};
   std::array<int, 3> order{0, 1, 2};
   const std::array<Vec3, 3> axes{axis::right, axis::forward, axis::up};
   const std::array<double RollPitchYaw::*, 3> angles{&RollPitchYaw::roll, &RollPitchYaw::pitch, &RollPitchYaw::yaw};
@@ -66,8 +67,8 @@ TEST_CASE("each convention turns about the axes that it names, in its order and 
     CHECK_FALSE(differs(helios_arinc_705, from_north * wing_down * nose_up));
     CHECK_FALSE(differs(mathematical, from_east * nose_up * wing_down));
     CHECK_FALSE(differs(ros_roll_pitch_yaw, from_east * conjugate(nose_up) * wing_down));
-    CHECK_FALSE(differs(helios_canonical,
-                        rotation_about(axis::right, roll) * rotation_about(axis::forward, pitch) * rotation_about(axis::up, yaw)));
+    CHECK_FALSE(differs(helios_canonical, rotation_about(axis::right, roll) * rotation_about(axis::forward, pitch) *
+                                              rotation_about(axis::up, yaw)));
   }
 }
 
@@ -101,8 +102,9 @@ TEST_CASE("axes are what they are called") {
       CHECK(axes.swapped(axes.swapped(p)) == p);
     }
   };
-  for (const auto& [world, directions] : {std::pair{WorldAxes::east_north_up, std::array<Vec3, 3>{east, north, axis::up}},
-                                          {WorldAxes::north_east_down, std::array<Vec3, 3>{north, east, down}}}) {
+  for (const auto& [world, directions] :
+       {std::pair{WorldAxes::east_north_up, std::array<Vec3, 3>{east, north, axis::up}},
+        {WorldAxes::north_east_down, std::array<Vec3, 3>{north, east, down}}}) {
     agree({BodyAxes::right_forward_up, world}, {axis::right, axis::forward, axis::up}, directions);
     agree({BodyAxes::forward_right_down, world}, {axis::forward, axis::right, down}, directions);
     agree({BodyAxes::forward_left_up, world}, {axis::forward, -axis::right, axis::up}, directions);

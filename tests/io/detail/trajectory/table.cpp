@@ -21,7 +21,8 @@ namespace {
 using support::contains;
 using support::TemporaryFolder;
 
-TrajectoryTable read(const std::string& text, const TrajectoryFormat& format = csv_format(), const TimeWindow& window = {}) {
+TrajectoryTable read(const std::string& text, const TrajectoryFormat& format = csv_format(),
+                     const TimeWindow& window = {}) {
   static const TemporaryFolder folder;
   std::filesystem::remove(folder / "t.csv");
   std::ofstream(folder / "t.csv", std::ios::binary) << text;
@@ -54,13 +55,15 @@ TEST_CASE("a table with named columns is read as it stands") {
 TEST_CASE("the order of columns, the separator, the units and the line ends do not matter") {
   const TrajectoryTable expected = read(head + "1,477000.25,5429000,200,3,-4,275\n2,477001,5429001,201,4,-3,276\n");
   for (const std::string& text : {
+           std::string("heading_deg;z_m;y_m;x_m;time_s;pitch_deg;roll_deg\n275;200;5429000;477000.25;1;-4;3\n276;201;"
+                       "5429001;477001;2;-3;4\n"),
            std::string(
-               "heading_deg;z_m;y_m;x_m;time_s;pitch_deg;roll_deg\n275;200;5429000;477000.25;1;-4;3\n276;201;5429001;477001;2;-3;4\n"),
-           std::string(
-               "# by hand\r\nTime [ms]\tEasting\tNorthing\tHeight\troll\tpitch\tyaw\r\n\r\n1000\t477000.25\t5429000\t200\t3\t-4\t275\r\n"
+               "# by hand\r\nTime "
+               "[ms]\tEasting\tNorthing\tHeight\troll\tpitch\tyaw\r\n\r\n1000\t477000.25\t5429000\t200\t3\t-4\t275\r\n"
                "# between\r\n2000\t477001\t5429001\t201\t4\t-3\t276\r\n"),
-           std::string("  t north_km  east_mm down_m  roll_deg pitch_deg heading_deg\n 1 5429 477000250 -200  3 -4 275\n"
-                       "2  5429.001 477001000 -201   4 -3 276\n"),
+           std::string(
+               "  t north_km  east_mm down_m  roll_deg pitch_deg heading_deg\n 1 5429 477000250 -200  3 -4 275\n"
+               "2  5429.001 477001000 -201   4 -3 276\n"),
        }) {
     CAPTURE(text);
     const TrajectoryTable table = read(text);
@@ -105,12 +108,14 @@ TEST_CASE("names and the place of the time may stand in comments") {
   REQUIRE(table.poses.size() == 6);
   CHECK(table.poses[1].time == 0.2);
   CHECK(table.poses[1].position == Vec3{476212, 5474301.1993, 600.5960});
-  const Rotation expected = rotation_about(-axis::up, radians(270.4992)) * rotation_about(axis::forward, radians(0.596)) *
+  const Rotation expected = rotation_about(-axis::up, radians(270.4992)) *
+                            rotation_about(axis::forward, radians(0.596)) *
                             rotation_about(axis::right, radians(1.9804));
   CHECK(same(table.poses[1].rotation, expected));
   TrajectoryFormat other = helios_format();
   other.angles = helios_canonical;
-  const Rotation canonical = rotation_about(axis::right, radians(0.596)) * rotation_about(axis::forward, radians(1.9804)) *
+  const Rotation canonical = rotation_about(axis::right, radians(0.596)) *
+                             rotation_about(axis::forward, radians(1.9804)) *
                              rotation_about(axis::up, radians(270.4992));
   CHECK(same(read_trajectory(data, other).poses[1].rotation, canonical));
 }
@@ -121,7 +126,8 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
   for (const char* text :
        {"#TIME_COLUMN: 3\n1,2,3,0,4,5,6\n1,2,3,1,4,5,6\n",
         "# by hand\n#HEADER: \"x\", \"y\",\"z\" , \"roll\", \"t\", \"pitch\", \"yaw\"\n4,5,6,1,0,2,3\n4,5,6,1,1,2,3\n",
-        "#HEADER: \"clock\",\"x\",\"y\",\"z\",\"roll\",\"pitch\",\"yaw\"\n#TIME_COLUMN: 0\n0,4,5,6,1,2,3\n1,4,5,6,1,2,3\n"}) {
+        "#HEADER: \"clock\",\"x\",\"y\",\"z\",\"roll\",\"pitch\",\"yaw\"\n#TIME_COLUMN: "
+        "0\n0,4,5,6,1,2,3\n1,4,5,6,1,2,3\n"}) {
     CAPTURE(text);
     const TrajectoryTable table = read(text, helios_format());
     REQUIRE(table.poses.size() == 2);
@@ -129,11 +135,13 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
     CHECK(table.poses[0].position == Vec3{4, 5, 6});
     CHECK(same(table.poses[0].rotation, expected.poses[0].rotation));
   }
-  CHECK(contains(error("#TIME_COLUMN: 7\n1,2,3,4,5,6,7\n", helios_format()).problem(), "expected the index, from 0, of one of"));
+  CHECK(contains(error("#TIME_COLUMN: 7\n1,2,3,4,5,6,7\n", helios_format()).problem(),
+                 "expected the index, from 0, of one of"));
   CHECK(error("#TIME_COLUMN: two\n1,2,3,4,5,6,7\n", helios_format()).place() == "line 1");
   CHECK(error("0,1,2,3,4,5\n", helios_format()).problem() == "has 6 columns: expected 7");
-  CHECK(error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"yaw_m\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format()).place() ==
-        "line 2, column 7");
+  CHECK(
+      error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"yaw_m\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format()).place() ==
+      "line 2, column 7");
   TrajectoryFormat radian = helios_format();
   radian.angle_unit = AngleUnit::radian;
   CHECK(same(read("0,0.1,0.2,0.3,4,5,6\n", radian).poses[0].rotation, rotation_of({0.1, 0.2, 0.3}, helios_arinc_705)));
@@ -155,7 +163,8 @@ TEST_CASE("a first line of names counts without its #, and is no row where colum
 
 TEST_CASE("time, position and quaternion of a robot: its x is forward") {
   const TrajectoryTable table = read(
-      "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.5 2.5 3.5 0 0 0 1\n1305031103 0 0 0 0 0 0.7071067811865476 0.7071067811865476\n",
+      "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.5 2.5 3.5 0 0 0 1\n1305031103 0 0 0 0 0 0.7071067811865476 "
+      "0.7071067811865476\n",
       tum_format());
   CHECK(table.warnings.empty());
   CHECK(table.start_time == 1305031102.1758);
@@ -166,7 +175,9 @@ TEST_CASE("time, position and quaternion of a robot: its x is forward") {
   CHECK(table.poses[1].time == doctest::Approx(0.8242).epsilon(1e-6));
 }
 
-TEST_CASE("a quaternion is made a unit, silently if six decimals explain it, with a warning up to 1/1000, and refused beyond") {
+TEST_CASE(
+    "a quaternion is made a unit, silently if six decimals explain it, with a warning up to 1/1000, and refused "
+    "beyond") {
   CHECK(read("0 0 0 0 0 0 0.707107 0.707107\n", tum_format()).warnings.empty());
   const TrajectoryTable table = read("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1.0009\n2 0 0 0 0 0 0 0.9995\n", tum_format());
   REQUIRE(table.warnings.size() == 1);
@@ -188,13 +199,17 @@ TEST_CASE("poses out of order are sorted, and those that stand twice count once"
   CHECK(contains(table.warnings[1], "line 5: repeats a pose"));
 }
 
-TEST_CASE("poses at one time are a jump: a window that ends there ends before it, and one that begins there begins after it") {
-  const std::string text = head + "10,0,0,0,0,0,0\n12,20,0,0,0,0,0\n12,99,0,0,0,0,0\n12,50,0,0,0,0,0\n14,70,0,0,0,0,0\n";
+TEST_CASE(
+    "poses at one time are a jump: a window that ends there ends before it, and one that begins there begins after "
+    "it") {
+  const std::string text =
+      head + "10,0,0,0,0,0,0\n12,20,0,0,0,0,0\n12,99,0,0,0,0,0\n12,50,0,0,0,0,0\n14,70,0,0,0,0,0\n";
   const TrajectoryTable whole = read(text);
   REQUIRE(whole.poses.size() == 5);
   REQUIRE(whole.warnings.size() == 1);
-  CHECK(contains(whole.warnings[0],
-                 "t.csv, line 4: repeats the time of the previous pose at another pose, the first of 2: a jump of the platform"));
+  CHECK(contains(
+      whole.warnings[0],
+      "t.csv, line 4: repeats the time of the previous pose at another pose, the first of 2: a jump of the platform"));
   const Waypoints path(whole.poses);
   CHECK(path.at(Tick::of_seconds(1.999)).position.x == doctest::Approx(19.99));
   CHECK(path.at({2, 0}).position.x == 50);
@@ -203,8 +218,9 @@ TEST_CASE("poses at one time are a jump: a window that ends there ends before it
     double first, last;
     std::size_t poses, warnings;
   };
-  for (const Part& part : {Part{{.end = 12}, 0, 20, 2, 0}, Part{{.start = 12}, 50, 70, 2, 0}, Part{{.start = 12, .end = 12}, 50, 50, 1, 0},
-                           Part{{.start = 11, .end = 13}, 10, 60, 5, 1}, Part{{.start = 11, .end = 12}, 10, 20, 2, 0}}) {
+  for (const Part& part :
+       {Part{{.end = 12}, 0, 20, 2, 0}, Part{{.start = 12}, 50, 70, 2, 0}, Part{{.start = 12, .end = 12}, 50, 50, 1, 0},
+        Part{{.start = 11, .end = 13}, 10, 60, 5, 1}, Part{{.start = 11, .end = 12}, 10, 20, 2, 0}}) {
     const TrajectoryTable table = read(text, csv_format(), part.window);
     REQUIRE(table.poses.size() == part.poses);
     CHECK(table.poses.front().position.x == doctest::Approx(part.first));
@@ -219,7 +235,8 @@ TEST_CASE("poses at one time are a jump: a window that ends there ends before it
 }
 
 TEST_CASE("poses closer than a microsecond are as good as others, and what a number cannot tell apart is a jump") {
-  const TrajectoryTable close = read(head + "100,0,0,0,0,0,0\n101,1,0,0,0,0,0\n101.0000001,2,0,0,0,0,0\n102,3,0,0,0,0,0\n");
+  const TrajectoryTable close =
+      read(head + "100,0,0,0,0,0,0\n101,1,0,0,0,0,0\n101.0000001,2,0,0,0,0,0\n102,3,0,0,0,0,0\n");
   CHECK(close.warnings.empty());
   CHECK(Waypoints(close.poses).at(Tick::of_seconds(1.00000005)).position.x == doctest::Approx(1.5));
   const TrajectoryTable far = read(head + "-1e12,1,2,3,0,0,0\n1e-9,1,2,3,0,0,0\n2e-9,5,2,3,0,0,0\n1,5,2,3,0,0,0\n");
@@ -246,7 +263,8 @@ TEST_CASE("a window begins and ends at its times") {
   const TrajectoryTable wide = read(text, csv_format(), {.start = 0, .end = 99});
   CHECK(wide.poses.size() == 4);
   CHECK(wide.warnings.size() == 2);
-  CHECK(contains(error(text, csv_format(), {.start = 14}).problem(), "has poses from 10 s to 13 s: expected some from 14 s"));
+  CHECK(contains(error(text, csv_format(), {.start = 14}).problem(),
+                 "has poses from 10 s to 13 s: expected some from 14 s"));
   CHECK_THROWS_AS(read(text, csv_format(), {.start = 12, .end = 11}), SettingError);
   CHECK_THROWS_AS(read(text, csv_format(), {.start = NAN}), SettingError);
 }
@@ -272,7 +290,8 @@ TEST_CASE("what cannot be right is told with its place, and what was expected") 
            {head, "", "holds no pose"},
            {"0,1,2,3,4,5,6\n", "line 1", "expected the names of the columns"},
            {"0,1,2\n", "line 1", "expected the names of the columns"},
-           {"time_s,x_m,y_m,z_m,rol_deg\n", "line 1, column 5", "'rol_deg' is not a known column: did you mean 'roll_deg'"},
+           {"time_s,x_m,y_m,z_m,rol_deg\n", "line 1, column 5",
+            "'rol_deg' is not a known column: did you mean 'roll_deg'"},
            {"time_s,x_m,y_m\n", "line 1", "do not define one position"},
            {head + "0,1,2,3,4,5,6\n1,2,3\n", "line 3", "has 3 columns: expected 7"},
            {head + "0,1,2,3,4,5,6,7\n", "line 2", "has 8 columns: expected 7"},
@@ -287,7 +306,8 @@ TEST_CASE("what cannot be right is told with its place, and what was expected") 
     CHECK(e.place() == c.place);
     CHECK_MESSAGE(contains(e.problem(), c.problem), e.problem());
   }
-  CHECK_THROWS_WITH_AS((void)read_trajectory("no/such.csv"), doctest::Contains("no/such.csv: does not exist"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_trajectory("no/such.csv"), doctest::Contains("no/such.csv: does not exist"),
+                       FileError);
   CHECK(error("0 0 0 0 0 0 1\n", tum_format()).problem() == "has 7 columns: expected 8");
 }
 
@@ -312,8 +332,8 @@ TEST_CASE("names that no column has, units of something else, and columns that m
     CHECK(error("t,x,y,z," + std::string(name) + "\n0,1,2,3,4\n").place() == "line 1, column 5");
   }
   CHECK(error("t,x,y,z,heading,yaw\n0,1,2,3,4,5\n").place() == "line 1, column 6");
-  for (const char* names :
-       {"x,y,z", "t,x,y", "t,east,north", "t,east,north,up,down", "t,x,y,z,up", "t,x,y,z,qx,qy,qz", "t,x,y,z,qx,qy,qz,qw,roll"}) {
+  for (const char* names : {"x,y,z", "t,x,y", "t,east,north", "t,east,north,up,down", "t,x,y,z,up", "t,x,y,z,qx,qy,qz",
+                            "t,x,y,z,qx,qy,qz,qw,roll"}) {
     CAPTURE(names);
     CHECK(error(names + std::string("\n")).place() == "line 1");
   }
@@ -356,7 +376,8 @@ TEST_CASE("a name that ends in height is a height, and columns that were not und
   const std::string row = "\n400000,1,2,50,0,0,90\n";
   for (const char* name : {"ELLIPSOID HEIGHT", "Ellipsoid Height (m)", "orthometric_height"}) {
     CAPTURE(name);
-    const auto table = read("TIME,EASTING,NORTHING," + std::string(name) + ",ROLL,PITCH,HEADING" + row, helios_format());
+    const auto table =
+        read("TIME,EASTING,NORTHING," + std::string(name) + ",ROLL,PITCH,HEADING" + row, helios_format());
     CHECK(table.warnings.empty());
     REQUIRE(table.poses.size() == 1);
     CHECK(table.poses[0].position == Vec3{1, 2, 50});
@@ -364,12 +385,15 @@ TEST_CASE("a name that ends in height is a height, and columns that were not und
   CHECK(error("TIME,EASTING,NORTHING,H-ELL,ROLL,PITCH,HEADING" + row, helios_format())
             .problem()
             .ends_with("up or down; not understood: 'H-ELL'; a survey may give columns by number, as with zIndex"));
-  CHECK(contains(error("TIME,EASTING,NORTHING,ELLIPSOID HEIGHT (ft),ROLL,PITCH,HEADING" + row, helios_format()).problem(),
-                 "not understood: 'ELLIPSOID HEIGHT (ft)'"));
+  CHECK(
+      contains(error("TIME,EASTING,NORTHING,ELLIPSOID HEIGHT (ft),ROLL,PITCH,HEADING" + row, helios_format()).problem(),
+               "not understood: 'ELLIPSOID HEIGHT (ft)'"));
   CHECK(contains(error("t,east,north,ellipsoid height,height,x" + row).problem(), "duplicates column 4"));
 }
 
-TEST_CASE("further columns do not count where the file or the format says which ones are which, if the format allows for them") {
+TEST_CASE(
+    "further columns do not count where the file or the format says which ones are which, if the format allows for "
+    "them") {
   const std::string named = "#HEADER: \"t\", \"quality\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n";
   const TrajectoryTable table = read(named + "7,good,1,2,3,4,5,6,more,and more\n", helios_format());
   REQUIRE(table.poses.size() == 1);
@@ -395,7 +419,8 @@ TEST_CASE("further columns do not count where the file or the format says which 
 
 TEST_CASE("a separator is found, unless it is fixed") {
   TrajectoryFormat format = helios_format();
-  const std::string text = "#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n0,1,2,3,4,5,6,fixed;float\n";
+  const std::string text =
+      "#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n0,1,2,3,4,5,6,fixed;float\n";
   CHECK(contains(error(text, format).problem(), "has 2 columns: expected 7"));
   format.fixed_separator = true;
   CHECK(read(text, format).poses.at(0).position == Vec3{4, 5, 6});

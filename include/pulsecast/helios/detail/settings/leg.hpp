@@ -36,20 +36,20 @@ struct TrajectorySettings {
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
   bool sync_clock = false;                     ///< start the clock at the time in the file; `syncGPSTime`
-  bool teleports = false;                      ///< jump to the start as by a leg without pulses: the optic starts anew. `teleportToStart`
-  std::optional<double> start{};               ///< on the clock of the file, default its first sample; `tStart` [s]
-  std::optional<double> end{};                 ///< on the clock of the file, default its last sample; `tEnd` [s]
+  bool teleports = false;  ///< jump to the start as by a leg without pulses: the optic starts anew. `teleportToStart`
+  std::optional<double> start{};  ///< on the clock of the file, default its first sample; `tStart` [s]
+  std::optional<double> end{};    ///< on the clock of the file, default its last sample; `tEnd` [s]
 
   bool operator==(const TrajectorySettings&) const = default;
 };
 
 /// `<platformSettings>` of a leg
 struct LegPlatformSettings {
-  Vec3 position{};                                 ///< start of the leg, in the coordinates of the scene; `x`, `y`, `z` [m]
-  bool on_ground = false;                          ///< take z from the ground; `onGround`
-  double speed = 70;                               ///< `movePerSec_m` [m/s]
-  bool smooth_turn = false;                        ///< multicopter: turn without a stop; `smoothTurn`, or `stopAndTurn="false"`
-  std::optional<double> yaw_at_departure{};        ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
+  Vec3 position{};           ///< start of the leg, in the coordinates of the scene; `x`, `y`, `z` [m]
+  bool on_ground = false;    ///< take z from the ground; `onGround`
+  double speed = 70;         ///< `movePerSec_m` [m/s]
+  bool smooth_turn = false;  ///< multicopter: turn without a stop; `smoothTurn`, or `stopAndTurn="false"`
+  std::optional<double> yaw_at_departure{};  ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
   bool operator==(const LegPlatformSettings&) const = default;
@@ -66,9 +66,10 @@ struct LegScannerSettings {
   double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double> divergence{};          ///< common value of all channels, default each one's own; `beamDivergence_rad` [rad]
-  double trajectory_interval = 0;              ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;                          ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
+  std::optional<double>
+      divergence{};                ///< common value of all channels, default each one's own; `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;  ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;              ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
 
   void validate() const {
     require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
@@ -83,8 +84,9 @@ struct LegScannerSettings {
 
 /// `<leg>`
 struct LegSettings {
-  std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
-  std::optional<double> duration_max{};  ///< upper limit of the leg's duration; `maxDuration_s` of leg or scannerSettings [s]
+  std::optional<std::string> strip{};  ///< legs of one strip share their files; `stripId`
+  std::optional<double>
+      duration_max{};  ///< upper limit of the leg's duration; `maxDuration_s` of leg or scannerSettings [s]
   LegPlatformSettings platform{};
   LegScannerSettings scanner{};
 

@@ -44,15 +44,16 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` tell other formats
-  MaterialSource material{};                   ///< that of pixels without a class
-  bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
-  std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
-  bool class_colours = false;                  ///< true: its colour table colours the materials. `classcolours`
-  std::optional<double> height_scale{};        ///< metres per unit of height; by default that of the file [m]. `heightScale`
-  double height_offset = 0;                    ///< added to the heights [m]. `heightOffset`
-  std::optional<double> missing{};             ///< number of missing heights; by default that of the file. `noDataValue`
-  std::optional<double> pixel_size{};          ///< of PNG files without a world file [m]. `pixelSize`
+  std::vector<std::filesystem::path>
+      files{};                ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` tell other formats
+  MaterialSource material{};  ///< that of pixels without a class
+  bool mosaic = false;        ///< true: the files are tiles of one raster. `mosaic`
+  std::filesystem::path classes{};       ///< raster of classes, which choose materials; empty: none. `classfile`
+  bool class_colours = false;            ///< true: its colour table colours the materials. `classcolours`
+  std::optional<double> height_scale{};  ///< metres per unit of height; by default that of the file [m]. `heightScale`
+  double height_offset = 0;              ///< added to the heights [m]. `heightOffset`
+  std::optional<double> missing{};       ///< number of missing heights; by default that of the file. `noDataValue`
+  std::optional<double> pixel_size{};    ///< of PNG files without a world file [m]. `pixelSize`
 
   void validate() const {
     material.validate();
@@ -68,11 +69,11 @@ struct GeoTiffSource {
 struct XyzSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
-  std::string separator{};                     ///< set of column separators, default detected; `separator`
-  double voxel_size = 1;                       ///< edge length; `voxelSize` [m]
-  std::optional<Vec3> default_normal{};        ///< non-zero, any length; `defaultNormal`
-  int estimate_normals = 0;                    ///< 0: from the file, else fitted to a plane in each voxel; `estimateNormals`
-  bool snap_neighbor_normal = false;           ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
+  std::string separator{};               ///< set of column separators, default detected; `separator`
+  double voxel_size = 1;                 ///< edge length; `voxelSize` [m]
+  std::optional<Vec3> default_normal{};  ///< non-zero, any length; `defaultNormal`
+  int estimate_normals = 0;              ///< 0: from the file, else fitted to a plane in each voxel; `estimateNormals`
+  bool snap_neighbor_normal = false;  ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
   void validate() const {
@@ -118,7 +119,8 @@ struct MeshSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MeshUp up = MeshUp::file;                    ///< `up`
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
-  std::filesystem::path materials{};           ///< MTL file whose materials replace those of the same names; empty: none. `materials`
+  std::filesystem::path
+      materials{};  ///< MTL file whose materials replace those of the same names; empty: none. `materials`
 
   void validate() const {
     if (unit) require_within("unit", *unit, 1e-9, 1e9, "m");

@@ -52,7 +52,7 @@ struct NoiseSettings {
   bool clipped = false;                                        ///< `clipEnabled`
   double clip_low = 0;                                         ///< `clipMin` [m] or [rad]
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
-  int lifespan = 1;                                            ///< number of pulses per random number, 0 for all; `fixedLifespan`
+  int lifespan = 1;  ///< number of pulses per random number, 0 for all; `fixedLifespan`
 
   void validate() const { detail::require_at_least(0, "fixedLifespan", lifespan); }
 
@@ -61,12 +61,12 @@ struct NoiseSettings {
 
 /// `<platform>`, with the overrides of the survey.
 struct PlatformSettings {
-  std::string id{};                                              ///< `id`
-  std::string name{};                                            ///< `name`
-  PlatformKind kind = PlatformKind::stationary;                  ///< `type`
-  MountSettings mount{};                                         ///< pose of the instrument on the body; `<scannerMount>`
-  MulticopterDynamics multicopter{};                             ///< multicopter only
-  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated only; `rotationSpec`
+  std::string id{};                                      ///< `id`
+  std::string name{};                                    ///< `name`
+  PlatformKind kind = PlatformKind::stationary;          ///< `type`
+  MountSettings mount{};                                 ///< pose of the instrument on the body; `<scannerMount>`
+  MulticopterDynamics multicopter{};                     ///< multicopter only
+  RotationSpec rotation_spec = RotationSpec::arinc_705;  ///< interpolated only; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
 

@@ -22,12 +22,14 @@ using pulsecast::KeptReturns;
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
-  double scan_product_max = radians(1e6);  ///< maximum of half scan angle times scan frequency; `scanProduct` in deg Hz [rad/s]
+  double scan_product_max =
+      radians(1e6);  ///< maximum of half scan angle times scan frequency; `scanProduct` in deg Hz [rad/s]
 
   bool operator==(const OscillatingOptic&) const = default;
 };
 
-/// Rotating polygon mirror: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of that.
+/// Rotating polygon mirror: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of
+/// that.
 struct RotatingOptic {
   /// Maximum half angle of measurement, default `scan_angle_max`; `scanAngleEffectiveMax_deg` [rad]
   std::optional<double> effective_angle_max{};
@@ -89,32 +91,34 @@ struct ErrorFormulas {
   std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
   double head_zero_threshold = 0;  ///< least distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
   std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
-  std::string range_noise{};       ///< factor of range noise, as a function of the range [m]; `distanceMeasurementError` in t
+  std::string
+      range_noise{};  ///< factor of range noise, as a function of the range [m]; `distanceMeasurementError` in t
 
   bool operator==(const ErrorFormulas&) const = default;
 };
 
-/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of `beam_origin` is along the axes
-/// of the platform, like that of the mount. The rotation of the mount does not turn it; heading and head do.
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of
+/// `beam_origin` is along the axes of the platform, like that of the mount. The rotation of the mount does not turn it;
+/// heading and head do.
 struct ChannelSettings {
-  std::string id{};                                            ///< `id` of the channel; empty for the only channel
-  OpticSettings optic{};                                       ///< `optics` and its attributes
-  double scan_angle_max = 0;                                   ///< half angle; `scanAngleMax_deg` [rad]
-  double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
-  double scan_frequency_max = 0;                               ///< 0: no limit; `scanFreqMax_Hz` [Hz]
-  MountSettings beam_origin{};                                 ///< rotation in the frame of the instrument; `<beamOrigin>`
-  Vec3 head_axis = axis::up;                                   ///< non-zero, any length; `<headRotateAxis>`
-  double head_speed_max = 0;                                   ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
-  double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
-  double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
-  double average_power = 4;                                    ///< `averagePower_w` [W]
-  std::optional<double> beam_quality{};                        ///< M^2, default a point source; `beamQualityFactor` other than 1
-  double wavelength = 1064e-9;                                 ///< `wavelength_nm` [m]
-  double efficiency = 0.99;                                    ///< `opticalEfficiency`
-  double receiver_diameter = 0.15;                             ///< `receiverDiameter_m` [m]
-  double visibility = 23e3;                                    ///< atmospheric visibility; `atmosphericVisibility_km` [m]
-  double accuracy = 0;                                         ///< standard deviation of the range; `accuracy_m` [m]
-  double range_min = 0;                                        ///< `rangeMin_m` [m]
+  std::string id{};                      ///< `id` of the channel; empty for the only channel
+  OpticSettings optic{};                 ///< `optics` and its attributes
+  double scan_angle_max = 0;             ///< half angle; `scanAngleMax_deg` [rad]
+  double scan_frequency_min = 0;         ///< `scanFreqMin_Hz` [Hz]
+  double scan_frequency_max = 0;         ///< 0: no limit; `scanFreqMax_Hz` [Hz]
+  MountSettings beam_origin{};           ///< rotation in the frame of the instrument; `<beamOrigin>`
+  Vec3 head_axis = axis::up;             ///< non-zero, any length; `<headRotateAxis>`
+  double head_speed_max = 0;             ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
+  double divergence = 0.3e-3;            ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
+  double pulse_length = 4e-9;            ///< full width at half maximum; `pulseLength_ns` [s]
+  double average_power = 4;              ///< `averagePower_w` [W]
+  std::optional<double> beam_quality{};  ///< M^2, default a point source; `beamQualityFactor` other than 1
+  double wavelength = 1064e-9;           ///< `wavelength_nm` [m]
+  double efficiency = 0.99;              ///< `opticalEfficiency`
+  double receiver_diameter = 0.15;       ///< `receiverDiameter_m` [m]
+  double visibility = 23e3;              ///< atmospheric visibility; `atmosphericVisibility_km` [m]
+  double accuracy = 0;                   ///< standard deviation of the range; `accuracy_m` [m]
+  double range_min = 0;                  ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
   int returns_max = 0;                                         ///< per pulse; 0: no limit. `maxNOR`
   KeptReturns returns_kept = KeptReturns::first;               ///< which ones, of more; `keptReturns`

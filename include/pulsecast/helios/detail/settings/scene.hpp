@@ -21,12 +21,13 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Placement of geometry: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
+/// Placement of geometry: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
+/// `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
   std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation` of each filter
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;                      ///< not 0: moved onto the ground, by its lowest point, or, if -1, at first contact. `onGround`
+  int on_ground = 0;  ///< not 0: moved onto the ground, by its lowest point, or, if -1, at first contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -132,7 +133,8 @@ struct PartSettings {
     for (const SwapSettings& swap : swaps) swap.validate();
     static_cast<void>(named_numbers());
   }
-  /// The attributes for the parts of a scene; empty without. @throws SettingError for a name that is empty or comes twice
+  /// The attributes for the parts of a scene; empty without. @throws SettingError for a name that is empty or comes
+  /// twice
   [[nodiscard]] Attributes named_numbers() const {
     std::vector<Attribute> all;
     for (const auto& [name, value] : attributes) all.push_back({name, value});
@@ -167,7 +169,8 @@ enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, sno
 
 namespace detail {
 
-/// Medium of a visibility [m], or of a rate [mm/h], for light of a wavelength [m]. @throws SettingError for values out of its range
+/// Medium of a visibility [m], or of a rate [mm/h], for light of a wavelength [m]. @throws SettingError for values out
+/// of its range
 [[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
   switch (preset) {
     case MediumPreset::fog:
@@ -204,16 +207,19 @@ struct MediumSettings {
   /// The same for `LightPaths`, for light of a wavelength [m]. @throws SettingError for values out of range of a preset
   [[nodiscard]] MediumRegion region(double wavelength) const {
     const Box all = everywhere();
-    MediumRegion made = preset == MediumPreset::none
-                            ? MediumRegion{.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}}
-                            : detail::medium_of(preset, visibility.value_or(0), rate.value_or(0), wavelength);
+    MediumRegion made =
+        preset == MediumPreset::none
+            ? MediumRegion{.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}}
+            : detail::medium_of(preset, visibility.value_or(0), rate.value_or(0), wavelength);
     made.bounds = {min.value_or(all.min), max.value_or(all.max)};
     return made;
   }
   /// @throws SettingError for values out of range, or that do not go together
   void validate() const {
-    const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow, by_visibility = preset != MediumPreset::none && !drops;
-    if (visibility && !by_visibility) throw SettingError("visibility_m", *visibility, "m", "left out, but for fog, haze, dust and smoke");
+    const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow,
+               by_visibility = preset != MediumPreset::none && !drops;
+    if (visibility && !by_visibility)
+      throw SettingError("visibility_m", *visibility, "m", "left out, but for fog, haze, dust and smoke");
     if (rate && !drops) throw SettingError("rate_mmPerH", *rate, "mm/h", "left out, but for rain and snow");
     if (preset != MediumPreset::none)
       require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
@@ -232,10 +238,12 @@ struct SceneSettings {
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
   std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
-  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; none: every ray ends at its first surface, unless there are media
+  std::vector<LightSettings>
+      light{};  ///< `<light>`: the first counts; none: every ray ends at its first surface, unless there are media
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
-  /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as `MediumSettings::region`
+  /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as
+  /// `MediumSettings::region`
   [[nodiscard]] Media air(double wavelength) const {
     std::vector<MediumRegion> regions;
     for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));

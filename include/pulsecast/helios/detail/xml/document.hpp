@@ -28,7 +28,9 @@ struct XmlPlace {
   std::size_t line = 0, column = 0;  ///< from 1; columns count bytes
 
   /// `path:line:column`, the notation of editors.
-  [[nodiscard]] std::string text() const { return line == 0 ? path : path + ":" + std::to_string(line) + ":" + std::to_string(column); }
+  [[nodiscard]] std::string text() const {
+    return line == 0 ? path : path + ":" + std::to_string(line) + ":" + std::to_string(column);
+  }
 
   bool operator==(const XmlPlace&) const = default;
 };
@@ -39,8 +41,8 @@ struct XmlFault {
   std::string problem{};  ///< the fault and the expectation
 };
 
-/// All faults of a document and of those that it refers to. `what()` has a line for each, `path:line:column: problem`. As a `FileError` it
-/// is about the first of them. `warnings` are those of the same documents.
+/// All faults of a document and of those that it refers to. `what()` has a line for each, `path:line:column: problem`.
+/// As a `FileError` it is about the first of them. `warnings` are those of the same documents.
 class XmlFaults : public FileError {
  public:
   static constexpr std::size_t max_told = 100;  ///< faults in `what()`
@@ -118,8 +120,8 @@ class XmlReport {
   bool lenient_ = false;
 };
 
-/// XML file in memory, with the position of every element and attribute. External and declared entities are not supported: a document that
-/// declares any is refused.
+/// XML file in memory, with the position of every element and attribute. External and declared entities are not
+/// supported: a document that declares any is refused.
 class XmlDocument {
  public:
   static constexpr std::size_t max_file_size = std::size_t{64} << 20;      ///< [byte]
@@ -129,21 +131,26 @@ class XmlDocument {
   /// Throws `XmlFaults` if the file is not XML.
   explicit XmlDocument(const std::filesystem::path& path) : path_(path.string()) {
     io::InputFile file(path, "an XML document");
-    if (file.size() > max_file_size) file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
+    if (file.size() > max_file_size)
+      file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
     text_ = file.take_rest();
     find_line_ends();
-    if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) fail_at(zero, "holds binary data: expected an XML document");
+    if (const std::size_t zero = text_.find('\0'); zero != std::string::npos)
+      fail_at(zero, "holds binary data: expected an XML document");
     decode();
-    const auto status = document_.load_buffer(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+    const auto status = document_.load_buffer(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype,
+                                              pugi::encoding_utf8);
     if (!status)
       fail_at(static_cast<std::size_t>(status.offset),
               std::string("is not well-formed XML: ") + status.description() + hint(status.status));
     for (const pugi::xml_node node : document_.children())
       if (node.type() == pugi::node_doctype && std::string_view(node.value()).find('[') != std::string_view::npos)
-        fail_at(std::min(text_.find("<!DOCTYPE"), text_.size()), "declares entities: expected a document without a DOCTYPE of its own");
+        fail_at(std::min(text_.find("<!DOCTYPE"), text_.size()),
+                "declares entities: expected a document without a DOCTYPE of its own");
     root_ = document_.document_element();
     for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling())
-      if (node.type() == pugi::node_element) fail_at(offset(node), "a second root element: expected the end of the file");
+      if (node.type() == pugi::node_element)
+        fail_at(offset(node), "a second root element: expected the end of the file");
     check_attributes();
   }
 
@@ -173,13 +180,17 @@ class XmlDocument {
   void decode() {
     const std::string declared = xml::declared_encoding(text_);
     const std::size_t odd = xml::first_not_utf8(text_);
-    const bool is_utf8 = declared.empty() || declared == "utf-8" || declared == "utf8" || declared == "us-ascii" || declared == "ascii";
-    const bool is_ascii = std::none_of(text_.begin(), text_.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+    const bool is_utf8 =
+        declared.empty() || declared == "utf-8" || declared == "utf8" || declared == "us-ascii" || declared == "ascii";
+    const bool is_ascii =
+        std::none_of(text_.begin(), text_.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     if (is_ascii || (is_utf8 && odd == text_.size())) return;
-    if (!is_utf8 && declared != "iso-8859-1" && declared != "latin1" && declared != "windows-1252" && declared != "cp1252")
+    if (!is_utf8 && declared != "iso-8859-1" && declared != "latin1" && declared != "windows-1252" &&
+        declared != "cp1252")
       fail_at(0, "has the encoding " + text::quoted(declared) + ": expected UTF-8, ISO-8859-1 or windows-1252");
     if (is_utf8)
-      oddity_ = {place_of(odd), "is no UTF-8, and is taken as windows-1252; the first line may tell, as in encoding=\"windows-1252\""};
+      oddity_ = {place_of(odd),
+                 "is no UTF-8, and is taken as windows-1252; the first line may tell, as in encoding=\"windows-1252\""};
     else if (odd == text_.size())
       oddity_ = {place(), "names the encoding " + text::quoted(declared) + ", and is UTF-8, as which it is taken"};
     if (odd == text_.size()) return;
@@ -211,7 +222,8 @@ class XmlDocument {
   }
 
   [[nodiscard]] XmlPlace place_of(std::size_t byte) const {
-    const std::size_t line = pulsecast::detail::first_not(line_ends_.size(), [&](std::size_t i) { return line_ends_[i] < byte; });
+    const std::size_t line =
+        pulsecast::detail::first_not(line_ends_.size(), [&](std::size_t i) { return line_ends_[i] < byte; });
     const std::size_t begin = line == 0 ? 0 : line_ends_[line - 1] + 1;
     return {.path = path_, .line = line + 1, .column = byte - begin + 1};
   }
@@ -220,7 +232,8 @@ class XmlDocument {
     throw XmlFaults({{place_of(std::min(byte, text_.size())), std::move(problem)}});
   }
 
-  /// Calls visit(byte, name, value) for each attribute in the text of a start tag, until it returns false; `at` is the element's offset.
+  /// Calls visit(byte, name, value) for each attribute in the text of a start tag, until it returns false; `at` is the
+  /// element's offset.
   template <class Visit>
   void each_attribute(std::size_t at, Visit visit) const {
     const auto skip = [&](std::string_view set) { at = std::min(text_.find_first_not_of(set, at), text_.size()); };
@@ -247,10 +260,12 @@ class XmlDocument {
       std::vector<std::string_view> names;
       each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
         if (name.size() + value.size() > max_attribute_size)
-          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + text::quoted(name));
+          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) +
+                          " bytes: " + text::quoted(name));
         if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
           fail_at(at, "attribute " + text::quoted(name) +
-                          (names.size() == max_attributes ? " exceeds the maximum number of attributes" : " is given twice"));
+                          (names.size() == max_attributes ? " exceeds the maximum number of attributes"
+                                                          : " is given twice"));
         names.push_back(name);
         return true;
       });

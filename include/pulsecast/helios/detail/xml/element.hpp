@@ -28,17 +28,19 @@
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 
-/// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and children in turn.
-/// `XmlInput` reads them, `XmlOutput` writes them. A missing attribute keeps its value, so that inheritance is reading twice.
+/// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and
+/// children in turn. `XmlInput` reads them, `XmlOutput` writes them. A missing attribute keeps its value, so that
+/// inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known; `finish` reports the
-/// others.
+/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known;
+/// `finish` reports the others.
 class XmlInput {
  public:
   static constexpr bool reads = true;
 
-  XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search, bool params = false)
+  XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search,
+           bool params = false)
       : document_(document), node_(node), report_(report), search_(search), params_(params) {
     if (params) known_ = {"type"};
   }
@@ -61,7 +63,9 @@ class XmlInput {
   void fault(std::string_view name, std::string problem) const { report_.fault(place(name), std::move(problem)); }
   void warn(std::string_view name, const std::string& problem) const { report_.warn(place(name), problem); }
 
-  [[nodiscard]] bool has(const char* name) const { return params_ ? !param(name).empty() : !node_.attribute(name).empty(); }
+  [[nodiscard]] bool has(const char* name) const {
+    return params_ ? !param(name).empty() : !node_.attribute(name).empty();
+  }
 
   /// True if a name was requested before.
   [[nodiscard]] bool knows(std::string_view name) const { return is_among(known_, name); }
@@ -71,7 +75,8 @@ class XmlInput {
     for (const char* name : names) {
       required_.emplace_back(name);
       if (!has(name))
-        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") + text::quoted(name));
+        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") +
+                                   text::quoted(name));
     }
   }
 
@@ -113,15 +118,18 @@ class XmlInput {
       if (found && *found == std::floor(*found) && *found >= low && *found <= high) {
         number = static_cast<int>(*found);
       } else {
-        fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+        fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " +
+                        std::to_string(high));
       }
     }
   }
 
   void flag(const char* name, bool& flag) {
-    static constexpr std::array<std::pair<std::string_view, bool>, 4> others{{{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
+    static constexpr std::array<std::pair<std::string_view, bool>, 4> others{
+        {{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
     const std::string text = given(name).value_or("");
-    const auto other = std::find_if(others.begin(), others.end(), [&](const auto& word) { return text::is_same_word(word.first, text); });
+    const auto other = std::find_if(others.begin(), others.end(),
+                                    [&](const auto& word) { return text::is_same_word(word.first, text); });
     if (other == others.end()) return choice(name, flag, {{"true", true}, {"false", false}, {"1", true}, {"0", false}});
     flag = other->second;
     warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
@@ -191,7 +199,8 @@ class XmlInput {
     const pugi::xml_node found = node_.child(name);
     if (!found) return false;
     if (const pugi::xml_node second = found.next_sibling(name))
-      report_.warn(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one is used");
+      report_.warn(document_.place(second),
+                   "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one is used");
     XmlInput inner(document_, found, report_, search_);
     read(inner);
     inner.finish();
@@ -229,18 +238,21 @@ class XmlInput {
     }
     for (const pugi::xml_attribute attribute : node_.attributes()) {
       const std::string_view name = attribute.name();
-      if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name)) continue;
-      warn(name, "attribute " + text::quoted(name) + " of <" + node_.name() + "> is not known" + text::suggestion(name, known_));
+      if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name))
+        continue;
+      warn(name, "attribute " + text::quoted(name) + " of <" + node_.name() + "> is not known" +
+                     text::suggestion(name, known_));
     }
     for (const pugi::xml_node child : node_.children()) {
       if (report_.is_full_of_warnings()) return;
       const bool is_element = child.type() == pugi::node_element;
       if (is_element && !is_among(known_children_, child.name()))
-        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" + node_.name() +
-                                                 "> is not known" + text::suggestion(child.name(), known_children_));
+        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" +
+                                                 node_.name() + "> is not known" +
+                                                 text::suggestion(child.name(), known_children_));
       if (child.type() == pugi::node_pcdata && !takes_text_)
-        report_.warn(place(),
-                     "<" + std::string(node_.name()) + "> holds the text " + text::quoted(child.value()) + ": expected elements only");
+        report_.warn(place(), "<" + std::string(node_.name()) + "> holds the text " + text::quoted(child.value()) +
+                                  ": expected elements only");
     }
   }
 
@@ -269,7 +281,8 @@ class XmlInput {
     return {};
   }
 
-  [[nodiscard]] std::optional<double> within(const char* name, std::string_view text, const XmlUnit& unit, double low, double high) const {
+  [[nodiscard]] std::optional<double> within(const char* name, std::string_view text, const XmlUnit& unit, double low,
+                                             double high) const {
     const auto found = number_of(text);
     if (found && *found >= low && *found <= high) return found;
     std::string allowed = low == -std::numeric_limits<double>::infinity() ? "" : " from " + xml_number(low);
@@ -292,34 +305,38 @@ class XmlInput {
       if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == max_params) return;
       if (child.type() != pugi::node_element) continue;
       if (std::string_view(child.name()) != "param") {
-        report_.warn(document_.place(child),
-                     "element <" + std::string(child.name()).substr(0, 80) + "> in <filter> is not known; did you mean 'param'?");
+        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) +
+                                                 "> in <filter> is not known; did you mean 'param'?");
         continue;
       }
       check_param(child);
       const std::string_view key = child.attribute("key").value();
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
-        const bool is_same = std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
+        const bool is_same =
+            std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
         if (is_same)
           report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice");
         else
-          report_.fault(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice, with another value");
+          report_.fault(document_.place(child, "key"),
+                        "param " + text::quoted(key) + " is given twice, with another value");
       }
       keys.push_back(key);
       if (keys.size() == max_params) report_.fault(document_.place(child), "too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
-        report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " of filter " +
-                                                        text::quoted(node_.attribute("type").value()) + " is not known" +
-                                                        text::suggestion(key, std::span(known_).subspan(1)));
+        report_.warn(document_.place(child, "key"),
+                     "param " + text::quoted(key) + " of filter " + text::quoted(node_.attribute("type").value()) +
+                         " is not known" + text::suggestion(key, std::span(known_).subspan(1)));
     }
   }
 
   void check_param(pugi::xml_node child) const {
     static const std::vector<std::string> names{"type", "key", "value", "rotations"};
-    static const std::vector<std::string> types{"string", "boolean", "bool", "double", "integer", "int", "vec3", "rotation", ""};
+    static const std::vector<std::string> types{"string", "boolean", "bool",     "double", "integer",
+                                                "int",    "vec3",    "rotation", ""};
     for (const pugi::xml_attribute attribute : child.attributes())
       if (!is_among(names, attribute.name()))
-        report_.warn(document_.place(child, attribute.name()), "attribute " + text::quoted(attribute.name()) + " of <param> is not known" +
+        report_.warn(document_.place(child, attribute.name()), "attribute " + text::quoted(attribute.name()) +
+                                                                   " of <param> is not known" +
                                                                    text::suggestion(attribute.name(), names));
     const std::string_view type = child.attribute("type").value();
     if (!is_among(types, type))
@@ -329,8 +346,8 @@ class XmlInput {
     if (!child.attribute("value")) report_.warn(document_.place(child), "<param> has no attribute 'value'");
     for (const pugi::xml_node inner : child.children())
       if (inner.type() == pugi::node_element)
-        report_.warn(document_.place(inner),
-                     "element <" + std::string(inner.name()).substr(0, 80) + "> in <param>: expected it in one of type rotation");
+        report_.warn(document_.place(inner), "element <" + std::string(inner.name()).substr(0, 80) +
+                                                 "> in <param>: expected it in one of type rotation");
   }
 
   const XmlDocument& document_;

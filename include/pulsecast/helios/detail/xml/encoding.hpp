@@ -15,7 +15,8 @@
 /// Encodings of XML documents.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
-/// Encoding that the first line of a document names, in small letters; empty if it names none. Source: XML 1.0, 2.8 and 4.3.3.
+/// Encoding that the first line of a document names, in small letters; empty if it names none. Source: XML 1.0, 2.8
+/// and 4.3.3.
 [[nodiscard]] inline std::string declared_encoding(std::string_view text) {
   if (!text.starts_with("<?xml")) return {};
   const std::string_view line = text.substr(0, std::min(text.find("?>"), text.size()));
@@ -24,7 +25,8 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text::lower(line.substr(open + 1, line.find(line[open], open + 1) - open - 1));
 }
 
-/// Place of the first byte that is not part of a character in UTF-8; the size of the text without one. Source: RFC 3629, 4.
+/// Place of the first byte that is not part of a character in UTF-8; the size of the text without one. Source: RFC
+/// 3629, 4.
 [[nodiscard]] inline std::size_t first_not_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   for (std::size_t i = 0; i < text.size();) {
@@ -34,7 +36,12 @@ namespace PULSECAST_NAMESPACE::helios::xml {
                              : lead >= 0xE0 && lead < 0xF0 ? 2
                              : lead >= 0xF0 && lead < 0xF5 ? 3
                                                            : 9;
-    const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80, most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+    const unsigned least = lead == 0xE0   ? 0xA0
+                           : lead == 0xF0 ? 0x90
+                                          : 0x80,
+                   most = lead == 0xED   ? 0x9F
+                          : lead == 0xF4 ? 0x8F
+                                         : 0xBF;
     if (more == 9 || (more > 0 && (byte(i + 1) < least || byte(i + 1) > most))) return i;
     for (std::size_t k = 2; k <= more; ++k)
       if ((byte(i + k) & 0xC0) != 0x80) return i;
@@ -43,12 +50,13 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text.size();
 }
 
-/// Text in UTF-8 of one in windows-1252, which holds ISO-8859-1 but for control characters. Source: WHATWG, Encoding Standard, index
-/// windows-1252.
+/// Text in UTF-8 of one in windows-1252, which holds ISO-8859-1 but for control characters. Source: WHATWG, Encoding
+/// Standard, index windows-1252.
 [[nodiscard]] inline std::string utf8_of_windows_1252(std::string_view text) {
   static constexpr std::array<std::uint16_t, 32> from_0x80{
-      0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0x8D, 0x017D, 0x8F,
-      0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D, 0x017E, 0x0178};
+      0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+      0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
   std::string made;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -58,7 +66,8 @@ namespace PULSECAST_NAMESPACE::helios::xml {
     } else if (code < 0x800) {
       made += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
     } else {
-      made += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)), static_cast<char>(0x80 | (code & 0x3F))};
+      made += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
+               static_cast<char>(0x80 | (code & 0x3F))};
     }
   }
   return made;

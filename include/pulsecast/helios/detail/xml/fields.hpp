@@ -11,8 +11,8 @@
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// Descriptions of all elements, here and in the headers that include this one: attributes with units and limits, and children. The format
-/// is that of HELIOS++.
+/// Descriptions of all elements, here and in the headers that include this one: attributes with units and limits, and
+/// children. The format is that of HELIOS++.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
 /// Settings that are read into or written from.

@@ -19,7 +19,8 @@ inline void fit_for_name(const XmlInput& io, const char* name, std::string& text
   if (std::none_of(text.begin(), text.end(), fits_no_name)) return;
   const std::string given = XmlInput::said(name, text);
   std::replace_if(text.begin(), text.end(), fits_no_name, '_');
-  io.warn(name, given + " is taken as " + text::quoted(text) + ": expected no slashes and no control characters in a part of a file name");
+  io.warn(name, given + " is taken as " + text::quoted(text) +
+                    ": expected no slashes and no control characters in a part of a file name");
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::detail

@@ -28,10 +28,12 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   if constexpr (Io::reads) {
     for (const char* name : {"trajectory_separator", "trajectory_seperator"}) {
       const auto text = io.given(name);
-      const bool is_one = text && text->size() == 1 && std::string_view(",;\t ").find(text->front()) != std::string_view::npos;
+      const bool is_one =
+          text && text->size() == 1 && std::string_view(",;\t ").find(text->front()) != std::string_view::npos;
       if (is_one) trajectory.separator = text->front();
       if (text && !is_one)
-        io.warn(name, XmlInput::said(name, *text) + " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
+        io.warn(name, XmlInput::said(name, *text) +
+                          " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
     }
     for (const char* name : names)
       if (io.has(name) && !trajectory.columns) trajectory.columns.emplace();
@@ -57,7 +59,8 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   }
   io.number("tStart", trajectory.start, units::second, -1e12, 1e12);
   io.number("tEnd", trajectory.end, units::second, -1e12, 1e12);
-  if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end)) io.fault("tEnd", "tEnd is not after tStart");
+  if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end))
+    io.fault("tEnd", "tEnd is not after tStart");
 }
 
 template <class Io>
@@ -72,7 +75,8 @@ void fields(Io& io, Of<Io, LegPlatformSettings>& platform) {
     io.flag("slowdownEnabled", slows);
     platform.smooth_turn = smooth || !stops;
     if (!slows)
-      io.warn("slowdownEnabled", "slowdownEnabled of false has no effect: a multicopter slows down as it must to turn and to stop");
+      io.warn("slowdownEnabled",
+              "slowdownEnabled of false has no effect: a multicopter slows down as it must to turn and to stop");
   } else {
     io.flag("smoothTurn", platform.smooth_turn);
   }

@@ -65,7 +65,8 @@ class LegReader {
     return places;
   }
 
-  /// Reads templates of the survey's own document that no leg uses. Faults there become warnings, as they have no effect.
+  /// Reads templates of the survey's own document that no leg uses. Faults there become warnings, as they have no
+  /// effect.
   void read_unused_templates() {
     const auto all = [&](const char* element, const auto& read) {
       for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element)) {
@@ -102,7 +103,8 @@ class LegReader {
     leg.text("stripId", settings.strip);
     if (settings.strip) fit_for_name(leg, "stripId", *settings.strip);
     leg.number("maxDuration_s", duration_max, units::second, -1, 1e9);
-    const bool has_platform = leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
+    const bool has_platform =
+        leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
     if (!has_platform) report_.fault(leg.place(), "<leg> holds no <platformSettings>");
     LegScanner scanner;
     if (!survey_.scanner.pulse_rates.empty()) scanner.settings.pulse_rate = survey_.scanner.pulse_rates.front();
@@ -118,12 +120,14 @@ class LegReader {
     if (!platform.on_ground || survey_.platform.kind == PlatformKind::interpolated) return;
     if (!has_ground_) has_ground_ = has_ground(survey_.scene);
     if (!*has_ground_)
-      io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
+      io.fault("onGround",
+               "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
   /// Reads the template of an element, if it has one, and then the element: `read(XmlInput&)`.
   template <class Read>
-  void with_template(XmlInput& io, const XmlLibraryDocument& from, std::vector<pugi::xml_node> before, const Read& read) {
+  void with_template(XmlInput& io, const XmlLibraryDocument& from, std::vector<pugi::xml_node> before,
+                     const Read& read) {
     const bool is_leg = before.empty();
     if (const auto text = io.given("template")) {
       const std::string element = io.node().name();
@@ -163,7 +167,8 @@ class LegReader {
         }
         const auto seconds = number_of(content);
         if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
-          report_.fault(text.place(), "<maxDuration_s> holds " + text::quoted(content) + ": expected a number of seconds");
+          report_.fault(text.place(),
+                        "<maxDuration_s> holds " + text::quoted(content) + ": expected a number of seconds");
         scanner.duration_max = seconds;
       });
       inner.number("verticalResolution_deg", scanner.vertical_resolution, units::degree, 0, 180);
@@ -174,22 +179,27 @@ class LegReader {
       s.pulse_rate = usual_rate;
       io.warn("pulseFreq_hz", "pulseFreq_hz of 0 means the scanner's default, " + xml_number(usual_rate) + " Hz");
     }
-    const ChannelSettings* const device = survey_.scanner.channels.empty() ? nullptr : &survey_.scanner.channels.front();
+    const ChannelSettings* const device =
+        survey_.scanner.channels.empty() ? nullptr : &survey_.scanner.channels.front();
     if (s.scan_angle == 0.0 && device && device->scan_angle_max > 0) {
       s.scan_angle.reset();
-      io.warn("scanAngle_deg",
-              "scanAngle_deg of 0 means the scanner's maximum, " + xml_number(units::degree.number(device->scan_angle_max)) + " deg");
+      io.warn("scanAngle_deg", "scanAngle_deg of 0 means the scanner's maximum, " +
+                                   xml_number(units::degree.number(device->scan_angle_max)) + " deg");
     }
     if (scanner.vertical_resolution == 0 && scanner.horizontal_resolution == 0) return;
     if (!device || !std::holds_alternative<RotatingOptic>(device->optic)) {
       io.warn("verticalResolution_deg", "resolutions have no effect with these optics");
     } else if (device->scan_angle_max > 0) {
-      const auto rounded = [](double value, double limit) { return std::fabs(value - limit) < 1e-12 * limit ? limit : value; };
-      s.scan_frequency = rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max), device->scan_frequency_max);
+      const auto rounded = [](double value, double limit) {
+        return std::fabs(value - limit) < 1e-12 * limit ? limit : value;
+      };
+      s.scan_frequency = rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max),
+                                 device->scan_frequency_max);
       s.scan_frequency = rounded(s.scan_frequency, device->scan_frequency_min);
       s.head_speed = rounded(scanner.horizontal_resolution * s.scan_frequency, device->head_speed_max);
       if (!(s.scan_frequency <= 1e6 && s.head_speed <= radians(1e6)))
-        io.fault("verticalResolution_deg", "these resolutions need a scan frequency or head speed out of range: expected finer ones");
+        io.fault("verticalResolution_deg",
+                 "these resolutions need a scan frequency or head speed out of range: expected finer ones");
     }
   }
 

@@ -23,16 +23,18 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Document of a survey or of assets, with its elements by id. Search order of its files: the assets folders, the folder of the survey, its
-/// own folder.
+/// Document of a survey or of assets, with its elements by id. Search order of its files: the assets folders, the
+/// folder of the survey, its own folder.
 class XmlLibraryDocument {
  public:
-  XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders, XmlReport& report)
+  XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders,
+                     XmlReport& report)
       : document_(path), search_(with_own(folders, path)) {
     if (document_.oddity()) report.warn(document_.oddity()->place, document_.oddity()->problem);
     if (std::string_view(document_.root().name()) != "document")
-      report.fault(document_.place(document_.root()),
-                   "the root element is <" + std::string(document_.root().name()).substr(0, 80) + ">: expected <document>");
+      report.fault(
+          document_.place(document_.root()),
+          "the root element is <" + std::string(document_.root().name()).substr(0, 80) + ">: expected <document>");
     XmlInput root(document_, document_.root(), report, search_);
     root.know({}, {"platform", "scanner", "scene", "platformSettings", "scannerSettings", "survey"});
     root.finish();
@@ -67,7 +69,8 @@ class XmlLibraryDocument {
     return std::string(element).append("#").append(id);
   }
 
-  [[nodiscard]] static AssetSearch with_own(std::vector<std::filesystem::path> folders, const std::filesystem::path& path) {
+  [[nodiscard]] static AssetSearch with_own(std::vector<std::filesystem::path> folders,
+                                            const std::filesystem::path& path) {
     folders.push_back(std::filesystem::absolute(path).parent_path());
     return AssetSearch(folders);
   }
@@ -90,7 +93,8 @@ class XmlLibrary {
  public:
   static constexpr std::size_t max_documents = 256;
 
-  XmlLibrary(std::vector<std::filesystem::path> folders, XmlReport& report) : folders_(std::move(folders)), report_(report) {}
+  XmlLibrary(std::vector<std::filesystem::path> folders, XmlReport& report)
+      : folders_(std::move(folders)), report_(report) {}
 
   /// Document of a path; throws if it is unreadable. Reports unknown elements.
   const XmlLibraryDocument& read(const std::filesystem::path& path) {
@@ -100,8 +104,8 @@ class XmlLibrary {
   }
 
   /// Resolves the reference of an attribute: `file.xml#id`, or `id` or `#id` for an element of the same document.
-  [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
-                                  const char* element) {
+  [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute,
+                                  const std::string& text, const char* element) {
     const std::size_t sign = text.find('#');
     const std::string path = sign == std::string::npos ? "" : text.substr(0, sign);
     const std::string id = sign == std::string::npos ? text : text.substr(sign + 1);
@@ -109,15 +113,15 @@ class XmlLibrary {
     if (document == nullptr) return {};
     if (const pugi::xml_node node = document->find(element, id); node && !id.empty()) return {document, node};
     const bool is_path = sign == std::string::npos && id.ends_with(".xml");
-    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " + text::quoted(id) + " in " +
-                            document->document().path() +
+    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " +
+                            text::quoted(id) + " in " + document->document().path() +
                             (is_path ? "; expected file.xml#id" : text::suggestion(id, document->ids(element))));
     return {};
   }
 
  private:
-  const XmlLibraryDocument* other(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
-                                  const std::string& path) {
+  const XmlLibraryDocument* other(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute,
+                                  const std::string& text, const std::string& path) {
     const AssetMatch match = from.search().find(path);
     io.take(attribute, text, match);
     if (match.files.empty()) return nullptr;
@@ -127,7 +131,8 @@ class XmlLibrary {
       return known->second.get();
     }
     if (documents_.size() == max_documents) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " exceeds the maximum of " + std::to_string(max_documents) + " documents");
+      io.fault(attribute, XmlInput::said(attribute, text) + " exceeds the maximum of " + std::to_string(max_documents) +
+                              " documents");
       return nullptr;
     }
     try {

@@ -36,8 +36,10 @@ enum class MotionKind { identity, translation, rotation, helical, reflection, gl
 
 inline MotionKind kind_of(const MotionSettings& motion) {
   if (std::holds_alternative<TranslationMotion>(motion.kind)) return MotionKind::translation;
-  if (const auto* r = std::get_if<RotationMotion>(&motion.kind)) return r->glide ? MotionKind::helical : MotionKind::rotation;
-  if (const auto* r = std::get_if<ReflectionMotion>(&motion.kind)) return r->shift ? MotionKind::glide_plane : MotionKind::reflection;
+  if (const auto* r = std::get_if<RotationMotion>(&motion.kind))
+    return r->glide ? MotionKind::helical : MotionKind::rotation;
+  if (const auto* r = std::get_if<ReflectionMotion>(&motion.kind))
+    return r->shift ? MotionKind::glide_plane : MotionKind::reflection;
   return std::holds_alternative<RotoreflectionMotion>(motion.kind) ? MotionKind::rotoreflection : MotionKind::identity;
 }
 

@@ -36,7 +36,8 @@ struct XmlUnit {
     if (factor == 1 && divisor == 1) return value;
     for (const int digits : {15, 16, 17}) {
       std::array<char, 40> text;
-      const char* const end = std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
+      const char* const end =
+          std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
       const double rounded = text::number_in<double>({text.data(), end}).value_or(about);
       if (si(rounded) == value) return rounded;
     }
@@ -53,12 +54,14 @@ struct XmlUnit {
 
 namespace units {
 inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"};
-inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9},
-    nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
+inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9},
+    nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
 }  // namespace units
 
 /// True for an angle beyond a turn that is whole in radians, as one that was given in degrees [rad].
-[[nodiscard]] inline bool looks_like_degrees(double angle) noexcept { return std::fabs(angle) > max_angle && angle == std::round(angle); }
+[[nodiscard]] inline bool looks_like_degrees(double angle) noexcept {
+  return std::fabs(angle) > max_angle && angle == std::round(angle);
+}
 
 /// Number as text, without an exponent where that is legible.
 [[nodiscard]] inline std::string xml_number(double value) {
@@ -66,7 +69,8 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
   const double size = std::abs(value);
   if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::to_text(value);
   std::array<char, 64> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
+  return {digits.data(),
+          std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
 }
 
 /// Parses a whole text as a number, except for blanks around it.

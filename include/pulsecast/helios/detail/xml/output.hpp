@@ -28,8 +28,8 @@ namespace PULSECAST_NAMESPACE::helios {
 template <class Value>
 using XmlWords = std::initializer_list<std::pair<std::string_view, Value>>;
 
-/// Writes an element, by the same calls as `XmlInput`. What that would refuse is a `SettingError`, and what it would note is a note here,
-/// so that writing a survey checks its settings.
+/// Writes an element, by the same calls as `XmlInput`. What that would refuse is a `SettingError`, and what it would
+/// note is a note here, so that writing a survey checks its settings.
 class XmlOutput {
  public:
   static constexpr bool reads = false;
@@ -104,11 +104,14 @@ class XmlOutput {
   /// Refuses the settings; `problem` is the sentence of the reader.
   [[noreturn]] void fault(std::string_view name, const std::string& problem) const {
     const bool begins = !name.empty() && problem.starts_with(name);
-    throw SettingError(std::string(name), begins || name.empty() ? problem.substr(begins ? name.size() : 0) : ": " + problem);
+    throw SettingError(std::string(name),
+                       begins || name.empty() ? problem.substr(begins ? name.size() : 0) : ": " + problem);
   }
   void warn(std::string_view /*name*/, std::string problem) { notes_.push_back(std::move(problem)); }
 
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }  ///< of this element and those in it
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept {
+    return notes_;
+  }  ///< of this element and those in it
 
   void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
   void require(std::initializer_list<const char*> /*names*/) {}
@@ -118,13 +121,15 @@ class XmlOutput {
     for (const std::string& note : inner.notes_) notes_.push_back(title + note);
   }
 
-  [[noreturn]] static void refuse(const char* name, double value, double number, const XmlUnit& unit, double low, double high) {
+  [[noreturn]] static void refuse(const char* name, double value, double number, const XmlUnit& unit, double low,
+                                  double high) {
     const std::string bound = high < std::numeric_limits<double>::max() ? " to " + xml_number(high) : "";
-    const std::string allowed = low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
-    throw SettingError(
-        name, number, unit.symbol,
-        allowed +
-            (std::string_view(unit.symbol) == units::degree.symbol && looks_like_degrees(value) ? ": given in degrees, not radians?" : ""));
+    const std::string allowed =
+        low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
+    throw SettingError(name, number, unit.symbol,
+                       allowed + (std::string_view(unit.symbol) == units::degree.symbol && looks_like_degrees(value)
+                                      ? ": given in degrees, not radians?"
+                                      : ""));
   }
 
   void put(const char* name, const char* type, const std::string& value) {

@@ -15,7 +15,8 @@ namespace PULSECAST_NAMESPACE::helios::xml {
 
 template <class Io>
 void fields(Io& io, Of<Io, NoiseSettings>& noise) {
-  io.choice("type", noise.distribution, {{"NORMAL", NoiseDistribution::normal}, {"UNIFORM", NoiseDistribution::uniform}});
+  io.choice("type", noise.distribution,
+            {{"NORMAL", NoiseDistribution::normal}, {"UNIFORM", NoiseDistribution::uniform}});
   io.number("mean", noise.mean, units::one, -1e6, 1e6);
   io.number("stdev", noise.deviation, units::one, 0, 1e6);
   io.number("min", noise.low, units::one, -1e6, 1e6);
@@ -24,7 +25,8 @@ void fields(Io& io, Of<Io, NoiseSettings>& noise) {
   io.number("clipMin", noise.clip_low, units::one, -1e6, 1e6);
   io.number("clipMax", noise.clip_high, units::one, -1e6, 1e6);
   io.whole("fixedLifespan", noise.lifespan, 0, 1'000'000'000);
-  if (noise.distribution == NoiseDistribution::uniform && !(noise.low <= noise.high)) io.fault("max", "max is below min");
+  if (noise.distribution == NoiseDistribution::uniform && !(noise.low <= noise.high))
+    io.fault("max", "max is below min");
   if (noise.clipped && !(noise.clip_low <= noise.clip_high)) io.fault("clipMax", "clipMax is below clipMin");
 }
 
@@ -75,8 +77,8 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
     fields(io, platform.multicopter);
   else
     io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");
-  io.without_effect({"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "pitch_speed_deg",
-                     "roll_speed_deg", "roll_offset_deg", "base_pitch_deg"},
+  io.without_effect({"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance",
+                     "pitch_speed_deg", "roll_speed_deg", "roll_offset_deg", "base_pitch_deg"},
                     "has no effect: paths are planned by speed and acceleration");
 }
 

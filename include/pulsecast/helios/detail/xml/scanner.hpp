@@ -30,8 +30,8 @@ void fields(Io& io, Of<Io, FullWaveformSettings>& waveform) {
   io.number("winSize_ns", waveform.window, units::nanosecond, 0, 1e6);
   io.whole("beamSampleQuality", waveform.rings, 1, 100);
   io.number("maxFullwaveRange_ns", waveform.duration_max, units::nanosecond, 0, 1e9);
-  io.without_effect({"apertureDiameter_m", "minEchoWidth", "peakEnergy", "scannerEfficiency", "atmosphericVisibility", "scannerWaveLength",
-                     "beamDivergence_rad", "numTimeBins", "numFullwaveBins"});
+  io.without_effect({"apertureDiameter_m", "minEchoWidth", "peakEnergy", "scannerEfficiency", "atmosphericVisibility",
+                     "scannerWaveLength", "beamDivergence_rad", "numTimeBins", "numFullwaveBins"});
 }
 
 template <class Io>
@@ -78,27 +78,31 @@ OpticSettings optic_of(std::size_t kind, std::index_sequence<I...>) {
 template <class Io>
 void fields(Io& io, Of<Io, OpticSettings>& optic) {
   std::size_t kind = optic.index();
-  io.choice("optics", kind, XmlWords<std::size_t>{{"oscillating", 0}, {"rotating", 1}, {"conic", 2}, {"line", 3}, {"risley", 4}});
+  io.choice("optics", kind,
+            XmlWords<std::size_t>{{"oscillating", 0}, {"rotating", 1}, {"conic", 2}, {"line", 3}, {"risley", 4}});
   if constexpr (Io::reads)
     if (kind != optic.index()) optic = optic_of(kind, std::make_index_sequence<std::variant_size_v<OpticSettings>>());
   std::visit([&](auto& of_kind) { fields(io, of_kind); }, optic);
   if constexpr (Io::reads) {
-    for (const char* name : {"scanProduct", "scanAngleEffectiveMax_deg", "numFibers", "rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz",
-                             "angle1_deg", "angle2_deg", "angle3_deg", "refrIndex1", "refrIndex2", "refrIndex3", "refrIndex_air"})
+    for (const char* name :
+         {"scanProduct", "scanAngleEffectiveMax_deg", "numFibers", "rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz",
+          "angle1_deg", "angle2_deg", "angle3_deg", "refrIndex1", "refrIndex2", "refrIndex3", "refrIndex_air"})
       if (!io.knows(name)) io.without_effect({name}, "has no effect with these optics");
   }
 }
 
 /// Reports a formula that is invalid, or not finite between two values of its variable.
 template <class Io>
-void check_formula(const Io& io, const char* name, const std::string& text, const char* variable, double low, double high) {
+void check_formula(const Io& io, const char* name, const std::string& text, const char* variable, double low,
+                   double high) {
   constexpr int places = 256;
   try {
     if (text.empty()) return;
     const Formula formula(text, variable);
     for (int i = 0; i < places; ++i)
       if (std::isfinite(formula(low + (high - low) * (i + 0.518) / places))) return;
-    io.fault(name, XmlInput::said(name, text) + " is not finite for any " + variable + ": expected a formula with a finite value");
+    io.fault(name, XmlInput::said(name, text) + " is not finite for any " + variable +
+                       ": expected a formula with a finite value");
   } catch (const std::invalid_argument& error) {
     io.fault(name, error.what());
   }
@@ -125,8 +129,9 @@ template <class Io>
 void fields(Io& io, Of<Io, ErrorFormulas>& errors) {
   const auto nothing = [](auto&) {};
   formula(io, "deflectionError", errors.deflection, nothing);
-  formula(io, "headError", errors.head,
-          [&](auto& inner) { inner.number("zeroSinThreshold_deg", errors.head_zero_threshold, units::degree, 0, 180); });
+  formula(io, "headError", errors.head, [&](auto& inner) {
+    inner.number("zeroSinThreshold_deg", errors.head_zero_threshold, units::degree, 0, 180);
+  });
   formula(io, "rangeError", errors.range, nothing);
 }
 
@@ -162,8 +167,9 @@ inline std::string bin_note(const ChannelSettings& channel) {
   const double bin = channel.waveform.bin_size, length = channel.pulse_length, limited = detail::limited_bin(channel);
   const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
   return bin == limited ? ""
-                        : "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " + ns(limited) +
-                              "; expected bins from " + ns(length / WaveformSettings::max_samples) + " to " + ns(length);
+                        : "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " +
+                              ns(limited) + "; expected bins from " + ns(length / WaveformSettings::max_samples) +
+                              " to " + ns(length);
 }
 
 /// Attributes of a scanner or of each of its channels.
@@ -181,14 +187,16 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("averagePower_w", channel.average_power, units::watt, 1e-12, 1e9);
   io.number("beamQualityFactor", channel.beam_quality, units::one, 0.1, 1e3);
   if constexpr (Io::reads)
-    if (channel.beam_quality == 1.0) channel.beam_quality.reset();  // the default of the format does not describe the instrument
+    if (channel.beam_quality == 1.0)
+      channel.beam_quality.reset();  // the default of the format does not describe the instrument
   io.number("wavelength_nm", channel.wavelength, units::nanometre, 100, 1e5);
   io.number("opticalEfficiency", channel.efficiency, units::one, 0, 1);
   io.number("receiverDiameter_m", channel.receiver_diameter, units::metre, 1e-6, 1e3);
   io.number("atmosphericVisibility_km", channel.visibility, units::kilometre, 1e-3, 1e5);
   detector_fields(io, channel);
   io.whole("maxNOR", channel.returns_max, 0, 65535);
-  io.choice("keptReturns", channel.returns_kept, {{"first", KeptReturns::first}, {"strongest", KeptReturns::strongest}});
+  io.choice("keptReturns", channel.returns_kept,
+            {{"first", KeptReturns::first}, {"strongest", KeptReturns::strongest}});
   io.number("receivedEnergyMin_W", channel.received_power_min, units::nanowatt, 0, 1e12);
   io.child("FWFSettings", [&](auto& inner) { fields(inner, channel.waveform); });
   fields(io, channel.errors);
@@ -198,7 +206,8 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
 /// Checks limits against each other.
 template <class Io>
 void check(Io& io, Of<Io, ChannelSettings>& channel) {
-  if (!(channel.range_min < channel.range_max)) io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
+  if (!(channel.range_min < channel.range_max))
+    io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
   if (channel.scan_frequency_max > 0 && channel.scan_frequency_max < channel.scan_frequency_min)
     io.fault("scanFreqMax_Hz", "scanFreqMax_Hz is below scanFreqMin_Hz");
   const auto* const rotating = std::get_if<RotatingOptic>(&channel.optic);
@@ -226,15 +235,18 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
       const std::size_t end = rest.find(',');
       const std::string_view one = rest.substr(0, end);
       const auto rate = number_of(one);
-      if (one.find_first_not_of(" \t\r\n") == std::string_view::npos && (end != std::string_view::npos || !rates.empty())) {
-        io.warn("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": there is no number between two commas or at the end");
+      if (one.find_first_not_of(" \t\r\n") == std::string_view::npos &&
+          (end != std::string_view::npos || !rates.empty())) {
+        io.warn("pulseFreqs_Hz",
+                XmlInput::said("pulseFreqs_Hz", *text) + ": there is no number between two commas or at the end");
         if (end == std::string_view::npos) return;
         rest.remove_prefix(end + 1);
         continue;
       }
       if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates) {
-        io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " + xml_number(least_rate) + " to " +
-                                      xml_number(most_rate) + " Hz, with commas between");
+        io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
+                                      xml_number(least_rate) + " to " + xml_number(most_rate) +
+                                      " Hz, with commas between");
         return;
       }
       rates.push_back(*rate);
@@ -267,7 +279,8 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
         fields(inner, channel);
         check(inner, channel);
       });
-      if (scanner.channels.empty()) list.report().warn(list.place(), "<channels> holds no <channel>: the scanner has one");
+      if (scanner.channels.empty())
+        list.report().warn(list.place(), "<channels> holds no <channel>: the scanner has one");
     });
     if (!has_channels || scanner.channels.empty()) check(io, scanner.channels.emplace_back(std::move(common)));
   } else if (scanner.channels.size() == 1 && scanner.channels.front().id.empty()) {
@@ -275,7 +288,8 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
     check(io, scanner.channels.front());
   } else {
     if (!scanner.channels.empty())
-      fields(io, optic_of(scanner.channels.front().optic.index(), std::make_index_sequence<std::variant_size_v<OpticSettings>>()));
+      fields(io, optic_of(scanner.channels.front().optic.index(),
+                          std::make_index_sequence<std::variant_size_v<OpticSettings>>()));
     io.child("channels", [&](auto& list) {
       list.children("channel", scanner.channels, [](auto& inner, const ChannelSettings& channel) {
         inner.text("id", channel.id);

@@ -94,7 +94,8 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.number("scale", scale, units::one, 0, most_scale);
       if (scale != 0) transform.scale = scale;
       if (scale == 0 && filter.has("scale")) filter.warn("scale", "a scale of 0 has no effect");
-      if (scale > 0 && scale < least_scale) filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
+      if (scale > 0 && scale < least_scale)
+        filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
     } else if (is("rotate")) {
       filter.require({"rotation"});
       filter.know({"rotation"});
@@ -180,7 +181,8 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.children("attribute", part.attributes, [](auto& inner, auto& attribute) { fields(inner, attribute); });
   valid(io, [&] { static_cast<void>(part.named_numbers()); });
   if constexpr (Io::reads) {
-    io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse meets a part at its pose of that time");
+    io.without_effect({"kdtDynStep", "kdtDynTimeStep"},
+                      "has no effect: each pulse meets a part at its pose of that time");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;

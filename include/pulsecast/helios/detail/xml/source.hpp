@@ -54,7 +54,8 @@ void files(Io& io, Of<Io, std::vector<std::filesystem::path>>& paths) {
     io.file("filepath", paths.front());
   } else {
     std::string text;
-    for (const std::filesystem::path& path : paths) text.append(text.empty() ? "" : "|").append(std::filesystem::absolute(path).string());
+    for (const std::filesystem::path& path : paths)
+      text.append(text.empty() ? "" : "|").append(std::filesystem::absolute(path).string());
     io.text("filepaths", text);
   }
 }

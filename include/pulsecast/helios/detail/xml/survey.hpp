@@ -63,12 +63,15 @@ class SurveyReader {
       asset({&document_, node}, values.emplace_back());
   }
 
-  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }  ///< per leg, of the survey
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }                         ///< position of the survey
+  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept {
+    return leg_places_;
+  }                                                                           ///< per leg, of the survey
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< position of the survey
   [[nodiscard]] const XmlReport& report() const noexcept { return report_; }
 
  private:
-  static std::vector<std::filesystem::path> folders(const std::filesystem::path& path, std::vector<std::filesystem::path> all) {
+  static std::vector<std::filesystem::path> folders(const std::filesystem::path& path,
+                                                    std::vector<std::filesystem::path> all) {
     all.push_back(std::filesystem::absolute(path).parent_path());
     return all;
   }
@@ -84,7 +87,8 @@ class SurveyReader {
     io.text("name", survey_.name);
     fit_for_name(io, "name", survey_.name);
     if (survey_.name == ".." || survey_.name == ".") {
-      io.warn("name", XmlInput::said("name", survey_.name) + " cannot name a folder for results: the name of the file is used");
+      io.warn("name",
+              XmlInput::said("name", survey_.name) + " cannot name a folder for results: the name of the file is used");
       survey_.name.clear();
     }
     if (survey_.name.empty()) survey_.name = std::move(name);
@@ -130,8 +134,8 @@ class SurveyReader {
     } else if (number && std::abs(*number) < 1e18) {
       survey_.seed = static_cast<std::uint64_t>(std::abs(*number));
       if (*number < 0 || *number != std::floor(*number))
-        io.warn("seed",
-                XmlInput::said("seed", *text) + " is taken as " + std::to_string(*survey_.seed) + ": expected a whole number from 0");
+        io.warn("seed", XmlInput::said("seed", *text) + " is taken as " + std::to_string(*survey_.seed) +
+                            ": expected a whole number from 0");
     } else {
       io.fault("seed", XmlInput::said("seed", *text) + ": expected a whole number, 'YYYY-MM-DD hh:mm:ss' or AUTO");
     }
@@ -151,16 +155,18 @@ class SurveyReader {
     std::map<std::string, std::size_t> numbers;
     pugi::xml_node node = scanner.node.child("channels").child("channel");
     for (std::size_t k = 0; k < survey_.scanner.channels.size() && node; ++k, node = node.next_sibling("channel")) {
-      const std::string id = survey_.scanner.channels[k].id.empty() ? std::to_string(k) : survey_.scanner.channels[k].id;
+      const std::string id =
+          survey_.scanner.channels[k].id.empty() ? std::to_string(k) : survey_.scanner.channels[k].id;
       const auto [other, is_new] = numbers.emplace(id, k);
       if (channel_files_ && std::any_of(id.begin(), id.end(), fits_no_name))
         report_.fault(document.place(node, "id"),
                       "the id of a channel is part of file names: expected no slashes and no control characters in it");
       if (is_new) continue;
-      const std::string problem =
-          "channel " + std::to_string(k) + " has the id of channel " + std::to_string(other->second) + ", " + text::quoted(id);
+      const std::string problem = "channel " + std::to_string(k) + " has the id of channel " +
+                                  std::to_string(other->second) + ", " + text::quoted(id);
       if (channel_files_)
-        report_.fault(document.place(node, "id"), problem + ": expected different ids, as each channel has its own file");
+        report_.fault(document.place(node, "id"),
+                      problem + ": expected different ids, as each channel has its own file");
       else
         report_.warn(document.place(node, "id"), problem);
     }
@@ -180,7 +186,8 @@ class SurveyReader {
     }
     survey_.platform.id = "interpolated";
     if (const auto base = io.given("basePlatform"))
-      if (const XmlReference found = library_.find(io, document_, "basePlatform", *base, "platform")) asset(found, survey_.platform);
+      if (const XmlReference found = library_.find(io, document_, "basePlatform", *base, "platform"))
+        asset(found, survey_.platform);
     survey_.platform.multicopter = {};
     survey_.platform.kind = PlatformKind::interpolated;
     io.choice("rotationSpec", survey_.platform.rotation_spec,

@@ -91,8 +91,8 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-/// Document of a survey. @throws SettingError for what `read_survey` would refuse of it, files and ground aside; `leg_name(i)` begins the
-/// messages about a leg
+/// Document of a survey. @throws SettingError for what `read_survey` would refuse of it, files and ground aside;
+/// `leg_name(i)` begins the messages about a leg
 template <class LegName>
 DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name) {
   DocumentWriter document;
@@ -112,7 +112,8 @@ DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name
     if (platform.kind == PlatformKind::interpolated) {
       io.text("platform", std::string("interpolated"));
       io.text("basePlatform", "#" + platform.id);
-      io.choice("rotationSpec", platform.rotation_spec, {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
+      io.choice("rotationSpec", platform.rotation_spec,
+                {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
     } else {
       io.text("platform", "#" + platform.id);
     }

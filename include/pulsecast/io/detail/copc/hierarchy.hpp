@@ -26,13 +26,15 @@ struct CopcEntry {
 
 inline constexpr std::size_t copc_entry_size = 32;  ///< [byte]
 
-/// Hierarchy in pages. A page lists nodes of four levels, and of the subtrees below each that is small; other subtrees have pages of their
-/// own, behind.
+/// Hierarchy in pages. A page lists nodes of four levels, and of the subtrees below each that is small; other subtrees
+/// have pages of their own, behind.
 class CopcHierarchy {
  public:
   /// `page_nodes` of a subtree that has no page of its own; at least one entry.
-  CopcHierarchy(std::vector<CopcEntry> entries, std::size_t page_nodes) : entries_(std::move(entries)), page_nodes_(page_nodes) {
-    std::sort(entries_.begin(), entries_.end(), [](const CopcEntry& a, const CopcEntry& b) { return copc_before(a.key, b.key); });
+  CopcHierarchy(std::vector<CopcEntry> entries, std::size_t page_nodes)
+      : entries_(std::move(entries)), page_nodes_(page_nodes) {
+    std::sort(entries_.begin(), entries_.end(),
+              [](const CopcEntry& a, const CopcEntry& b) { return copc_before(a.key, b.key); });
     ranges_.push_back({0, entries_.size()});
     for (std::size_t i = 0; i < ranges_.size(); ++i) list(ranges_[i]);  // ranges_ grows meanwhile
   }
@@ -78,7 +80,8 @@ class CopcHierarchy {
       const CopcEntry& entry = entries_[range.begin];
       std::size_t end = range.begin + 1;
       if (entry.key.level == below) {
-        while (end < range.end && entries_[end].key.level > below) ++end;  // those behind it, before the next of its level, are below it
+        while (end < range.end && entries_[end].key.level > below)
+          ++end;  // those behind it, before the next of its level, are below it
         if (end - range.begin > page_nodes_) {
           page.push_back({entry.key, ranges_.size(), 0, -1});  // the number of its page, for now
           ranges_.push_back({range.begin, end});

@@ -12,8 +12,8 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-/// Octree of a COPC file, in whole steps of the stored coordinates. Sides are powers of two; borders are half a step below whole steps, so
-/// no point is on one. Source of the keys: https://copc.io, COPC 1.0, hierarchy VLR.
+/// Octree of a COPC file, in whole steps of the stored coordinates. Sides are powers of two; borders are half a step
+/// below whole steps, so no point is on one. Source of the keys: https://copc.io, COPC 1.0, hierarchy VLR.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Place in the space of stored coordinates, shifted by 2^31: from 0 to 2^32 - 1 for points.
@@ -28,7 +28,8 @@ using CopcPlace = std::array<std::int64_t, 3>;
   return place;
 }
 
-inline constexpr unsigned copc_grid_bits = 7;     ///< a node has 128 cells along each axis, with at most one point each unless it is a leaf
+inline constexpr unsigned copc_grid_bits =
+    7;  ///< a node has 128 cells along each axis, with at most one point each unless it is a leaf
 inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Morton number
 
 /// Spreads the lowest 21 bits of a number: bit i goes to bit 3i.
@@ -91,7 +92,8 @@ struct CopcKey {
   }
 };
 
-/// True if a node comes before another from the root down: parents before children, and those in order of their Morton numbers.
+/// True if a node comes before another from the root down: parents before children, and those in order of their Morton
+/// numbers.
 [[nodiscard]] constexpr bool copc_before(const CopcKey& a, const CopcKey& b) noexcept {
   const std::int32_t level = a.level < b.level ? a.level : b.level;
   const CopcKey p = a.ancestor(level), q = b.ancestor(level);
@@ -112,10 +114,13 @@ struct CopcRoot {
   /// Least place within a node.
   [[nodiscard]] constexpr CopcPlace corner_of(const CopcKey& key) const noexcept {
     const unsigned b = bits_of(key);
-    return {corner[0] + (std::int64_t{key.x} << b), corner[1] + (std::int64_t{key.y} << b), corner[2] + (std::int64_t{key.z} << b)};
+    return {corner[0] + (std::int64_t{key.x} << b), corner[1] + (std::int64_t{key.y} << b),
+            corner[2] + (std::int64_t{key.z} << b)};
   }
   /// Side of a node, as that of the root.
-  [[nodiscard]] constexpr unsigned bits_of(const CopcKey& key) const noexcept { return bits - static_cast<unsigned>(key.level); }
+  [[nodiscard]] constexpr unsigned bits_of(const CopcKey& key) const noexcept {
+    return bits - static_cast<unsigned>(key.level);
+  }
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

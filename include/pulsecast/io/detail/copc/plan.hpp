@@ -44,7 +44,8 @@ class CopcPlan {
   }
 
   /// Division of the points of one node, whose cells are smaller than the node.
-  CopcPlan(const CopcRuns& runs, const CopcSizes& sizes, const CopcRoot& root, const CopcKey& top) : sizes_(sizes), top_(top), root_(root) {
+  CopcPlan(const CopcRuns& runs, const CopcSizes& sizes, const CopcRoot& root, const CopcKey& top)
+      : sizes_(sizes), top_(top), root_(root) {
     gather_cells(runs);
     corner_ = root.corner_of(top);
     for (std::int64_t& c : corner_) c >>= runs.bits();
@@ -125,7 +126,8 @@ class CopcPlan {
     }
     const unsigned shift = 3 * (depth_ - level - 1);
     for (unsigned i = 0; i < 8; ++i) {
-      const auto end = std::partition_point(cells.begin(), cells.end(), [&](const Cell& c) { return (c.path >> shift & 7U) <= i; });
+      const auto end =
+          std::partition_point(cells.begin(), cells.end(), [&](const Cell& c) { return (c.path >> shift & 7U) <= i; });
       const auto some = static_cast<std::size_t>(end - cells.begin());
       if (some > 0) divide(cells.first(some), key.child(i));
       cells = cells.subspan(some);
@@ -138,7 +140,8 @@ class CopcPlan {
     for (const auto& run : runs.cells()) {
       auto known = cells_.begin();
       for (const CopcCell& cell : run) {
-        known = std::lower_bound(known, cells_.end(), cell.key, [](const Cell& c, std::uint64_t key) { return c.key < key; });
+        known = std::lower_bound(known, cells_.end(), cell.key,
+                                 [](const Cell& c, std::uint64_t key) { return c.key < key; });
         std::vector<CopcExtent>& extents = blocks_[known->block].extents;
         if (!extents.empty() && extents.back().begin + extents.back().count == at)
           extents.back().count += cell.count;

@@ -33,13 +33,15 @@ struct CopcExtent {
   std::uint64_t begin = 0, count = 0;  ///< number of the first point, and of points
 };
 
-/// Point records on their way into the octree, in a temporary file. They are gathered to runs of some megabytes, and each run is sorted by
-/// cells: aligned cubes of 2^bits steps. So all points of a node are found in few pieces of the file, whatever order they came in, before
-/// its bounds are known. Cells are doubled whenever all runs together have too many.
+/// Point records on their way into the octree, in a temporary file. They are gathered to runs of some megabytes, and
+/// each run is sorted by cells: aligned cubes of 2^bits steps. So all points of a node are found in few pieces of the
+/// file, whatever order they came in, before its bounds are known. Cells are doubled whenever all runs together have
+/// too many.
 class CopcRuns {
  public:
   /// Records of `record` bytes, in runs of about `run_bytes`; `most_cells` counts those of all runs.
-  CopcRuns(const std::filesystem::path& path, std::size_t record, unsigned threads, std::size_t run_bytes, std::size_t most_cells)
+  CopcRuns(const std::filesystem::path& path, std::size_t record, unsigned threads, std::size_t run_bytes,
+           std::size_t most_cells)
       : file_(path),
         record_(record),
         threads_(threads),

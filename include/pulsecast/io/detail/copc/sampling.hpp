@@ -12,12 +12,12 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Picks one point of each cell of a node: that nearest to the cell's centre, the first of several. The points are those of the node's
-/// children, `counts` of each, in order of the cells: `cell(child, i)` is the cell of a point, `off(child, i)` its distance from the
-/// centre. Returns the picked points of each child, ascending.
+/// Picks one point of each cell of a node: that nearest to the cell's centre, the first of several. The points are
+/// those of the node's children, `counts` of each, in order of the cells: `cell(child, i)` is the cell of a point,
+/// `off(child, i)` its distance from the centre. Returns the picked points of each child, ascending.
 template <class CellOf, class OffOf>
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> copc_sample(std::span<const std::size_t> counts, const CellOf& cell,
-                                                                  const OffOf& off) {
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> copc_sample(std::span<const std::size_t> counts,
+                                                                  const CellOf& cell, const OffOf& off) {
   std::vector<std::vector<std::uint32_t>> picked(counts.size());
   bool any = false;
   std::uint64_t now = 0, least = 0;

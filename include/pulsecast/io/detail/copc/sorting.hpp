@@ -23,7 +23,9 @@ struct CopcRank {
 
 /// Sorts by key, and by number among equal keys. Many ranks are sorted digit by digit, by those digits that differ.
 inline void copc_sort(std::vector<CopcRank>& ranks) {
-  const auto before = [](const CopcRank& a, const CopcRank& b) { return a.key != b.key ? a.key < b.key : a.number < b.number; };
+  const auto before = [](const CopcRank& a, const CopcRank& b) {
+    return a.key != b.key ? a.key < b.key : a.number < b.number;
+  };
   if (ranks.size() < 4096) return std::sort(ranks.begin(), ranks.end(), before);
   constexpr unsigned digit = 11;
   std::uint64_t differ = 0;

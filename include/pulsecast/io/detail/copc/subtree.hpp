@@ -24,12 +24,13 @@ struct CopcNode {
   std::vector<std::uint32_t> points{};  ///< numbers of its records
 };
 
-/// Octree of some points below one node. A node is a leaf if it has few points, or its cells are no longer than a step. Points of other
-/// nodes are picked from their children, from below.
+/// Octree of some points below one node. A node is a leaf if it has few points, or its cells are no longer than a step.
+/// Points of other nodes are picked from their children, from below.
 class CopcSubtree {
  public:
   /// Whole records of `record` bytes within the node `key` of `root`.
-  CopcSubtree(std::span<const std::byte> records, std::size_t record, const CopcRoot& root, const CopcKey& key, std::size_t leaf_points)
+  CopcSubtree(std::span<const std::byte> records, std::size_t record, const CopcRoot& root, const CopcKey& key,
+              std::size_t leaf_points)
       : leaf_points_(leaf_points), bits_(std::min(root.bits_of(key), copc_morton_bits)) {
     const unsigned shift = root.bits_of(key) - bits_;
     const CopcPlace corner = root.corner_of(key);
@@ -62,8 +63,10 @@ class CopcSubtree {
     std::vector<std::size_t> children;
     const unsigned shift = 3 * (bits_ - depth - 1);
     for (unsigned i = 0; i < 8; ++i) {
-      const auto from = ranks_.begin() + static_cast<std::ptrdiff_t>(begin), to = ranks_.begin() + static_cast<std::ptrdiff_t>(end);
-      const auto border = std::partition_point(from, to, [&](const CopcRank& rank) { return (rank.key >> shift & 7U) <= i; });
+      const auto from = ranks_.begin() + static_cast<std::ptrdiff_t>(begin),
+                 to = ranks_.begin() + static_cast<std::ptrdiff_t>(end);
+      const auto border =
+          std::partition_point(from, to, [&](const CopcRank& rank) { return (rank.key >> shift & 7U) <= i; });
       const std::size_t next = begin + static_cast<std::size_t>(border - from);
       if (next > begin) children.push_back(build(begin, next, key.child(i), depth + 1));
       begin = next;

@@ -29,15 +29,20 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Writes the nodes of a plan as chunks of a file. Blocks are built in parallel, some at a time, and written in order; a node above them is
-/// written when all below it are. Points of a chunk are in order of their times.
+/// Writes the nodes of a plan as chunks of a file. Blocks are built in parallel, some at a time, and written in order;
+/// a node above them is written when all below it are. Points of a chunk are in order of their times.
 class CopcTree {
  public:
   using Change = std::function<void(std::span<std::byte>)>;
 
   /// `change` is called on all records once read; it may be empty.
   CopcTree(OutputFile& file, const LasLayout& layout, unsigned threads, const CopcSizes& sizes, Change change)
-      : file_(file), record_(layout.record()), colour_(layout.colour_size), threads_(threads), sizes_(sizes), change_(std::move(change)) {}
+      : file_(file),
+        record_(layout.record()),
+        colour_(layout.colour_size),
+        threads_(threads),
+        sizes_(sizes),
+        change_(std::move(change)) {}
 
   /// Writes all. @throws FileError
   void write(const CopcRuns& runs, const CopcPlan& plan) {
@@ -46,8 +51,10 @@ class CopcTree {
     open_ = {};
   }
 
-  [[nodiscard]] std::vector<CopcEntry>& entries() noexcept { return entries_; }                      ///< nodes
-  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept { return chunk_sizes_; }      ///< of the chunks, in order [byte]
+  [[nodiscard]] std::vector<CopcEntry>& entries() noexcept { return entries_; }  ///< nodes
+  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept {
+    return chunk_sizes_;
+  }  ///< of the chunks, in order [byte]
   [[nodiscard]] const std::vector<std::uint32_t>& points() const noexcept { return chunk_points_; }  ///< of the chunks
 
  private:
@@ -73,19 +80,23 @@ class CopcTree {
   void write_below(const CopcRuns& runs, const CopcPlan& plan) {
     const std::span<const CopcBlock> blocks = plan.blocks();
     const std::uint64_t at_once = std::uint64_t{threads_ + 3} * sizes_.block_points;
-    const auto dense = [&](const CopcBlock& block) { return block.points > sizes_.block_points && runs.bits() > CopcRuns::least_bits; };
+    const auto dense = [&](const CopcBlock& block) {
+      return block.points > sizes_.block_points && runs.bits() > CopcRuns::least_bits;
+    };
     for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
       if (dense(blocks[first])) {
         write_dense(runs, plan.root(), blocks[first]);
         close_above(plan, end++);
         continue;
       }
-      for (std::uint64_t points = 0; end < blocks.size() && (end == first || points + blocks[end].points <= at_once); ++end) {
+      for (std::uint64_t points = 0; end < blocks.size() && (end == first || points + blocks[end].points <= at_once);
+           ++end) {
         if (dense(blocks[end])) break;
         points += blocks[end].points;
       }
       std::vector<Built> built(end - first);
-      for_each_index(built.size(), threads_, [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); });
+      for_each_index(built.size(), threads_,
+                     [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); });
       for (std::size_t i = first; i < end; ++i) {
         Built& one = built[i - first];
         for (const Chunk& chunk : one.chunks) put(chunk);
@@ -110,7 +121,8 @@ class CopcTree {
     const std::span<const CopcBlock> blocks = plan.blocks();
     for (std::int32_t level = blocks[i].key.level; level-- > plan.top().level;) {
       const CopcKey above = blocks[i].key.ancestor(level);
-      if (i + 1 < blocks.size() && blocks[i + 1].key.level > level && blocks[i + 1].key.ancestor(level) == above) return;
+      if (i + 1 < blocks.size() && blocks[i + 1].key.level > level && blocks[i + 1].key.ancestor(level) == above)
+        return;
       merge(plan.root(), above);
     }
   }
@@ -185,8 +197,8 @@ class CopcTree {
     };
     std::vector<std::size_t> counts;
     for (const OpenNode& child : children) counts.push_back(child.records.size() / record_);
-    const auto picked =
-        copc_sample(counts, cell, [&](std::size_t child, std::uint32_t i) { return copc_off_centre(place(child, i), cell_bits); });
+    const auto picked = copc_sample(
+        counts, cell, [&](std::size_t child, std::uint32_t i) { return copc_off_centre(place(child, i), cell_bits); });
 
     OpenNode node{key, false, {}};
     std::vector<Chunk> chunks(children.size());
@@ -214,10 +226,10 @@ class CopcTree {
     }
     if (chunk.bytes.size() > most || chunk.points > most)
       throw FileError(file_.path().string(), "",
-                      pulsecast::detail::joined(
-                          {"has ", std::to_string(chunk.points), " points in one place; expected fewer than 2^31, and as many bytes"}));
-    entries_.push_back(
-        {chunk.key, file_.position(), static_cast<std::int32_t>(chunk.bytes.size()), static_cast<std::int32_t>(chunk.points)});
+                      pulsecast::detail::joined({"has ", std::to_string(chunk.points),
+                                                 " points in one place; expected fewer than 2^31, and as many bytes"}));
+    entries_.push_back({chunk.key, file_.position(), static_cast<std::int32_t>(chunk.bytes.size()),
+                        static_cast<std::int32_t>(chunk.points)});
     chunk_sizes_.push_back(chunk.bytes.size());
     chunk_points_.push_back(static_cast<std::uint32_t>(chunk.points));
     file_.write(chunk.bytes);

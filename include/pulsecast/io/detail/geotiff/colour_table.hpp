@@ -16,9 +16,9 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Colours of a palette picture by the value of a pixel, channels from 0 to 1; empty for other pictures. Values are of 16 bits; a table
-/// without a value above 255 is one of 8 bits, as some programs write it.
-/// Source: TIFF 6.0, section 5 (palette-color images), `ColorMap`; for 8 bits, libtiff, tif_getimage.c, `checkcmap`.
+/// Colours of a palette picture by the value of a pixel, channels from 0 to 1; empty for other pictures. Values are of
+/// 16 bits; a table without a value above 255 is one of 8 bits, as some programs write it. Source: TIFF 6.0, section 5
+/// (palette-color images), `ColorMap`; for 8 bits, libtiff, tif_getimage.c, `checkcmap`.
 [[nodiscard]] inline std::vector<Vec3> colour_table(const TiffFile& file) {
   if (file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) != PHOTOMETRIC_PALETTE) return {};
   std::array<const std::uint16_t*, 3> channels{};
@@ -31,7 +31,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
   }
   const double most = greatest > 255 ? 65535 : 255;
   std::vector<Vec3> colours(count);
-  for (std::size_t i = 0; i < count; ++i) colours[i] = {channels[0][i] / most, channels[1][i] / most, channels[2][i] / most};
+  for (std::size_t i = 0; i < count; ++i)
+    colours[i] = {channels[0][i] / most, channels[1][i] / most, channels[2][i] / most};
   return colours;
 }
 

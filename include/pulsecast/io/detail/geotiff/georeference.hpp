@@ -23,8 +23,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Tags and keys by number. Source: OGC GeoTIFF 1.1, annex B and 7.1; GDAL manual.
 namespace geotiff {
-inline constexpr ttag_t pixel_scale = 33550, tie_points = 33922, transformation = 34264, key_directory = 34735, metadata = 42112,
-                        nodata = 42113;
+inline constexpr ttag_t pixel_scale = 33550, tie_points = 33922, transformation = 34264, key_directory = 34735,
+                        metadata = 42112, nodata = 42113;
 enum Key : std::uint16_t {
   model_type = 1024,
   raster_type = 1025,
@@ -45,17 +45,20 @@ inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< 
   return otherwise;
 }
 
-/// EPSG code of the projected reference system, if any. Throws a `FileError` for another kind of system, or one in feet.
+/// EPSG code of the projected reference system, if any. Throws a `FileError` for another kind of system, or one in
+/// feet.
 [[nodiscard]] inline std::optional<std::uint16_t> projected_epsg(TiffFile& file) {
   const std::uint16_t model = geo_key(file, geotiff::model_type, 1), told = geo_key(file, geotiff::linear_unit, 0);
   const std::uint16_t unit = told == 0 ? geotiff::metre : told;
   if (model == 2) file.fail("is in degrees (a geographic reference system): expected a projected one, in metres");
   if (model == 3) file.fail("is in a geocentric reference system: expected a projected one, in metres");
   if (unit == geotiff::foot || unit == geotiff::us_foot) file.fail("has coordinates in feet: expected metres");
-  if (unit != geotiff::metre) file.warn("the unit of its coordinates has the code " + std::to_string(unit) + "; metres are assumed");
+  if (unit != geotiff::metre)
+    file.warn("the unit of its coordinates has the code " + std::to_string(unit) + "; metres are assumed");
   const std::uint16_t projected = geo_key(file, geotiff::projected, 0);
   if (told == 0 && projected != 0 && las_utm(projected).empty())
-    file.warn("does not tell the unit of its coordinates, in the projected system " + std::to_string(projected) + "; metres are assumed");
+    file.warn("does not tell the unit of its coordinates, in the projected system " + std::to_string(projected) +
+              "; metres are assumed");
   return projected != 0 && projected != geotiff::user_defined ? std::optional(projected) : std::nullopt;
 }
 
@@ -67,8 +70,8 @@ struct RasterCorner {
   double x = 0, y = 0, step_x = 0, step_y = 0;
 };
 
-/// Position of the pixels of a file, by its tags or by a world file. Throws a `FileError` without a georeference, and for rows that do not
-/// go east. Source: OGC GeoTIFF 1.1, 7.1.1 (raster to model).
+/// Position of the pixels of a file, by its tags or by a world file. Throws a `FileError` without a georeference, and
+/// for rows that do not go east. Source: OGC GeoTIFF 1.1, 7.1.1 (raster to model).
 [[nodiscard]] inline RasterCorner raster_corner(TiffFile& file, const RasterLayout& layout) {
   const auto scale = file.tags<double>(geotiff::pixel_scale), ties = file.tags<double>(geotiff::tie_points),
              matrix = file.tags<double>(geotiff::transformation);
@@ -81,10 +84,13 @@ struct RasterCorner {
     return {.x = matrix[3], .y = matrix[7], .step_x = matrix[0], .step_y = matrix[5]};
   }
   if (scale.size() >= 2 && ties.size() >= 6) {
-    if (scale[1] < 0) file.warn("ModelPixelScale has a negative height of the pixel; its magnitude is taken, as GDAL does");
+    if (scale[1] < 0)
+      file.warn("ModelPixelScale has a negative height of the pixel; its magnitude is taken, as GDAL does");
     if (scale[0] < 0) file.fail("has pixels of a negative width: expected a positive one");
     if ((scale.size() >= 3 && scale[2] != 0 && scale[2] != 1) || ties[2] != 0 || ties[5] != 0)
-      file.warn("the vertical scale of ModelPixelScale, and the height of ModelTiepoint, are ignored; vertical_scale is a setting");
+      file.warn(
+          "the vertical scale of ModelPixelScale, and the height of ModelTiepoint, are ignored; vertical_scale is a "
+          "setting");
     const double step_x = scale[0], step_y = -std::fabs(scale[1]);
     return {.x = ties[3] - ties[0] * step_x, .y = ties[4] - ties[1] * step_y, .step_x = step_x, .step_y = step_y};
   }
@@ -96,22 +102,28 @@ struct RasterCorner {
             .step_x = world.step.x,
             .step_y = world.step.y};
   }
-  if (ties.size() > 6) file.fail("is placed by control points: expected rows to the east (ModelPixelScale and ModelTiepoint)");
+  if (ties.size() > 6)
+    file.fail("is placed by control points: expected rows to the east (ModelPixelScale and ModelTiepoint)");
   file.fail("has no georeference: expected ModelPixelScale and ModelTiepoint, ModelTransformation, or a world file");
 }
 
-/// Raster without heights, with the columns of a file from the west and its rows from the north. Throws as `raster_corner`, and for pixels
-/// out of bounds.
-[[nodiscard]] inline Raster placed_raster(const TiffFile& file, const RasterLayout& layout, const RasterCorner& corner) {
+/// Raster without heights, with the columns of a file from the west and its rows from the north. Throws as
+/// `raster_corner`, and for pixels out of bounds.
+[[nodiscard]] inline Raster placed_raster(const TiffFile& file, const RasterLayout& layout,
+                                          const RasterCorner& corner) {
   const double to_centre = is_point(file) ? 0 : 0.5;
   const double column = corner.step_x < 0 ? layout.columns - 1.0 : 0, row = corner.step_y > 0 ? layout.rows - 1.0 : 0;
-  Raster raster{.columns = layout.columns,
-                .rows = layout.rows,
-                .first = {corner.x + (column + to_centre) * corner.step_x, corner.y + (row + to_centre) * corner.step_y},
-                .pixel = {std::fabs(corner.step_x), std::fabs(corner.step_y)}};
-  const auto sound = [](double first, double pixel) { return std::fabs(first) <= 1e15 && pixel >= 1e-9 && pixel <= 1e6; };
+  Raster raster{
+      .columns = layout.columns,
+      .rows = layout.rows,
+      .first = {corner.x + (column + to_centre) * corner.step_x, corner.y + (row + to_centre) * corner.step_y},
+      .pixel = {std::fabs(corner.step_x), std::fabs(corner.step_y)}};
+  const auto sound = [](double first, double pixel) {
+    return std::fabs(first) <= 1e15 && pixel >= 1e-9 && pixel <= 1e6;
+  };
   if (!sound(raster.first.x, raster.pixel.x) || !sound(raster.first.y, raster.pixel.y))
-    file.fail("has its first pixel or the size of pixels out of bounds: expected within 1e15 m, and from 1e-9 m to 1e6 m");
+    file.fail(
+        "has its first pixel or the size of pixels out of bounds: expected within 1e15 m, and from 1e-9 m to 1e6 m");
   return raster;
 }
 

@@ -42,17 +42,19 @@ inline constexpr std::array<LengthUnit, 6> length_units{{
     {9095, 0.3048007491, "|british foot (1936)|"},
 }};
 
-/// Vertical systems in another unit than metres, or of depths. Source: EPSG registry 10.076, vertical systems and their axes.
+/// Vertical systems in another unit than metres, or of depths. Source: EPSG registry 10.076, vertical systems and their
+/// axes.
 inline constexpr std::array<std::uint16_t, 5> systems_in_feet{6130, 6131, 6132, 8050, 8228};
 inline constexpr std::array<std::uint16_t, 3> systems_in_us_feet{5702, 6360, 8052};
 inline constexpr std::uint16_t system_in_british_feet = 5754;
-inline constexpr std::array<std::uint16_t, 29> systems_of_depths{5336, 5612, 5614, 5706, 5715, 5734, 5739, 5789, 5831, 5861,
-                                                                 5862, 5863, 5864, 5865, 5866, 5867, 5873, 6357, 6358, 6359,
-                                                                 7976, 8051, 8053, 8358, 8378, 8897, 9287, 9288, 9672};
+inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
+    5336, 5612, 5614, 5706, 5715, 5734, 5739, 5789, 5831, 5861, 5862, 5863, 5864, 5865, 5866,
+    5867, 5873, 6357, 6358, 6359, 7976, 8051, 8053, 8358, 8378, 8897, 9287, 9288, 9672};
 
 }  // namespace geotiff
 
-/// Text of an item of GDAL's metadata by its role, of a band from 1; empty without. Source: GDAL manual, GTiff driver, GDAL_METADATA.
+/// Text of an item of GDAL's metadata by its role, of a band from 1; empty without. Source: GDAL manual, GTiff driver,
+/// GDAL_METADATA.
 [[nodiscard]] inline std::string_view metadata_item(std::string_view all, std::string_view role, std::uint16_t band) {
   const auto attribute = [](std::string_view tag, std::string_view name) -> std::string_view {
     const std::size_t at = tag.find(std::string(name) + "=\"");
@@ -85,7 +87,8 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{5336, 5612, 561
                                                        : geotiff::metre;
   }
   if (system != 0)
-    file.warn("vertical system " + std::to_string(system) + ": " + (is_told || unit != geotiff::metre ? "" : "metres are assumed; ") +
+    file.warn("vertical system " + std::to_string(system) + ": " +
+              (is_told || unit != geotiff::metre ? "" : "metres are assumed; ") +
               "heights stay in it, and LAS files do not name it");
   for (const geotiff::LengthUnit& known : geotiff::length_units)
     if (known.code == unit) return known.metres;
@@ -102,7 +105,8 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{5336, 5612, 561
   return 1;
 }
 
-/// Heights of a band, from 1, by all that a file tells. @throws FileError for a scale that is no number, or 0, and as `metres_by_keys`
+/// Heights of a band, from 1, by all that a file tells. @throws FileError for a scale that is no number, or 0, and as
+/// `metres_by_keys`
 [[nodiscard]] inline HeightScale height_scale(TiffFile& file, std::uint16_t band) {
   const auto text = file.tags<char>(geotiff::metadata);
   const std::string_view all(text.data(), text.size());

@@ -35,7 +35,8 @@ struct RasterLayout {
     const std::string size = std::to_string(columns) + " x " + std::to_string(rows) + " pixels";
     if (columns < 2 || rows < 2) file.fail("is of " + size + ": expected 2 x 2 or more");
     if (band > samples)
-      file.fail("has " + std::to_string(samples) + " bands: expected " + std::to_string(band) + ", or another setting of the band");
+      file.fail("has " + std::to_string(samples) + " bands: expected " + std::to_string(band) +
+                ", or another setting of the band");
     check_samples(file);
 
     tiled = TIFFIsTiled(file.handle()) != 0;

@@ -76,20 +76,23 @@ class GeoTiffReader {
     return std::nullopt;
   }
 
-  /// Notes what a file says of its pixels that has no effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
+  /// Notes what a file says of its pixels that has no effect. Source: TIFF 6.0, PhotometricInterpretation and
+  /// ExtraSamples.
   void note_picture() {
     const auto meaning = file_.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_PALETTE)
-      file_.warn("is a picture of colours (photometric interpretation " + std::to_string(meaning) + "); the numbers of band " +
-                 std::to_string(settings_.band) + " are taken as heights");
+      file_.warn("is a picture of colours (photometric interpretation " + std::to_string(meaning) +
+                 "); the numbers of band " + std::to_string(settings_.band) + " are taken as heights");
     std::uint16_t count = 0;
     const std::uint16_t* kinds = nullptr;
     const bool has_extra = TIFFGetField(file_.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) == 1 && kinds != nullptr;
-    const bool has_alpha =
-        has_extra && std::any_of(kinds, kinds + count, [](auto k) { return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA; });
+    const bool has_alpha = has_extra && std::any_of(kinds, kinds + count, [](auto k) {
+                             return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA;
+                           });
     std::error_code ignored;
     if (has_alpha || file_.has_mask() || std::filesystem::exists(file_.path() + ".msk", ignored))
-      file_.warn(std::string("has ") + (has_alpha ? "an alpha band" : "a mask") + ", which is not applied: pixels without a height keep " +
+      file_.warn(std::string("has ") + (has_alpha ? "an alpha band" : "a mask") +
+                 ", which is not applied: pixels without a height keep " +
                  "their numbers, unless these are those of missing heights");
   }
 
@@ -110,7 +113,8 @@ class GeoTiffReader {
   template <class Sample>
   [[nodiscard]] GeoTiff finished() {
     if constexpr (std::is_integral_v<Sample> && sizeof(Sample) <= 2)
-      if (settings_.packed && pack<Sample>()) return finished<Sample>(raster_.packed.numbers, raster_.packed.missing.value_or(0));
+      if (settings_.packed && pack<Sample>())
+        return finished<Sample>(raster_.packed.numbers, raster_.packed.missing.value_or(0));
     return finished<Sample>(raster_.heights, std::numeric_limits<float>::quiet_NaN());
   }
 
@@ -126,13 +130,15 @@ class GeoTiffReader {
       packed.missing = static_cast<std::uint16_t>(*missing_ + packed.zero);
     else if (sizeof(Sample) == 1)
       packed.missing = std::numeric_limits<std::uint16_t>::max();
-    return scale_.scale > 0 && std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15 && (packed.missing || is_complete());
+    return scale_.scale > 0 && std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15 &&
+           (packed.missing || is_complete());
   }
 
   /// True if no strip or tile of the band is left out.
   [[nodiscard]] bool is_complete() {
     for (std::uint32_t north = 0; north < layout_.rows; north += std::min(layout_.chunk_rows, layout_.rows - north))
-      for (std::uint32_t west = 0; west < layout_.columns; west += std::min(layout_.chunk_columns, layout_.columns - west))
+      for (std::uint32_t west = 0; west < layout_.columns;
+           west += std::min(layout_.chunk_columns, layout_.columns - west))
         if (TIFFGetStrileByteCount(file_.handle(), chunk_at(west, north)) == 0) return false;
     return true;
   }
@@ -141,8 +147,11 @@ class GeoTiffReader {
   template <class Sample, class Pixel>
   [[nodiscard]] GeoTiff finished(std::vector<Pixel>& pixels, Pixel absent) {
     read_pixels<Sample>(pixels, absent);
-    const auto row = [&](std::uint32_t r) { return pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns); };
-    for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
+    const auto row = [&](std::uint32_t r) {
+      return pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns);
+    };
+    for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r)
+      std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
     if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
     if (unmarked_ > 0)
@@ -150,7 +159,8 @@ class GeoTiffReader {
                  " heights are a number that often marks missing ones, as -9999 or -32768, and the file names no " +
                  "number for these; a number of missing heights is a setting");
     if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
-    return {.raster = std::move(raster_), .epsg = epsg_, .colours = colour_table(file_), .warnings = file_.take_warnings()};
+    return {
+        .raster = std::move(raster_), .epsg = epsg_, .colours = colour_table(file_), .warnings = file_.take_warnings()};
   }
 
   /// Reads strip by strip, or rows of tiles; the raster grows meanwhile.
@@ -164,7 +174,8 @@ class GeoTiffReader {
       pixels.reserve(std::size_t{l.columns} * l.rows);
       if (!in_place) buffer.resize(l.chunk_bytes);
     } catch (const std::bad_alloc&) {
-      file_.fail("does not fit into memory: its raster has " + std::to_string(l.columns) + " x " + std::to_string(l.rows) + " pixels");
+      file_.fail("does not fit into memory: its raster has " + std::to_string(l.columns) + " x " +
+                 std::to_string(l.rows) + " pixels");
     }
     for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north)) {
       const std::uint32_t rows = std::min(l.chunk_rows, l.rows - north);
@@ -201,8 +212,10 @@ class GeoTiffReader {
       file_.fail_at_byte(begin, what + " should end at byte " + std::to_string(begin + length) + ", but the file has " +
                                     std::to_string(file_.size()) + ": expected a complete file");
     const auto size = static_cast<tmsize_t>(bytes);
-    const tmsize_t read = layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
-    if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a complete file");
+    const tmsize_t read =
+        layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
+    if (read != size)
+      file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a complete file");
     return true;
   }
 
@@ -243,7 +256,7 @@ class GeoTiffReader {
   std::optional<double> missing_;              ///< value of missing heights
   bool westward_ = false, northward_ = false;  ///< direction of columns and rows in the file
   std::uint64_t there_ = 0, strange_ = 0;      ///< number of heights, and of values out of bounds
-  std::uint64_t unmarked_ = 0;                 ///< number of heights that may be missing ones, without a word of the file
+  std::uint64_t unmarked_ = 0;  ///< number of heights that may be missing ones, without a word of the file
 };
 
 }  // namespace detail

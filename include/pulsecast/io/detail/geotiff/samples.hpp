@@ -45,12 +45,13 @@ template <class Sample>
 /// True for the value of missing heights, which may be written with more digits than a single-precision sample has.
 template <class Sample>
 [[nodiscard]] bool is_missing(double value, double missing) noexcept {
-  if constexpr (std::is_same_v<Sample, float>) return value == missing || static_cast<float>(value) == static_cast<float>(missing);
+  if constexpr (std::is_same_v<Sample, float>)
+    return value == missing || static_cast<float>(value) == static_cast<float>(missing);
   return value == missing;
 }
 
-/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez et al. 2005, An assessment of the SRTM
-/// topographic products, JPL D-31639 (-32768); GDAL manual, DTED driver (-32767).
+/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez et al. 2005, An
+/// assessment of the SRTM topographic products, JPL D-31639 (-32768); GDAL manual, DTED driver (-32767).
 [[nodiscard]] inline bool may_be_missing(double value) noexcept {
   return value == -9999 || value == -32768 || value == -32767 || value == -99999 || value == -999999;
 }

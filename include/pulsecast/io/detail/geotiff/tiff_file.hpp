@@ -34,19 +34,24 @@ class TiffFile {
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }  ///< size of the file [byte]
 
-  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver, internal masks.
+  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver,
+  /// internal masks.
   [[nodiscard]] bool has_mask() const noexcept { return has_mask_; }
 
   [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
-  [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const { file_.fail_at_byte(byte, problem); }
+  [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
+    file_.fail_at_byte(byte, problem);
+  }
   void warn(const std::string& oddity) { warnings_.push_back(file_.path() + ": " + oddity); }
   [[nodiscard]] std::vector<std::string> take_warnings() noexcept { return std::exchange(warnings_, {}); }
 
   /// Error of libtiff, to end a sentence.
-  [[nodiscard]] std::string complaint() const { return complaint_[0] == '\0' ? "" : std::string(" (libtiff: ") + complaint_.data() + ')'; }
+  [[nodiscard]] std::string complaint() const {
+    return complaint_[0] == '\0' ? "" : std::string(" (libtiff: ") + complaint_.data() + ')';
+  }
 
-  /// Upper limit of the decoded size of any strip or tile: deflate reaches 1,032 to 1, LZW and others somewhat more. A tile of 256 by 256
-  /// that is left out or uniform is 16,384 times its entry in the lists of tiles.
+  /// Upper limit of the decoded size of any strip or tile: deflate reaches 1,032 to 1, LZW and others somewhat more. A
+  /// tile of 256 by 256 that is left out or uniform is 16,384 times its entry in the lists of tiles.
   [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
 
   template <class Number>
@@ -55,11 +60,13 @@ class TiffFile {
     return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : otherwise;
   }
 
-  /// Values of an array tag; empty if missing or of another type. libtiff does not know these tags, and defines them as it reads them; if
-  /// GDAL or libgeotiff defined them, their counts may have another form.
+  /// Values of an array tag; empty if missing or of another type. libtiff does not know these tags, and defines them as
+  /// it reads them; if GDAL or libgeotiff defined them, their counts may have another form.
   template <class Number>
   [[nodiscard]] std::span<const Number> tags(ttag_t number) const {
-    constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE : std::is_same_v<Number, char> ? TIFF_ASCII : TIFF_SHORT;
+    constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE
+                                  : std::is_same_v<Number, char> ? TIFF_ASCII
+                                                                 : TIFF_SHORT;
     const TIFFField* field = TIFFFindField(tiff_.get(), number, TIFF_ANY);
     const Number* values = nullptr;
     std::uint32_t count = 0;
@@ -92,15 +99,18 @@ class TiffFile {
   static int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) noexcept { return 1; }
 
   [[nodiscard]] Handle open() {
-    const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+    const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
+                                                                               TIFFOpenOptionsFree);
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
-    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not memory-mapped, as the file may be truncated meanwhile
+    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm",
+                            options.get()));  // not memory-mapped, as the file may be truncated meanwhile
     if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
     look_for_mask(*tiff);
-    // libdeflate leaves the end of a strip or tile unread, without an error, if more is compressed than it needs; zlib reads all of it
+    // libdeflate leaves the end of a strip or tile unread, without an error, if more is compressed than it needs; zlib
+    // reads all of it
     std::uint16_t scheme = COMPRESSION_NONE;
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &scheme);
     if (scheme == COMPRESSION_ADOBE_DEFLATE || scheme == COMPRESSION_DEFLATE)

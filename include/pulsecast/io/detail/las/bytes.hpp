@@ -16,7 +16,8 @@
 /// Byte layout of LAS files. Source of every offset: ASPRS LAS Specification 1.4 R15, or 1.0 where named.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are written as the numbers lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "LAS files are little-endian, and are written as the numbers lie in memory");
 
 /// Byte array filled in by offsets.
 template <std::size_t Size>
@@ -25,7 +26,9 @@ struct LasBytes : std::array<std::byte, Size> {
   void put(std::size_t position, Number value) noexcept {
     std::memcpy(this->data() + position, &value, sizeof value);
   }
-  void put_text(std::size_t position, std::string_view text) noexcept { std::memcpy(this->data() + position, text.data(), text.size()); }
+  void put_text(std::size_t position, std::string_view text) noexcept {
+    std::memcpy(this->data() + position, text.data(), text.size());
+  }
 };
 
 /// Nearest integer, clamped to [low, high]; NaN becomes `low`.
@@ -37,7 +40,8 @@ template <class Integer>
 inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
 
 /// Header of a variable-length record with a body of `size` bytes. Source: LAS 1.4 R15, Variable Length Records.
-[[nodiscard]] inline LasBytes<las_vlr_header_size> las_vlr_header(std::string_view user, std::uint16_t record, std::size_t size,
+[[nodiscard]] inline LasBytes<las_vlr_header_size> las_vlr_header(std::string_view user, std::uint16_t record,
+                                                                  std::size_t size,
                                                                   std::string_view description) noexcept {
   LasBytes<las_vlr_header_size> h{};
   h.put_text(2, user);

@@ -28,7 +28,9 @@
 namespace PULSECAST_NAMESPACE::io {
 
 /// Level of a ratio of powers [dB]; -200 or more, also for zero.
-[[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
+[[nodiscard]] inline float las_level(double ratio) noexcept {
+  return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0);
+}
 
 /// Point statistics for the header of a LAS file. Those of parts add up to those of the whole, in any order.
 struct LasTally {
@@ -52,8 +54,8 @@ struct LasTally {
   }
 };
 
-/// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them. Coordinates come last, so that all else is
-/// done before their offset is known.
+/// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them. Coordinates come last,
+/// so that all else is done before their offset is known.
 class LasEncoder {
  public:
   /// Point record, filled in by offsets.
@@ -69,10 +71,12 @@ class LasEncoder {
       : settings_(std::move(settings)), layout_(settings_), offset_(settings_.offset.value_or(Vec3{})) {}
 
   /// Size of a point record with these settings [byte].
-  [[nodiscard]] static std::size_t record_size(const LasSettings& settings) { return detail::LasLayout(settings).record(); }
+  [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
+    return detail::LasLayout(settings).record();
+  }
 
-  /// Calls put(record, point) for every echo of a shot, in order. `record` has `layout().record()` bytes, and lacks the coordinates of
-  /// `point`; it is reused. `packet` is the place of the shot's waveform, null without one.
+  /// Calls put(record, point) for every echo of a shot, in order. `record` has `layout().record()` bytes, and lacks the
+  /// coordinates of `point`; it is reused. `packet` is the place of the shot's waveform, null without one.
   template <class Put>
   void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
     Record& record = record_;
@@ -101,8 +105,11 @@ class LasEncoder {
       tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
-      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.max_class)));
-      if (packet) record.put(layout_.packet + 13, static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
+      record.put(layout_.legacy ? 15 : 16,
+                 static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.max_class)));
+      if (packet)
+        record.put(layout_.packet + 13,
+                   static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
       record.put(extras + range_at, echo.range);
       record.put(extras + amplitude_at, amplitude);
       record.put(extras + reflectance_at, las_level(echo.reflectance));
@@ -136,18 +143,20 @@ class LasEncoder {
     while (axis < 2 && fits(steps_of(point, axis))) ++axis;
     const auto text = [](double value) {
       std::array<char, 32> digits;
-      return std::string(digits.data(),
-                         std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 12).ptr);
+      return std::string(
+          digits.data(),
+          std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 12).ptr);
     };
     const int k = static_cast<int>(axis);
     return pulsecast::detail::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
                                       " m, which does not fit 32 bits; expected ", text(offset_[k]), " m +- ",
-                                      text(settings_.scale * std::numeric_limits<std::int32_t>::max()), " m (offset, and 2^31 steps of ",
-                                      text(settings_.scale), " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
+                                      text(settings_.scale * std::numeric_limits<std::int32_t>::max()),
+                                      " m (offset, and 2^31 steps of ", text(settings_.scale),
+                                      " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
   }
 
-  /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far from the origin, and
-  /// the offset is round: with a scale of 0.1 mm a multiple of 100 m.
+  /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far
+  /// from the origin, and the offset is round: with a scale of 0.1 mm a multiple of 100 m.
   void choose_offset(const Vec3& first) noexcept {
     const double unit = settings_.scale * 1e6;
     const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // + 0.0 avoids -0
@@ -164,7 +173,8 @@ class LasEncoder {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       float level = 0;
       std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
-      const auto scaled = detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.max_amplitude) / 10), 0, 65535);
+      const auto scaled = detail::las_rounded<std::uint16_t>(
+          65535 * std::pow(10, (double{level} - tally_.max_amplitude) / 10), 0, 65535);
       std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
     }
   }
@@ -192,10 +202,11 @@ class LasEncoder {
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }
 
  private:
-  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28,
-                               kind_at = 32;
+  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20,
+                               object_at = 28, kind_at = 32;
 
-  /// Writes the part of a wave packet common to all returns. Offsets from its first byte: LAS 1.4 R15, Point Data Record Format 4.
+  /// Writes the part of a wave packet common to all returns. Offsets from its first byte: LAS 1.4 R15, Point Data
+  /// Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
     record.put(layout_.packet, packet.descriptor);
     record.put(layout_.packet + 1, packet.offset);

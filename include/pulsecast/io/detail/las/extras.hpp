@@ -15,7 +15,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Extra value of each point, behind the standard ones.
 struct LasExtra {
   std::string_view name, description;
-  std::uint8_t type, size;  ///< data type of the Extra Bytes record: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
+  std::uint8_t type,
+      size;  ///< data type of the Extra Bytes record: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
 };
 
 inline constexpr std::array las_extras{
@@ -36,7 +37,8 @@ inline constexpr std::size_t las_extras_size = [] {
   return size;
 }();
 
-/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, without a part of a UTF-8 character.
+/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, without a part of a UTF-8
+/// character.
 [[nodiscard]] constexpr std::string_view las_extra_name(std::string_view name) noexcept {
   std::size_t size = name.size() > 31 ? 31 : name.size();
   while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;

@@ -28,14 +28,15 @@ struct LasPacket {
   std::uint32_t size = 0;       ///< size of the packet [byte]
 };
 
-/// Writes waveforms as packets of a `.wdp` file beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform Packet Descriptor,
-/// Waveform Data Packets, and Extended Variable Length Records.
+/// Writes waveforms as packets of a `.wdp` file beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform
+/// Packet Descriptor, Waveform Data Packets, and Extended Variable Length Records.
 ///
-/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`. Number 4096 is zero power, so that noise may be negative.
-/// Each packet has the smallest gain of eleven that its samples fit: powers of 16 from 2^-52 W to 2^-12 W. The error is at most 1/7680 of
-/// the packet's peak, or 2^-53 W, unless noise reaches 1/15 of the peak. Samples above 15 W are clipped.
-/// A descriptor states the number of samples of its packets, so there are 23 sizes, two an octave, from 16 to 32768; packets are padded
-/// with zero power. Every file has all 253 descriptors, so that none need be known before the first packet.
+/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`. Number 4096 is zero power, so that
+/// noise may be negative. Each packet has the smallest gain of eleven that its samples fit: powers of 16 from 2^-52 W
+/// to 2^-12 W. The error is at most 1/7680 of the packet's peak, or 2^-53 W, unless noise reaches 1/15 of the peak.
+/// Samples above 15 W are clipped. A descriptor states the number of samples of its packets, so there are 23 sizes, two
+/// an octave, from 16 to 32768; packets are padded with zero power. Every file has all 253 descriptors, so that none
+/// need be known before the first packet.
 class LasPackets {
  public:
   /// Throws a `FileError` if the file cannot be made.
@@ -51,11 +52,15 @@ class LasPackets {
     spacing_ = spacing;
   }
 
-  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }  ///< offset of the next packet [byte]
-  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }           ///< interval of samples, 0 without packets [ps]
+  [[nodiscard]] std::uint64_t position() const noexcept {
+    return file_.position();
+  }  ///< offset of the next packet [byte]
+  [[nodiscard]] std::uint32_t spacing() const noexcept {
+    return spacing_;
+  }  ///< interval of samples, 0 without packets [ps]
 
-  /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError` for more than `max_samples`, or an
-  /// interval other than before or not of whole picoseconds.
+  /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError` for more than
+  /// `max_samples`, or an interval other than before or not of whole picoseconds.
   [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
     require_interval(interval);
     const unsigned size_class = size_class_of(waveform.size()), gain_class = gain_class_of(waveform);
@@ -66,7 +71,8 @@ class LasPackets {
       raw_[i] = static_cast<std::uint16_t>(number > 0 ? (number < 65535 ? number : 65535) : 0);
     }
     const std::span<const std::byte> bytes = std::as_bytes(std::span(raw_));
-    const LasPacket packet{index_of(size_class, gain_class), file_.position(), static_cast<std::uint32_t>(bytes.size())};
+    const LasPacket packet{index_of(size_class, gain_class), file_.position(),
+                           static_cast<std::uint32_t>(bytes.size())};
     file_.write(bytes);
     return packet;
   }
@@ -97,7 +103,8 @@ class LasPackets {
   }
 
   static constexpr double max_samples = 32768;  ///< samples of a waveform, at most
-  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;  ///< kinds of packets
+  static constexpr unsigned size_classes = 23, gain_classes = 11,
+                            descriptor_count = size_classes * gain_classes;  ///< kinds of packets
 
  private:
   static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]
@@ -106,7 +113,9 @@ class LasPackets {
   [[nodiscard]] static constexpr std::size_t samples_of(unsigned size_class) noexcept {
     return (size_class % 2 == 0 ? std::size_t{16} : std::size_t{24}) << (size_class / 2);
   }
-  [[nodiscard]] static double gain_of(unsigned gain_class) noexcept { return std::ldexp(1.0, static_cast<int>(4 * gain_class) - 52); }
+  [[nodiscard]] static double gain_of(unsigned gain_class) noexcept {
+    return std::ldexp(1.0, static_cast<int>(4 * gain_class) - 52);
+  }
   [[nodiscard]] static constexpr std::uint8_t index_of(unsigned size_class, unsigned gain_class) noexcept {
     return static_cast<std::uint8_t>(1 + size_class * gain_classes + gain_class);
   }
@@ -115,7 +124,8 @@ class LasPackets {
     unsigned c = 0;
     while (c < size_classes && samples_of(c) < samples) ++c;
     if (c < size_classes) return c;
-    reject({"a waveform has ", std::to_string(samples), " samples; expected at most ", std::to_string(samples_of(size_classes - 1))});
+    reject({"a waveform has ", std::to_string(samples), " samples; expected at most ",
+            std::to_string(samples_of(size_classes - 1))});
   }
 
   [[nodiscard]] static unsigned gain_class_of(std::span<const float> waveform) noexcept {
@@ -131,13 +141,15 @@ class LasPackets {
     const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
     if (can_be && spacing_ == 0) spacing_ = static_cast<std::uint32_t>(whole);
     if (can_be && spacing_ == whole) return;
-    const std::string allowed = spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before";
+    const std::string allowed =
+        spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before";
     reject({"samples are ", pulsecast::detail::to_text(picoseconds), " ps apart; expected ", allowed});
   }
 
   [[noreturn]] void reject(std::initializer_list<std::string_view> problem) {
     file_.discard();
-    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), pulsecast::detail::joined(problem));
+    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()),
+                    pulsecast::detail::joined(problem));
   }
 
   [[nodiscard]] detail::LasBytes<header_size> header() const {

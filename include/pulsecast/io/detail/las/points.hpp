@@ -21,9 +21,9 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as withheld (deleted) are skipped. Sizes
-/// in the header are checked against the file's size; bounds in it are ignored.
-/// Throws a `FileError` with path and byte. Source of every field: ASPRS LAS Specification 1.4 R15, and 1.0 to 1.3 for their headers.
+/// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as withheld (deleted)
+/// are skipped. Sizes in the header are checked against the file's size; bounds in it are ignored. Throws a `FileError`
+/// with path and byte. Source of every field: ASPRS LAS Specification 1.4 R15, and 1.0 to 1.3 for their headers.
 class LasPoints {
  public:
   /// True if the file begins with the LAS signature.
@@ -41,7 +41,8 @@ class LasPoints {
     while (taken_ < count_) {
       at_ = file_.position();
       record_ = file_.take(record_size_);
-      if (record_.size() < record_size_) file_.fail_at_byte(at_, "unexpected end: the file has changed while it was read");
+      if (record_.size() < record_size_)
+        file_.fail_at_byte(at_, "unexpected end: the file has changed while it was read");
       ++taken_;
       if (!withheld()) return true;
       ++withheld_;
@@ -80,7 +81,8 @@ class LasPoints {
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
  private:
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are read as the numbers lie in memory");
+  static_assert(std::endian::native == std::endian::little,
+                "LAS files are little-endian, and are read as the numbers lie in memory");
 
   template <class Number>
   [[nodiscard]] static Number number(std::string_view bytes, std::size_t position) noexcept {
@@ -96,19 +98,22 @@ class LasPoints {
 
     const std::string bytes(file_.take(header_sizes.back()));
     if (bytes.size() < header_sizes.front())
-      file_.fail_at_byte(bytes.size(), "the file ends: expected the " + std::to_string(header_sizes.front()) + " bytes of a LAS header");
+      file_.fail_at_byte(bytes.size(), "the file ends: expected the " + std::to_string(header_sizes.front()) +
+                                           " bytes of a LAS header");
     const auto major = number<std::uint8_t>(bytes, 24);
     minor_ = number<std::uint8_t>(bytes, 25);
     if (major != 1 || minor_ > 4)
-      file_.fail_at_byte(24, "is LAS " + std::to_string(major) + "." + std::to_string(minor_) + ": expected a version from 1.0 to 1.4");
+      file_.fail_at_byte(24, "is LAS " + std::to_string(major) + "." + std::to_string(minor_) +
+                                 ": expected a version from 1.0 to 1.4");
     const std::size_t header_size = number<std::uint16_t>(bytes, 94);
     if (header_size < header_sizes[minor_] || bytes.size() < header_sizes[minor_])
-      file_.fail_at_byte(94, "the header has " + std::to_string(std::min(header_size, bytes.size())) + " bytes: expected at least " +
-                                 std::to_string(header_sizes[minor_]));
+      file_.fail_at_byte(94, "the header has " + std::to_string(std::min(header_size, bytes.size())) +
+                                 " bytes: expected at least " + std::to_string(header_sizes[minor_]));
     format_ = number<std::uint8_t>(bytes, 104);
     if (format_ >= 128)  // mark of LASzip
       file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip and pdal translate convert it");
-    if (format_ >= sizes.size()) file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
+    if (format_ >= sizes.size())
+      file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
     colour_at_ = colours[format_];
     record_size_ = number<std::uint16_t>(bytes, 105);
     if (record_size_ < sizes[format_])
@@ -120,20 +125,24 @@ class LasPoints {
     const std::size_t count_at = count_ > 0 ? 247 : 107;
     if (count_ == 0) count_ = number<std::uint32_t>(bytes, 107);
     if (begin < header_size || begin > file_.size())
-      file_.fail_at_byte(96, "the points begin at byte " + std::to_string(begin) + ": expected one from " + std::to_string(header_size) +
-                                 " to the file's size of " + std::to_string(file_.size()));
+      file_.fail_at_byte(96, "the points begin at byte " + std::to_string(begin) + ": expected one from " +
+                                 std::to_string(header_size) + " to the file's size of " +
+                                 std::to_string(file_.size()));
     if (count_ == 0) file_.fail_at_byte(107, "holds no point: expected at least one");
     if (count_ > (file_.size() - begin) / record_size_)
-      file_.fail_at_byte(count_at, "claims " + std::to_string(count_) + " points of " + std::to_string(record_size_) + " bytes from byte " +
-                                       std::to_string(begin) + ": expected no more than fit into the file's " +
-                                       std::to_string(file_.size()) + " bytes");
+      file_.fail_at_byte(count_at, "claims " + std::to_string(count_) + " points of " + std::to_string(record_size_) +
+                                       " bytes from byte " + std::to_string(begin) +
+                                       ": expected no more than fit into the file's " + std::to_string(file_.size()) +
+                                       " bytes");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       scale_[axis] = number<double>(bytes, 131 + 8 * axis);
       offset_[axis] = number<double>(bytes, 155 + 8 * axis);
       if (!(scale_[axis] > 0) || !std::isfinite(scale_[axis]))
-        file_.fail_at_byte(131 + 8 * axis, "the scale is " + pulsecast::detail::to_text(scale_[axis]) + ": expected one above 0");
+        file_.fail_at_byte(131 + 8 * axis,
+                           "the scale is " + pulsecast::detail::to_text(scale_[axis]) + ": expected one above 0");
       if (!std::isfinite(offset_[axis]))
-        file_.fail_at_byte(155 + 8 * axis, "the offset is " + pulsecast::detail::to_text(offset_[axis]) + ": expected a finite one");
+        file_.fail_at_byte(155 + 8 * axis,
+                           "the offset is " + pulsecast::detail::to_text(offset_[axis]) + ": expected a finite one");
     }
     file_.seek(begin);
   }

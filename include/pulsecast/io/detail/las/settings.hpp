@@ -25,14 +25,16 @@ namespace PULSECAST_NAMESPACE::io {
 enum class LasFormat : std::uint8_t {
   las_1_4,         ///< version 1.4, point format 6; 7 with colours, 8 with near infrared; 9 with waveforms
   las_1_4_legacy,  ///< version 1.4, point format 1, or 4 with waveforms: 5 returns, 32 classes, angles in whole degrees
-  las_1_0,         ///< version 1.0, point format 1, for old readers: as above, without waveforms, well-known text, and kind of GPS time
+  las_1_0,  ///< version 1.0, point format 1, for old readers: as above, without waveforms, well-known text, and kind of
+            ///< GPS time
 };
 
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
   amplitude,    ///< received power of the echo, as of most instruments
-  /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface there, but for the air
+  /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface
+  /// there, but for the air
   range_normalized,
 };
 
@@ -50,22 +52,25 @@ struct LasSettings {
   LasFormat format = LasFormat::las_1_4;  ///< version and point format
   bool waveforms = false;                 ///< true to write waveforms to a .wdp file beside it
   bool light_kinds = false;               ///< true to write `Echo::kind` as an extra byte: `ReflectionKind` by number
-  PointColours colours = {};              ///< colours of the points; an unknown one is black. Empty: points without colours
-  bool near_infrared = false;             ///< true to write the near infrared of the colours, too
+  PointColours colours = {};   ///< colours of the points; an unknown one is black. Empty: points without colours
+  bool near_infrared = false;  ///< true to write the near infrared of the colours, too
   /// Attributes of objects, one extra value of a point for each name; NaN where unknown. Null for none.
   std::shared_ptr<const ObjectAttributes> attributes = nullptr;
-  double scale = 1e-4;                                 ///< step of the coordinates [m]
-  std::optional<Vec3> offset = std::nullopt;           ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
-  std::string wkt = {};                                ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
-  std::uint16_t epsg = 0;                              ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
+  double scale = 1e-4;  ///< step of the coordinates [m]
+  std::optional<Vec3> offset =
+      std::nullopt;        ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  std::string wkt = {};    ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
+  std::uint16_t epsg = 0;  ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
   GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
-  std::optional<double> intensity_full_scale = {};     ///< value stored as the greatest intensity, 65535, and clipped above;
-                                                       ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
-  double intensity_range = 1;                          ///< range that intensities are normalized to [m]
-  double amplitude_reference = 1e-9;                   ///< reference power of amplitudes in dB [W]
-  std::optional<Date> created = std::nullopt;          ///< date in the header; if empty, 0, so that equal surveys give equal bytes
+  std::optional<double> intensity_full_scale =
+      {};                             ///< value stored as the greatest intensity, 65535, and clipped above;
+                                      ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
+  double intensity_range = 1;         ///< range that intensities are normalized to [m]
+  double amplitude_reference = 1e-9;  ///< reference power of amplitudes in dB [W]
+  std::optional<Date> created =
+      std::nullopt;  ///< date in the header; if empty, 0, so that equal surveys give equal bytes
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
@@ -74,16 +79,20 @@ struct LasSettings {
     if (attributes) validate_attributes();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with a terminator, counted by 16 bits
-    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
+    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534,
+                   "bytes");  // with a terminator, counted by 16 bits
+    if (epsg != 0)
+      require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");
     if (intensity == LasIntensity::range_normalized && !intensity_full_scale)
       throw SettingError("LasSettings::intensity_full_scale", 0, "W", "given, for intensities normalized by range");
     if (intensity_full_scale)
-      require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::reflectance ? "" : "W");
+      require_positive("LasSettings::intensity_full_scale", *intensity_full_scale,
+                       intensity == LasIntensity::reflectance ? "" : "W");
     require_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
-    if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a valid date");
+    if (created && !created->ok())
+      throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a valid date");
   }
 
  private:
@@ -91,7 +100,8 @@ struct LasSettings {
     if (colours && format != LasFormat::las_1_4)
       throw SettingError("LasSettings::colours", static_cast<double>(format), "",
                          "empty, unless the format is 0: LAS 1.4 with point format 7 or 8");
-    if (colours && waveforms) throw SettingError("LasSettings::colours", 1, "", "empty with waveforms, which are written without colours");
+    if (colours && waveforms)
+      throw SettingError("LasSettings::colours", 1, "", "empty with waveforms, which are written without colours");
     if (near_infrared && !colours) throw SettingError("LasSettings::near_infrared", 1, "", "false without colours");
   }
 
@@ -105,8 +115,10 @@ struct LasSettings {
     for (const std::string& name : attributes->names()) {
       const std::string_view cut = detail::las_extra_name(name);
       if (cut.empty() || std::find(known.begin(), known.end(), cut) != known.end())
-        throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(), static_cast<double>(name.size()), "bytes",
-                           "above 0, and names that differ in their first 31 bytes from others and from Range, Amplitude, Reflectance, "
+        throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(),
+                           static_cast<double>(name.size()), "bytes",
+                           "above 0, and names that differ in their first 31 bytes from others and from Range, "
+                           "Amplitude, Reflectance, "
                            "EchoWidth, PulseIndex, ObjectId, LightKind");
       known.push_back(cut);
     }

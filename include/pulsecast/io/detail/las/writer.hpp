@@ -47,25 +47,29 @@ struct LasExtendedRecords {
   std::uint32_t count = 0;
 };
 
-/// Writes points as LAS with extra bytes. `Records`, as `LasRecords`, `LazRecords` or `CopcRecords`, stores the point records, in pulse
-/// order or another, and may change them once all are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves
-/// open:
+/// Writes points as LAS with extra bytes. `Records`, as `LasRecords`, `LazRecords` or `CopcRecords`, stores the point
+/// records, in pulse order or another, and may change them once all are known. Source of every field: ASPRS LAS
+/// Specification 1.4 R15. Choices that it leaves open:
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
-/// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
+/// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200
+/// for zero;
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last, see `pulses_cut`;
-/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most 255, and scanner
-/// channel its lowest two bits: pulses of one GPS time differ in them;
+/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most
+/// 255, and scanner channel its lowest two bits: pulses of one GPS time differ in them;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
-/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear. The specification
-/// demands well-known text with point formats 6 to 9; a code is more useful than none. Legacy formats always take a code as keys;
-/// - colours are those of `LasSettings::colours`, black where unknown; attributes of objects are doubles, NaN where unknown;
+/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear.
+/// The specification demands well-known text with point formats 6 to 9; a code is more useful than none. Legacy formats
+/// always take a code as keys;
+/// - colours are those of `LasSettings::colours`, black where unknown; attributes of objects are doubles, NaN where
+/// unknown;
 /// - flags, scan direction and edge of flight line are 0, as echoes have no such fields.
 ///
-/// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point could refer to it.
-/// The return point waveform location L is the two-way time from the first sample to the echo [ps]. The vector d points back to the
-/// instrument, with half the speed of light as length [m/ps]. Then, as in the specification, `P + L d` is the anchor, the origin of the
-/// first sample, and sample i is from `P + (L - i spacing) d`, for point P.
-/// Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed before the LAS file, so a LAS file always has it.
+/// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point
+/// could refer to it. The return point waveform location L is the two-way time from the first sample to the echo [ps].
+/// The vector d points back to the instrument, with half the speed of light as length [m/ps]. Then, as in the
+/// specification, `P + L d` is the anchor, the origin of the first sample, and sample i is from `P + (L - i spacing)
+/// d`, for point P. Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed before the LAS
+/// file, so a LAS file always has it.
 template <class Records>
 class LasFileWriter {
  public:
@@ -85,7 +89,8 @@ class LasFileWriter {
     }
     file_.write(Records::descriptors(layout()));
     variable_records_ += Records::descriptor_count;
-    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
+    if (layout().start_signature != 0)
+      file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
     points_at_ = file_.position();
     records_.begin(file_, layout(), encoder_.automatic_intensity());
     records_at_ = file_.position();
@@ -108,9 +113,10 @@ class LasFileWriter {
 
   [[nodiscard]] Records& records() noexcept { return records_; }
 
-  /// Takes over content that others wrote to the temporary files: points with the statistics `tally`, up to offset `end`, and waveforms up
-  /// to `packets_end` [byte] with samples `spacing` apart [ps]. Only `close()` may follow.
-  void adopt(const LasTally& tally, const Vec3& first_point, std::uint64_t end, std::uint64_t packets_end = 0, std::uint32_t spacing = 0) {
+  /// Takes over content that others wrote to the temporary files: points with the statistics `tally`, up to offset
+  /// `end`, and waveforms up to `packets_end` [byte] with samples `spacing` apart [ps]. Only `close()` may follow.
+  void adopt(const LasTally& tally, const Vec3& first_point, std::uint64_t end, std::uint64_t packets_end = 0,
+             std::uint32_t spacing = 0) {
     encoder_.tally() = tally;
     if (tally.points > 0) encoder_.choose_offset(first_point);
     file_.continue_at(end);
@@ -121,7 +127,8 @@ class LasFileWriter {
   void close() {
     if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
       throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
-    if (encoder_.automatic_intensity()) records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
+    if (encoder_.automatic_intensity())
+      records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
     records_.finish(file_, encoder_);
     write_header();
     if (packets_) {
@@ -161,11 +168,13 @@ class LasFileWriter {
 
   [[noreturn]] void misfit(const Vec3& point) {
     file_.discard();
-    throw FileError(file_.path().string(), "point " + std::to_string(encoder_.tally().points + 1), encoder_.misfit(point));
+    throw FileError(file_.path().string(), "point " + std::to_string(encoder_.tally().points + 1),
+                    encoder_.misfit(point));
   }
 
-  /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes are 0, as required of legacy counts
-  /// with formats 6 to 9, and of the start of waveforms in a file of their own. Version 1.0 ends before it, and has no global encoding.
+  /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes are 0, as required
+  /// of legacy counts with formats 6 to 9, and of the start of waveforms in a file of their own. Version 1.0 ends
+  /// before it, and has no global encoding.
   void write_header() {
     const LasTally& tally = encoder_.tally();
     Header h{};
@@ -210,16 +219,19 @@ class LasFileWriter {
       file_.overwrite(0, bytes);
   }
 
-  /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit 4 is set with well-known text, and with
-  /// formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
+  /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit 4 is set with
+  /// well-known text, and with formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
   [[nodiscard]] std::uint16_t global_encoding() const noexcept {
     const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
-    return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
+    return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) |
+                                      (wkt ? 1U << 4 : 0U));
   }
 
-  void write_record_header(std::string_view user, std::uint16_t record, std::size_t size, std::string_view description) {
+  void write_record_header(std::string_view user, std::uint16_t record, std::size_t size,
+                           std::string_view description) {
     auto h = las_vlr_header(user, record, size, description);
-    if (layout().minor == 0) h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Variable Length Records, Record Signature
+    if (layout().minor == 0)
+      h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Variable Length Records, Record Signature
     file_.write(h);
     ++variable_records_;
   }
@@ -227,7 +239,8 @@ class LasFileWriter {
   /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
     const auto extras = std::span(las_extras).first(layout().extra_count);
-    write_record_header("LASF_Spec", 4, (extras.size() + layout().attribute_count) * las_descriptor_size, "Extra Bytes");
+    write_record_header("LASF_Spec", 4, (extras.size() + layout().attribute_count) * las_descriptor_size,
+                        "Extra Bytes");
     for (const LasExtra& extra : extras) write_extra(extra);
     if (settings().attributes)
       for (const std::string& name : settings().attributes->names())

@@ -22,9 +22,10 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from its version 3 on. Each attribute is a layer, left out
-/// if constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14,
-/// RGB14, RGBNIR14 and BYTE14 in version 3, for details left open there.
+/// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from its version 3 on. Each attribute
+/// is a layer, left out if constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension),
+/// specification document; files of it, items POINT14, RGB14, RGBNIR14 and BYTE14 in version 3, for details left open
+/// there.
 class LazChunk {
  public:
   /// One or more whole records of `record` bytes, contiguous; `colour` bytes of them are a colour: 0, 6 or 8.
@@ -68,7 +69,8 @@ class LazChunk {
     const LazPoint* before;  ///< last point of this channel, or of any if there is none
     bool new_time;           ///< true if the time differs from that of `before`
     std::uint8_t out;        ///< error of the prediction in x and y: mean number of bits
-    std::uint8_t told;       ///< channel for extra bytes: in version 3, that of the point if other than the last point's, else 0
+    std::uint8_t
+        told;  ///< channel for extra bytes: in version 3, that of the point if other than the last point's, else 0
   };
 
   /// Models by channel, initialized with the point before the channel's first.
@@ -86,10 +88,11 @@ class LazChunk {
 
   /// Kind of a return's place in its pulse, one of six: rows by the number of returns, columns by the return number.
   [[nodiscard]] static std::size_t kind(const LazPoint& p) noexcept {
-    static constexpr std::array<std::string_view, 16> kinds{"0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
-                                                            "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
-                                                            "4344444454444444", "5344444445444444", "5344444444544444", "5334444444455444",
-                                                            "5334444444455544", "5334444444445554", "5334444444444555", "5334444444444455"};
+    static constexpr std::array<std::string_view, 16> kinds{
+        "0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
+        "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
+        "4344444454444444", "5344444445444444", "5344444444544444", "5334444444455444",
+        "5334444444455544", "5334444444445554", "5334444444444555", "5334444444444455"};
     return static_cast<std::size_t>(kinds[p.returns][p.number] - '0');
   }
 
@@ -124,8 +127,9 @@ class LazChunk {
       new_time = p.time != before.time;
       const unsigned up = (p.number - before.number) & 15U;
       const unsigned number = up < 2 ? up : up == 15 ? 2U : 3U;  // same, next, previous, other
-      const unsigned news = number | (p.returns != before.returns ? 4U : 0U) | (p.angle != before.angle ? 8U : 0U) | (new_time ? 16U : 0U) |
-                            (p.source != before.source ? 32U : 0U) | (p.channel != last.channel ? 64U : 0U);
+      const unsigned news = number | (p.returns != before.returns ? 4U : 0U) | (p.angle != before.angle ? 8U : 0U) |
+                            (new_time ? 16U : 0U) | (p.source != before.source ? 32U : 0U) |
+                            (p.channel != last.channel ? 64U : 0U);
       Models& of_last = channels.of(last.channel, last);
       encoder.encode(of_last.news[place], news);
       if (p.channel != last.channel) encoder.encode(of_last.channel, (p.channel - last.channel - 1U) & 3U);
@@ -176,7 +180,8 @@ class LazChunk {
       std::array<std::int32_t, 8> last;  // by number of returns to come, approximately
     };
     return layer<Models>([](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      std::int32_t& last = m.last[std::min<unsigned>(p.returns > p.number ? p.returns - p.number : p.number - p.returns, 7)];
+      std::int32_t& last =
+          m.last[std::min<unsigned>(p.returns > p.number ? p.returns - p.number : p.number - p.returns, 7)];
       m.z.encode(encoder, last, p.z, context(step.out, 18, p));
       last = p.z;
     });
@@ -191,9 +196,11 @@ class LazChunk {
 
   [[nodiscard]] std::vector<std::byte> classes() const {
     using Models = SymbolModels<256>;
-    return layer_of<Models>(&LazPoint::classification, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      encoder.encode(m.of[(step.before->classification & 31U) << 1 | (p.first() && p.last() ? 1U : 0U)], p.classification);
-    });
+    return layer_of<Models>(
+        &LazPoint::classification, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+          encoder.encode(m.of[(step.before->classification & 31U) << 1 | (p.first() && p.last() ? 1U : 0U)],
+                         p.classification);
+        });
   }
 
   [[nodiscard]] std::vector<std::byte> flags() const {
@@ -209,12 +216,13 @@ class LazChunk {
       LazIntegers intensity{16, 4};
       std::array<std::uint16_t, 8> last;
     };
-    return layer_of<Models>(&LazPoint::intensity, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      const unsigned end = (p.first() ? 2U : 0U) | (p.last() ? 1U : 0U);
-      std::uint16_t& last = m.last[end << 1 | (step.new_time ? 1U : 0U)];
-      m.intensity.encode(encoder, last, p.intensity, end);
-      last = p.intensity;
-    });
+    return layer_of<Models>(&LazPoint::intensity,
+                            [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+                              const unsigned end = (p.first() ? 2U : 0U) | (p.last() ? 1U : 0U);
+                              std::uint16_t& last = m.last[end << 1 | (step.new_time ? 1U : 0U)];
+                              m.intensity.encode(encoder, last, p.intensity, end);
+                              last = p.intensity;
+                            });
   }
 
   [[nodiscard]] std::vector<std::byte> angles() const {
@@ -259,12 +267,13 @@ class LazChunk {
     const std::size_t begin = laz_point_size + colour_, extras = record_ - begin, count = points_.size();
     std::vector<std::uint8_t> columns(extras * count);  // contiguous for each byte
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < extras; ++k) columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + begin + k]);
+      for (std::size_t k = 0; k < extras; ++k)
+        columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + begin + k]);
     for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
   }
 
-  /// Encodes differences to the last byte. As in all files of version 3, after a change of the scanner channel the last byte is still that
-  /// of the channel before, and is stored there, unless the channel is new.
+  /// Encodes differences to the last byte. As in all files of version 3, after a change of the scanner channel the last
+  /// byte is still that of the channel before, and is stored there, unless the channel is new.
   [[nodiscard]] std::vector<std::byte> extra_byte(std::span<const std::uint8_t> column) const {
     if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column[0]; })) return {};
     std::array<LazModel<>, 4> models;
@@ -287,8 +296,8 @@ class LazChunk {
     return std::move(encoder).finish();
   }
 
-  /// Encodes a layer of `size` bytes at offset `at` of each record, or nothing if they are constant. The value before and the models are
-  /// kept by channel as those of extra bytes are.
+  /// Encodes a layer of `size` bytes at offset `at` of each record, or nothing if they are constant. The value before
+  /// and the models are kept by channel as those of extra bytes are.
   template <class Models>
   [[nodiscard]] std::vector<std::byte> layer_by_told(std::size_t at, std::size_t size) const {
     using Value = typename Models::Value;

@@ -14,8 +14,9 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// Arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
-/// of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files that LASzip writes.
+/// Arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and
+/// Practice, 2.2 and 3; of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files
+/// that LASzip writes.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Adaptive frequency model of some symbols. Updates of the shares become rarer while coding.
@@ -24,7 +25,8 @@ class LazModel {
  public:
   static constexpr unsigned share_bits = 15;
 
-  explicit LazModel(std::size_t symbols = Capacity) noexcept : symbols_(static_cast<std::uint32_t>(symbols)), cycle_(symbols_) {
+  explicit LazModel(std::size_t symbols = Capacity) noexcept
+      : symbols_(static_cast<std::uint32_t>(symbols)), cycle_(symbols_) {
     PULSECAST_ASSERT(symbols >= 2 && symbols <= Capacity);
     std::fill_n(count_.begin(), symbols, std::uint16_t{1});
     renew();
@@ -112,7 +114,8 @@ class LazEncoder {
 
   /// Bytes of all symbols coded; bytes behind them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
-    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long, so it holds a number that ends in 24 zeros
+    const std::uint32_t gap =
+        (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long, so it holds a number that ends in 24 zeros
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);

@@ -12,8 +12,9 @@
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
-/// Coders of the colour of a point, byte by byte: which bytes differ from those of the colour before, and by how much. Source: LASzip for
-/// LAS 1.4 (native extension), specification document, RGB and NIR layers; for the prediction of blue, the decoder of laz-perf.
+/// Coders of the colour of a point, byte by byte: which bytes differ from those of the colour before, and by how much.
+/// Source: LASzip for LAS 1.4 (native extension), specification document, RGB and NIR layers; for the prediction of
+/// blue, the decoder of laz-perf.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Low and high byte of a 16-bit number.
@@ -34,7 +35,8 @@ class LazColours {
 
   void encode(LazEncoder& encoder, const Value& before, const Value& now) {
     std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
-    unsigned changed = 0;  // a bit for each byte: low and high of red, green and blue; one more for colours that are not grey
+    unsigned changed =
+        0;  // a bit for each byte: low and high of red, green and blue; one more for colours that are not grey
     for (std::size_t c = 0; c < 3; ++c) {
       old[c] = laz_halves(before[c]);
       next[c] = laz_halves(now[c]);
@@ -43,11 +45,13 @@ class LazColours {
     if (next[0] != next[1] || next[0] != next[2]) changed |= 64U;
     encoder.encode(changed_, changed);
     for (std::size_t half = 0; half < 2; ++half)  // red
-      if ((changed >> half & 1U) != 0) encoder.encode(steps_[half], static_cast<std::uint8_t>(next[0][half] - old[0][half]));
+      if ((changed >> half & 1U) != 0)
+        encoder.encode(steps_[half], static_cast<std::uint8_t>(next[0][half] - old[0][half]));
     if ((changed & 64U) == 0) return;
     for (std::size_t half = 0; half < 2; ++half) {
       int expected = next[0][half] - old[0][half];  // step of the colour, as red
-      if ((changed >> (2 + half) & 1U) != 0) encoder.encode(steps_[2 + half], error(next[1][half], old[1][half], expected));
+      if ((changed >> (2 + half) & 1U) != 0)
+        encoder.encode(steps_[2 + half], error(next[1][half], old[1][half], expected));
       if ((changed >> (4 + half) & 1U) == 0) continue;
       expected = (expected + next[1][half] - old[1][half]) / 2;  // as the mean of red and green
       encoder.encode(steps_[4 + half], error(next[2][half], old[2][half], expected));

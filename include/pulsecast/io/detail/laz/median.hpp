@@ -12,8 +12,9 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the median. From then on it
-/// replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1 (median of five).
+/// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the
+/// median. From then on it replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1
+/// (median of five).
 class LazMedian {
  public:
   [[nodiscard]] std::int32_t value() const noexcept { return sorted_[2]; }

@@ -13,7 +13,8 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::endian::native == std::endian::little, "LAZ files are little-endian, and numbers are taken as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "LAZ files are little-endian, and numbers are taken as they lie in memory");
 
 inline constexpr std::size_t laz_point_size = 30;  ///< size of point format 6 without extra bytes [byte]
 

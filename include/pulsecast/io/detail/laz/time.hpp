@@ -13,8 +13,8 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its last time and usual
-/// step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+/// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its
+/// last time and usual step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
 class LazTimes {
  public:
   explicit LazTimes(std::int64_t first) { last_[0] = first; }
@@ -77,7 +77,8 @@ class LazTimes {
     const double ratio = static_cast<double>(step) / usual;
     const int multiple = static_cast<int>(std::lround(std::fmin(std::fmax(ratio, least), most)));
     encoder.encode(multiples_, static_cast<std::size_t>(multiple >= 0 ? multiple : most - multiple));
-    const auto expected = static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(usual));
+    const auto expected =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(usual));
     steps_.encode(encoder, expected, step, context_of(multiple));
     if (multiple == 1) unusual_[series_] = 0;
     if (multiple != 0 && multiple != least && multiple != most) return;

@@ -30,7 +30,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Content of a file, from what an importer has of it.
 class MeshFileMaker {
  public:
-  MeshFileMaker(const std::filesystem::path& path, const RawScene& scene, const MeshFileSettings& settings, const Workers& workers)
+  MeshFileMaker(const std::filesystem::path& path, const RawScene& scene, const MeshFileSettings& settings,
+                const Workers& workers)
       : path_(path), scene_(scene), settings_(settings), maker_(path.string(), scene, workers) {}
 
   [[nodiscard]] MeshFile make() {
@@ -43,10 +44,11 @@ class MeshFileMaker {
     for (const RawNode& node : scene_.nodes) add(node, world * node.place);
     if (maker_.flat() > 0) warn(std::to_string(maker_.flat()) + " triangles without area are left out");
     if (reshaped_ > 0)
-      warn(std::to_string(reshaped_) + " nodes shear, mirror or stretch their meshes, which become " + std::to_string(shaped_.size()) +
-           " meshes of their own");
+      warn(std::to_string(reshaped_) + " nodes shear, mirror or stretch their meshes, which become " +
+           std::to_string(shaped_.size()) + " meshes of their own");
     if (flattened_ > 0) warn(std::to_string(flattened_) + " nodes whose transforms flatten their meshes are left out");
-    if (empty_ > 0) warn(std::to_string(empty_) + " meshes have triangles, and none with an area: all their vertices may coincide");
+    if (empty_ > 0)
+      warn(std::to_string(empty_) + " meshes have triangles, and none with an area: all their vertices may coincide");
     note_precision();
     if (file_.placements.empty()) warn("holds no triangle with an area");
     describe();
@@ -62,7 +64,8 @@ class MeshFileMaker {
       ++flattened_;
       return;
     }
-    const std::optional<std::size_t> mesh = split->is_similarity ? plain(node.meshes) : shaped(node.meshes, split->shape);
+    const std::optional<std::size_t> mesh =
+        split->is_similarity ? plain(node.meshes) : shaped(node.meshes, split->shape);
     if (!mesh) return;
     measure(node, transform);
     reshaped_ += split->is_similarity ? 0 : 1;
@@ -82,17 +85,20 @@ class MeshFileMaker {
         const Float3& v = one.vertices[i];
         extent->second = std::max({extent->second, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
       }
-      farthest_ = std::max(farthest_, static_cast<double>(extent->second) * greatest(transform.linear) + max_norm(transform.shift));
+      farthest_ = std::max(
+          farthest_, static_cast<double>(extent->second) * greatest(transform.linear) + max_norm(transform.shift));
     }
   }
 
-  /// Notes coordinates that single precision rounds by more than a millimetre. Source: IEEE 754-2019, binary32, half a unit of 24 bits.
+  /// Notes coordinates that single precision rounds by more than a millimetre. Source: IEEE 754-2019, binary32, half a
+  /// unit of 24 bits.
   void note_precision() {
     const double rounding = farthest_ * 0x1p-24;
     if (rounding > 1e-3)
-      warn("has coordinates up to " + std::to_string(std::llround(farthest_)) + " m, which are read in single precision, to " +
-           pulsecast::detail::to_text(std::ceil(rounding * 1e3) / 1e3) +
-           " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all digits");
+      warn("has coordinates up to " + std::to_string(std::llround(farthest_)) +
+           " m, which are read in single precision, to " + pulsecast::detail::to_text(std::ceil(rounding * 1e3) / 1e3) +
+           " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all "
+           "digits");
   }
 
   [[nodiscard]] std::optional<std::size_t> plain(const std::vector<std::uint32_t>& meshes) {
@@ -104,7 +110,8 @@ class MeshFileMaker {
   /// Mesh of a shape, one for all shapes that are equal within 1e-6.
   [[nodiscard]] std::optional<std::size_t> shaped(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
     std::array<std::int64_t, 9> key;
-    for (std::size_t i = 0; i < 9; ++i) key[i] = std::llround(shape[static_cast<int>(i / 3)][static_cast<int>(i % 3)] * 1e6);
+    for (std::size_t i = 0; i < 9; ++i)
+      key[i] = std::llround(shape[static_cast<int>(i / 3)][static_cast<int>(i % 3)] * 1e6);
     const auto [known, is_new] = shaped_.try_emplace({meshes, key});
     if (is_new) known->second = made(meshes, shape);
     return known->second;

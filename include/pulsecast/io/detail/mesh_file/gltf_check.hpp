@@ -23,7 +23,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 [[nodiscard]] inline std::string_view take_json(std::string_view& text) {
   std::size_t end = 0, depth = 0;
   bool in_string = false;
-  const auto is_end = [&] { return depth == 0 && std::string_view(",:]} \t\r\n").find(text[end]) != std::string_view::npos; };
+  const auto is_end = [&] {
+    return depth == 0 && std::string_view(",:]} \t\r\n").find(text[end]) != std::string_view::npos;
+  };
   for (; end < text.size() && (in_string || !is_end()); ++end) {
     const char c = text[end];
     if (in_string && c == '\\')
@@ -45,7 +47,9 @@ void each_json(std::string_view value, const Visit& visit) {
   const bool is_object = value.starts_with('{');
   if (!is_object && !value.starts_with('[')) return;
   value.remove_prefix(1);
-  const auto skip = [&](std::string_view signs) { value.remove_prefix(std::min(value.find_first_not_of(signs), value.size())); };
+  const auto skip = [&](std::string_view signs) {
+    value.remove_prefix(std::min(value.find_first_not_of(signs), value.size()));
+  };
   for (;;) {
     skip(", \t\r\n");
     std::string_view name = is_object ? take_json(value) : std::string_view();
@@ -89,18 +93,24 @@ void each_json(std::string_view value, const Visit& visit) {
   return text.substr(text.find('{'));
 }
 
-/// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not floating-point numbers, which
-/// it takes for such; notes extensions without effect that move or hide meshes. Source: glTF 2.0, 3.12 (a required extension must be
-/// supported) and 3.7.2.1 (meshes: positions are `float`); Khronos registry of extensions.
+/// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not
+/// floating-point numbers, which it takes for such; notes extensions without effect that move or hide meshes. Source:
+/// glTF 2.0, 3.12 (a required extension must be supported) and 3.7.2.1 (meshes: positions are `float`); Khronos
+/// registry of extensions.
 inline void check_gltf(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   // tested, with those for materials, which move nothing
-  static constexpr std::array<std::string_view, 3> known{"KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_texture_transform"};
-  static constexpr std::array<std::string_view, 3> moving{"EXT_mesh_gpu_instancing", "CESIUM_RTC", "KHR_node_visibility"};
+  static constexpr std::array<std::string_view, 3> known{"KHR_draco_mesh_compression", "KHR_lights_punctual",
+                                                         "KHR_texture_transform"};
+  static constexpr std::array<std::string_view, 3> moving{"EXT_mesh_gpu_instancing", "CESIUM_RTC",
+                                                          "KHR_node_visibility"};
   const std::string text = gltf_text(path);
   const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
-  const auto extension = [](std::string_view value) { return value.size() >= 2 ? value.substr(1, value.size() - 2) : value; };
+  const auto extension = [](std::string_view value) {
+    return value.size() >= 2 ? value.substr(1, value.size() - 2) : value;
+  };
   each_json(text, [&](std::string_view name, std::string_view) {
-    if (name.find('\\') != name.npos) fail("has the member " + text::quoted(name) + ": expected a name without escapes");
+    if (name.find('\\') != name.npos)
+      fail("has the member " + text::quoted(name) + ": expected a name without escapes");
   });
   each_json(json_member(text, "extensionsRequired"), [&](std::string_view, std::string_view value) {
     const std::string_view one = extension(value);
@@ -113,14 +123,15 @@ inline void check_gltf(const std::filesystem::path& path, std::vector<std::strin
       warnings.push_back(path.string() + ": uses the glTF extension " + std::string(one) + ", which has no effect");
   });
   std::vector<std::string_view> types;
-  each_json(json_member(text, "accessors"),
-            [&](std::string_view, std::string_view accessor) { types.push_back(json_member(accessor, "componentType")); });
+  each_json(json_member(text, "accessors"), [&](std::string_view, std::string_view accessor) {
+    types.push_back(json_member(accessor, "componentType"));
+  });
   each_json(json_member(text, "meshes"), [&](std::string_view, std::string_view mesh) {
     each_json(json_member(mesh, "primitives"), [&](std::string_view, std::string_view primitive) {
       const auto number = text::number_in<std::size_t>(json_member(json_member(primitive, "attributes"), "POSITION"));
       if (number && *number < types.size() && types[*number] != "5126")
-        fail("has positions of the component type " + std::string(types[*number]) + " (accessor " + std::to_string(*number) +
-             "): expected 5126, floating-point numbers");
+        fail("has positions of the component type " + std::string(types[*number]) + " (accessor " +
+             std::to_string(*number) + "): expected 5126, floating-point numbers");
     });
   });
 }

@@ -39,7 +39,8 @@ class MeshImport {
   MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers,
              std::function<void(std::uint64_t)> opened = {})
       : path_(path), settings_(settings), workers_(workers), data_(std::make_shared<Data>()) {
-    system_ = new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
+    system_ =
+        new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
     data_->importer.SetIOHandler(system_);  // which takes it
   }
 
@@ -62,14 +63,16 @@ class MeshImport {
       materials_.push_back(MaterialImport(*found, *found->mMaterials[i], gltf_).read());
       scene_.materials.push_back(materials_.back().material);
       if (materials_.back().moved_picture)
-        warn("material '" + materials_.back().material.name + "' transforms its texture coordinates, which has no effect");
+        warn("material '" + materials_.back().material.name +
+             "' transforms its texture coordinates, which has no effect");
     }
     for (unsigned i = 0; i < found->mNumTextures; ++i)
       scene_.embedded.push_back(std::make_shared<const std::vector<std::byte>>(embedded_picture(*found->mTextures[i])));
     for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
     nodes(*found->mRootNode);
     if (posed_ > 0) warn(std::to_string(posed_) + " meshes have bones or morph targets, which are not applied");
-    if (crossings_ > 0) warn(std::to_string(crossings_) + " polygons cross themselves, and become fans about their first corners");
+    if (crossings_ > 0)
+      warn(std::to_string(crossings_) + " polygons cross themselves, and become fans about their first corners");
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
     for (const std::string& file : system_->looked_for())
       if (file != main) scene_.files.push_back(file);
@@ -135,8 +138,9 @@ class MeshImport {
   void mesh(const aiMesh& from) {
     static_assert(sizeof(aiVector3D) == sizeof(Float3) && sizeof(ai_real) == sizeof(float));
     RawMesh made{.name = from.mName.C_Str(), .material = from.mMaterialIndex};
-    const bool is_morphed = std::any_of(from.mAnimMeshes, from.mAnimMeshes + (from.mAnimMeshes ? from.mNumAnimMeshes : 0),
-                                        [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
+    const bool is_morphed =
+        std::any_of(from.mAnimMeshes, from.mAnimMeshes + (from.mAnimMeshes ? from.mNumAnimMeshes : 0),
+                    [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
     posed_ += from.mNumBones > 0 || is_morphed ? 1 : 0;
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
     made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
@@ -148,7 +152,8 @@ class MeshImport {
     const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
                           !material.material.opacity.name.empty();
     const unsigned channel =
-        material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel : 0;
+        material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel
+                                                                                                     : 0;
     if (pictured && from.HasTextureCoords(channel))
       made.texture = {reinterpret_cast<const Float3*>(from.mTextureCoords[channel]), from.mNumVertices};
     scene_.meshes.push_back(std::move(made));
@@ -158,7 +163,8 @@ class MeshImport {
   [[nodiscard]] SharedBuffer<Corners3> triangles_of(const aiMesh& from) {
     constexpr std::size_t chunk = std::size_t{1} << 16;
     struct Chunk {
-      std::size_t first = 0, left_out = 0, crossings = 0;  // number of triangles before it, of points and lines, and of polygons
+      std::size_t first = 0, left_out = 0,
+                  crossings = 0;  // number of triangles before it, of points and lines, and of polygons
     };
     std::vector<Chunk> chunks((from.mNumFaces + chunk - 1) / chunk);
     const auto each = [&](std::size_t c, const auto& work) {
@@ -192,14 +198,16 @@ class MeshImport {
 
   void check(const aiFace& face, std::uint32_t vertices) const {
     if (face.mNumIndices > max_polygon_corners)
-      fail("a polygon has " + std::to_string(face.mNumIndices) + " corners, expected at most " + std::to_string(max_polygon_corners));
+      fail("a polygon has " + std::to_string(face.mNumIndices) + " corners, expected at most " +
+           std::to_string(max_polygon_corners));
     for (unsigned k = 0; k < face.mNumIndices; ++k)
       if (face.mIndices[k] >= vertices)
-        fail("a face has the vertex " + std::to_string(face.mIndices[k]) + ", expected less than the number of vertices, " +
-             std::to_string(vertices));
+        fail("a face has the vertex " + std::to_string(face.mIndices[k]) +
+             ", expected less than the number of vertices, " + std::to_string(vertices));
   }
 
-  /// Writes the n - 2 triangles of a face; those that it does not need have no area. False for a fan, as its outline crosses itself.
+  /// Writes the n - 2 triangles of a face; those that it does not need have no area. False for a fan, as its outline
+  /// crosses itself.
   [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
     const unsigned* const c = face.mIndices;
     const auto fan = [&] {
@@ -248,14 +256,16 @@ class MeshImport {
       const aiNode& node = *step.node;
       if (step.depth > 1000) fail("its nodes are nested more than 1000 deep");
       const aiMatrix4x4& m = node.mTransformation;
-      RawNode made{.place = step.above * Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
-                                                Vec3(m.a4, m.b4, m.c4)}};
+      RawNode made{.place = step.above *
+                            Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
+                                   Vec3(m.a4, m.b4, m.c4)}};
       made.name = name_of(node, step.name, step.depth == 0);
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");
         made.meshes.push_back(node.mMeshes[i]);
       }
-      for (unsigned i = node.mNumChildren; i-- > 0;) open.push_back({node.mChildren[i], made.place, made.name, step.depth + 1});
+      for (unsigned i = node.mNumChildren; i-- > 0;)
+        open.push_back({node.mChildren[i], made.place, made.name, step.depth + 1});
       if (!made.meshes.empty()) scene_.nodes.push_back(std::move(made));
     }
   }

@@ -67,7 +67,8 @@ class MaterialRules {
   }
 
  private:
-  /// Phong's law by the rule of `read_mtl`; facets of glTF, whose slope is the square of the roughness. Source: glTF 2.0, B.2.
+  /// Phong's law by the rule of `read_mtl`; facets of glTF, whose slope is the square of the roughness. Source:
+  /// glTF 2.0, B.2.
   static void gloss(const RawOptics& o, Material& made) {
     const double specular = within(o.specular[0], 0, 1) + within(o.specular[1], 0, 1) + within(o.specular[2], 0, 1);
     const double diffuse = within(o.colour[0], 0, 1) + within(o.colour[1], 0, 1) + within(o.colour[2], 0, 1);
@@ -108,8 +109,8 @@ class MaterialRules {
 class PictureFinder {
  public:
   /// Adds to the warnings, and to the files that were looked for.
-  PictureFinder(const std::filesystem::path& file, const RawScene& scene, bool anywhere, std::vector<std::string>& warnings,
-                std::vector<std::filesystem::path>& files)
+  PictureFinder(const std::filesystem::path& file, const RawScene& scene, bool anywhere,
+                std::vector<std::string>& warnings, std::vector<std::filesystem::path>& files)
       : file_(file), scene_(scene), anywhere_(anywhere), warnings_(warnings), files_(files) {}
 
   [[nodiscard]] MaterialPictures operator()(const RawMaterial& of) const {
@@ -137,7 +138,8 @@ class PictureFinder {
       files_.push_back(candidate);
       if (std::filesystem::is_regular_file(candidate, ignored)) return {.file = candidate};
     }
-    warnings_.push_back(file_.string() + ": material '" + of.name + "' has the picture '" + picture.name + "', which is not there" +
+    warnings_.push_back(file_.string() + ": material '" + of.name + "' has the picture '" + picture.name +
+                        "', which is not there" +
                         (is_inside(folder, folder / name) ? "" : " or outside the file's folder") + ": it is left out");
     return {};
   }

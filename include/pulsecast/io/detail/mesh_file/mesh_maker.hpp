@@ -24,10 +24,13 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Joins the meshes of a node to one, with a material each.
 class MeshMaker {
  public:
-  MeshMaker(std::string path, const RawScene& scene, const Workers& workers) : path_(std::move(path)), scene_(scene), workers_(workers) {}
+  MeshMaker(std::string path, const RawScene& scene, const Workers& workers)
+      : path_(std::move(path)), scene_(scene), workers_(workers) {}
 
-  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if no triangle has an area.
-  [[nodiscard]] MeshData operator()(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials, const Matrix3& shape) {
+  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if no triangle
+  /// has an area.
+  [[nodiscard]] MeshData operator()(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials,
+                                    const Matrix3& shape) {
     MeshData made;
     std::size_t vertices = 0, triangles = 0;
     bool textured = false, several = false;
@@ -49,7 +52,9 @@ class MeshMaker {
       const RawMesh& from = scene_.meshes[meshes[k]];
       place(from, shape, made.vertices.data() + vertex);
       index(from, static_cast<std::uint32_t>(vertex), made.triangles.data() + triangle, mirrors(shape));
-      if (several) std::fill_n(made.materials.begin() + static_cast<std::ptrdiff_t>(triangle), from.triangles.size(), materials[k]);
+      if (several)
+        std::fill_n(made.materials.begin() + static_cast<std::ptrdiff_t>(triangle), from.triangles.size(),
+                    materials[k]);
       if (!from.texture.empty()) texture(from, made.texture.data() + triangle, mirrors(shape));
       vertex += from.vertex_count();
       triangle += from.triangles.size();
@@ -72,7 +77,9 @@ class MeshMaker {
     });
   }
 
-  [[nodiscard]] static bool mirrors(const Matrix3& shape) noexcept { return dot(shape[0], cross(shape[1], shape[2])) < 0; }
+  [[nodiscard]] static bool mirrors(const Matrix3& shape) noexcept {
+    return dot(shape[0], cross(shape[1], shape[2])) < 0;
+  }
 
   void place(const RawMesh& from, const Matrix3& shape, Vec3* to) const {
     const bool moved = shape != Matrix3(1);
@@ -85,7 +92,8 @@ class MeshMaker {
       const Vec3 at = vertex(i);
       if (!(max_norm(at) <= 1e12) || !finite(at))
         throw FileError(path_, "",
-                        "mesh '" + from.name + "': vertex " + std::to_string(i) + " is not finite, or beyond 1e12: expected a place");
+                        "mesh '" + from.name + "': vertex " + std::to_string(i) +
+                            " is not finite, or beyond 1e12: expected a place");
       to[i] = moved ? shape * at : at;
     });
   }
@@ -102,7 +110,9 @@ class MeshMaker {
       const Float3& t = from.texture[vertex];
       const Vec2 place(static_cast<double>(t.x), static_cast<double>(t.y));
       if (!(std::fabs(place.x) <= 1e30 && std::fabs(place.y) <= 1e30))
-        throw FileError(path_, "", "mesh '" + from.name + "': a texture coordinate of vertex " + std::to_string(vertex) + " is not finite");
+        throw FileError(
+            path_, "",
+            "mesh '" + from.name + "': a texture coordinate of vertex " + std::to_string(vertex) + " is not finite");
       return place;
     };
     each(from.triangles.size(), [&](std::size_t i) {

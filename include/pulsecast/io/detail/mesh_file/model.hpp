@@ -40,15 +40,18 @@ struct ImportLimits {
 struct MeshFileSettings {
   /// Vertical axis; by default by the file: y in glTF and GLB, as named in DAE and FBX, z in others.
   std::optional<UpAxis> up = std::nullopt;
-  std::optional<double> unit = std::nullopt;  ///< size of a unit; by default by the file: as named in DAE and FBX, 1 in others [m]
-  /// MTL file whose materials replace those of the same names but for their colours, with spectra, classes and ground; empty: none.
+  std::optional<double> unit =
+      std::nullopt;  ///< size of a unit; by default by the file: as named in DAE and FBX, 1 in others [m]
+  /// MTL file whose materials replace those of the same names but for their colours, with spectra, classes and ground;
+  /// empty: none.
   std::filesystem::path materials{};
   SpectralLibrary spectra{};           ///< spectra for `helios_spectra` in that file
   bool reflectance_of_colour = false;  ///< true: reflectance is the luminance of the base colour, in place of 0.5
   bool texture = false;                ///< true to read texture coordinates also if no material has a picture
   bool pictures = true;                ///< false: pictures are listed, but not read
   bool files_elsewhere = false;        ///< true: buffers and pictures may lie outside the file's folder
-  /// True: assimp runs in a child process, whose death is a `FileError`. For files that are not trusted; OBJ files need none.
+  /// True: assimp runs in a child process, whose death is a `FileError`. For files that are not trusted; OBJ files need
+  /// none.
   bool isolated = false;
   ImportLimits limits{};  ///< of that process
 
@@ -58,7 +61,8 @@ struct MeshFileSettings {
   }
 };
 
-/// Mesh of a file, in its own frame. Coordinates are of single precision, as assimp has them: good to 6e-8 of the distance to the origin.
+/// Mesh of a file, in its own frame. Coordinates are of single precision, as assimp has them: good to 6e-8 of the
+/// distance to the origin.
 struct FileMesh {
   MeshData mesh{};                         ///< triangles with an area; texture coordinates if a material has a picture
   std::vector<std::uint32_t> materials{};  ///< by material of the mesh: its number in `MeshFile::materials`
@@ -68,7 +72,8 @@ struct FileMesh {
 struct MeshPlacement {
   std::size_t mesh = 0;    ///< number of the mesh
   Similarity placement{};  ///< from the mesh to the world: z up, in metres
-  std::string name{};      ///< names of the node and those above it, but for the root, joined by `/`; else that of the mesh or file
+  std::string
+      name{};  ///< names of the node and those above it, but for the root, joined by `/`; else that of the mesh or file
 };
 
 /// Content of a mesh file.

@@ -38,9 +38,10 @@ struct SplitTransform {
   return Matrix3(m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1], m[0][2], m[1][2], m[2][2]);
 }
 
-/// Splits a transform by its polar decomposition, so that transforms that differ by a similarity have the same shape. Empty for one that
-/// flattens, or is not finite. A deviation of lengths from a similarity of up to 1e-6 is ignored, as it comes of single precision.
-/// Source: Higham 1986, Computing the polar decomposition, SIAM J. Sci. Stat. Comput. 7(4), Newton's iteration.
+/// Splits a transform by its polar decomposition, so that transforms that differ by a similarity have the same shape.
+/// Empty for one that flattens, or is not finite. A deviation of lengths from a similarity of up to 1e-6 is ignored, as
+/// it comes of single precision. Source: Higham 1986, Computing the polar decomposition, SIAM J. Sci. Stat. Comput.
+/// 7(4), Newton's iteration.
 [[nodiscard]] inline std::optional<SplitTransform> split(const Affine& transform) {
   constexpr double tolerance = 1e-6;
   const double determinant = dot(transform.linear[0], cross(transform.linear[1], transform.linear[2]));
@@ -56,7 +57,8 @@ struct SplitTransform {
   }
   const double sign = determinant < 0 ? -1 : 1;
   SplitTransform made;
-  made.placement = {.rotation = normalize(pulsecast::rotation_of(turn * sign)), .scale = scale, .translation = transform.shift};
+  made.placement = {
+      .rotation = normalize(pulsecast::rotation_of(turn * sign)), .scale = scale, .translation = transform.shift};
   made.shape = transposed(turn) * unit * sign;
   made.is_similarity = determinant > 0 && greatest(made.shape - Matrix3(1)) <= tolerance;
   if (made.is_similarity) made.shape = Matrix3(1);

@@ -40,7 +40,8 @@ class MaterialImport {
     if (!base) base = colour(AI_MATKEY_COLOR_DIFFUSE);
     o.has_diffuse = base.has_value();
     if (base) o.colour = {base->r, base->g, base->b};
-    if (const auto specular = colour(AI_MATKEY_COLOR_SPECULAR); specular && !gltf_) o.specular = {specular->r, specular->g, specular->b};
+    if (const auto specular = colour(AI_MATKEY_COLOR_SPECULAR); specular && !gltf_)
+      o.specular = {specular->r, specular->g, specular->b};
     o.shininess = number(AI_MATKEY_SHININESS).value_or(-1);
     o.index = number(AI_MATKEY_REFRACTI).value_or(0);
     o.transmission = number(AI_MATKEY_TRANSMISSION_FACTOR).value_or(0);
@@ -90,11 +91,12 @@ class MaterialImport {
         if (scene_.mTextures[i] == embedded) to.embedded = i;
     }
     int channel = 0;
-    if (from_.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS && channel >= 0) made.channel = static_cast<unsigned>(channel);
+    if (from_.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS && channel >= 0)
+      made.channel = static_cast<unsigned>(channel);
     aiUVTransform moved;
     if (from_.Get(AI_MATKEY_UVTRANSFORM(type, 0), moved) == aiReturn_SUCCESS)
-      made.moved_picture |=
-          moved.mTranslation != aiVector2D() || moved.mScaling != aiVector2D(1, 1) || moved.mRotation < 0 || moved.mRotation > 0;
+      made.moved_picture |= moved.mTranslation != aiVector2D() || moved.mScaling != aiVector2D(1, 1) ||
+                            moved.mRotation < 0 || moved.mRotation > 0;
   }
 
   const aiScene& scene_;
@@ -106,7 +108,8 @@ class MaterialImport {
 [[nodiscard]] inline std::vector<std::byte> embedded_picture(const aiTexture& texture) {
   const auto* const data = reinterpret_cast<const std::byte*>(texture.pcData);
   if (texture.mHeight == 0) return {data, data + texture.mWidth};
-  // pixels of blue, green, red and opacity become a Targa file. Source: Truevision TGA file format specification 2.0, 1991
+  // pixels of blue, green, red and opacity become a Targa file. Source: Truevision TGA file format specification 2.0,
+  // 1991
   const std::size_t pixels = std::size_t{texture.mWidth} * texture.mHeight;
   std::vector<std::byte> file(18 + 4 * pixels);
   if (texture.mWidth > 65535 || texture.mHeight > 65535) return {};

@@ -27,7 +27,9 @@ struct Affine {
   Matrix3 linear{1};  ///< columns are the images of the axes
   Vec3 shift{};       ///< image of the origin
 
-  [[nodiscard]] Affine operator*(const Affine& inner) const { return {linear * inner.linear, linear * inner.shift + shift}; }
+  [[nodiscard]] Affine operator*(const Affine& inner) const {
+    return {linear * inner.linear, linear * inner.shift + shift};
+  }
 };
 
 /// Mesh of one material.

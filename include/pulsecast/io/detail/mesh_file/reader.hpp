@@ -31,9 +31,10 @@ namespace PULSECAST_NAMESPACE::io {
 namespace detail {
 
 /// Content of an OBJ file: one mesh.
-[[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
-  ObjModel model =
-      read_obj(path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
+[[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings,
+                                      const Workers& workers) {
+  ObjModel model = read_obj(
+      path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
   MeshFile file{.materials = std::move(model.materials),
                 .pictures = std::move(model.pictures),
                 .warnings = std::move(model.warnings),
@@ -63,8 +64,8 @@ inline void read_pictures(MeshFile& file, bool isolated) {
   }
 }
 
-/// Refuses a PLY file whose header has no end, with which assimp takes minutes, or that has strips, of which it reads half. Explains a file
-/// that is missing or empty. Source: Turk 1994, The PLY polygon file format (header of elements).
+/// Refuses a PLY file whose header has no end, with which assimp takes minutes, or that has strips, of which it reads
+/// half. Explains a file that is missing or empty. Source: Turk 1994, The PLY polygon file format (header of elements).
 inline void check_ply(const std::filesystem::path& path) {
   constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
   InputFile file(path, "a mesh file");
@@ -73,7 +74,8 @@ inline void check_ply(const std::filesystem::path& path) {
   const std::size_t end = begin.find("end_header");
   if (end == begin.npos) file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
   if (begin.substr(0, end).find("element tristrips") != begin.npos)
-    throw FileError(path.string(), "", "has triangle strips: expected faces, as most programs write them (element face)");
+    throw FileError(path.string(), "",
+                    "has triangle strips: expected faces, as most programs write them (element face)");
 }
 
 }  // namespace detail
@@ -84,7 +86,8 @@ PULSECAST_INLINE bool is_mesh_file(const std::filesystem::path& path) {
                              [&](const char* one) { return ending == one; });
 }
 
-PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
+PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings,
+                                         const Workers& workers) {
   settings.validate();
   return reading(path, [&] {
     MeshFile file;
@@ -92,10 +95,13 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
       file = detail::file_of(path, settings, workers);
     } else {
       detail::check_ply(path);
-      const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
+      const auto import = [&](const Workers& by, const auto& opened) {
+        return detail::MeshImport(path, settings, by, opened).read();
+      };
       const detail::RawScene scene =
-          settings.isolated ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
-                            : import(workers, nullptr);
+          settings.isolated
+              ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
+              : import(workers, nullptr);
       file = detail::MeshFileMaker(path, scene, settings, workers).make();
     }
     detail::replace_materials(file, settings);
@@ -104,7 +110,8 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
   });
 }
 
-PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object, const Workers& workers) {
+PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object,
+                                                            const Workers& workers) {
   struct Shared {
     std::shared_ptr<const TriangleMesh<>> geometry;
     MaterialTable materials;
@@ -113,7 +120,8 @@ PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, Objec
   for (FileMesh& one : file.meshes) {
     std::vector<Material> table;
     for (const std::uint32_t number : one.materials) table.push_back(file.materials[number]);
-    shared.push_back({std::make_shared<const TriangleMesh<>>(std::exchange(one.mesh, {}), workers), material_table(std::move(table))});
+    shared.push_back({std::make_shared<const TriangleMesh<>>(std::exchange(one.mesh, {}), workers),
+                      material_table(std::move(table))});
   }
   std::vector<Part<TriangleMesh<>>> parts;
   parts.reserve(file.placements.size());

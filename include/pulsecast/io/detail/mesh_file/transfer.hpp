@@ -117,12 +117,16 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
   return scene;
 }
 
-/// What an import, by a child process, finds in a file. It is told a function to call with the size of each other file [byte].
+/// What an import, by a child process, finds in a file. It is told a function to call with the size of each other file
+/// [byte].
 template <class Import>
-[[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits, const Import& import) {
+[[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits,
+                                      const Import& import) {
   std::error_code ignored;
   const auto size = static_cast<double>(std::filesystem::file_size(path, ignored));
-  const auto opened = [&](std::uint64_t bytes) { ChildOutput::allow(limits.memory_per_byte * static_cast<double>(bytes)); };
+  const auto opened = [&](std::uint64_t bytes) {
+    ChildOutput::allow(limits.memory_per_byte * static_cast<double>(bytes));
+  };
   return taken_over(ChildProcess::result(path.string(),
                                          {.memory = limits.memory + (ignored ? 0 : limits.memory_per_byte * size),
                                           .time = limits.time + (ignored ? 0 : limits.time_per_byte * size)},

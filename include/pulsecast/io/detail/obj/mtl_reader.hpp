@@ -33,7 +33,8 @@ namespace detail {
 
 class MtlReader : private StatementBuffer {
  public:
-  MtlReader(StatementFile file, const SpectralLibrary& spectra) : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
+  MtlReader(StatementFile file, const SpectralLibrary& spectra)
+      : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
@@ -75,12 +76,15 @@ class MtlReader : private StatementBuffer {
       return value >= 1 && value <= 85;
     };
     const bool is_one = given.size() == 1;
-    if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
-    if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (keyword() == "helios_reflectance")
+      require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
+    if (keyword() == "helios_classification")
+      require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
     if (keyword() == "pulsecast_retroreflection")
       require(!given.empty() && given.size() <= 2 && are_within(1e6) && (is_one || is_angle(given[1])),
               "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
-    if (keyword() == "pulsecast_normalizedPhong") require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
+    if (keyword() == "pulsecast_normalizedPhong")
+      require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
     if (const char* const expected = expected_of_light_key(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
     if (keyword() == "Kd" || keyword() == "Ks")
@@ -88,20 +92,22 @@ class MtlReader : private StatementBuffer {
     else if (keyword() == "Ns")
       ready += standard_numbers(given, 1);
     // with textures, tinyobjloader would change the colour, depending on the order
-    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) || keyword().starts_with("helios_") ||
-             keyword().starts_with("pulsecast_"))
+    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
+             keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
       ready += statement();
   }
 
-  /// Statement of a standard key with `count` numbers, limited to those from 0 to 1e12; empty if its words are others. A single number is
-  /// the value of red, green and blue. What differs from the format is noted. Source: MTL specification, Wavefront 1995.
+  /// Statement of a standard key with `count` numbers, limited to those from 0 to 1e12; empty if its words are others.
+  /// A single number is the value of red, green and blue. What differs from the format is noted. Source: MTL
+  /// specification, Wavefront 1995.
   [[nodiscard]] std::string standard_numbers(const std::vector<std::string_view>& given, std::size_t count) {
     std::vector<double> numbers;
     for (std::size_t i = 0; i < std::min(given.size(), count); ++i) {
       const auto number = number_in<double>(given[i]);
       if (!number) break;
       numbers.push_back(std::clamp(*number, 0.0, max_number));
-      if (numbers.back() != *number) note("takes " + pulsecast::detail::to_text(numbers.back()) + " for " + std::string(given[i]));
+      if (numbers.back() != *number)
+        note("takes " + pulsecast::detail::to_text(numbers.back()) + " for " + std::string(given[i]));
     }
     const bool is_comment = given.size() > 1 && given[1].starts_with('/');
     if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
@@ -110,19 +116,21 @@ class MtlReader : private StatementBuffer {
     }
     if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
     std::string made(keyword());
-    for (std::size_t i = 0; i < count; ++i) made += ' ' + pulsecast::detail::to_text(numbers[std::min(i, numbers.size() - 1)]);
+    for (std::size_t i = 0; i < count; ++i)
+      made += ' ' + pulsecast::detail::to_text(numbers[std::min(i, numbers.size() - 1)]);
     return made;
   }
 
   /// Notes an oddity of the current statement.
   void note(const std::string& oddity) {
-    warnings_.push_back(path() + ", line " + std::to_string(line()) + ": material '" + current_ + "': " + text::quoted(statement()) + " " +
-                        oddity);
+    warnings_.push_back(path() + ", line " + std::to_string(line()) + ": material '" + current_ +
+                        "': " + text::quoted(statement()) + " " + oddity);
   }
 
   /// Notes the picture that a statement names, for the first material of a name.
   void note_picture() {
-    const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d", reflectance = keyword() == "pulsecast_reflectanceMap";
+    const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d",
+               reflectance = keyword() == "pulsecast_reflectanceMap";
     if ((!colour && !opacity && !reflectance) || repeated_) return;
     std::string_view named = rest();
     const bool is_pattern = reflectance && named.starts_with("pattern ");
@@ -135,7 +143,10 @@ class MtlReader : private StatementBuffer {
     std::replace(name.begin(), name.end(), '\\', '/');
     MaterialPictures& all = pictures_[current_];
     all.reflectance_pattern = all.reflectance_pattern || is_pattern;
-    (colour ? all.colour : opacity ? all.opacity : all.reflectance).file = std::filesystem::path(path()).parent_path() / name;
+    (colour    ? all.colour
+     : opacity ? all.opacity
+               : all.reflectance)
+        .file = std::filesystem::path(path()).parent_path() / name;
   }
 
   [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
@@ -149,7 +160,8 @@ class MtlReader : private StatementBuffer {
       return found == m.unknown_parameter.end() ? std::string() : found->second;
     };
     Material made = undescribed(m.name);
-    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2], specular = m.specular[0] + m.specular[1] + m.specular[2];
+    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2],
+                 specular = m.specular[0] + m.specular[1] + m.specular[2];
     if (specular > 0) {
       made.scattering = Scattering::phong;
       made.specular_share = specular / (diffuse + specular);
@@ -164,7 +176,8 @@ class MtlReader : private StatementBuffer {
       const std::string_view all = text::trimmed(text), first = all.substr(0, all.find_first_of(text::blanks));
       made.scattering = Scattering::retroreflective;
       made.retroreflection = *number_in<double>(first);
-      if (first.size() < all.size()) made.retroreflection_half_angle = radians(*number_in<double>(text::trimmed(all.substr(first.size()))));
+      if (first.size() < all.size())
+        made.retroreflection_half_angle = radians(*number_in<double>(text::trimmed(all.substr(first.size()))));
     }
     const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
     if (!reflectance.empty()) {
@@ -178,10 +191,12 @@ class MtlReader : private StatementBuffer {
       const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
       for (const double wavelength : spectra_.wavelengths)
         if (!(wavelength >= shortest && wavelength <= longest))
-          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
-                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearest sample is used");
+          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " +
+                                     nanometres(longest) + " nm: for the laser of " + nanometres(wavelength) +
+                                     " nm the nearest sample is used");
     } else if (!spectrum.empty()) {
-      warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
+      warn("helios_spectra",
+           "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
     }
     set_light(made, m, extra, warn);
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
@@ -194,7 +209,8 @@ class MtlReader : private StatementBuffer {
 
   template <class Extra, class Warn>
   void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra, const Warn& warn) const {
-    if (!set_standard_light(made, m)) warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
+    if (!set_standard_light(made, m))
+      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
     std::deque<std::string> texts;
     const auto words_of = [&](const char* key) {
       texts.push_back(extra(key));
@@ -202,7 +218,8 @@ class MtlReader : private StatementBuffer {
       for (std::string_view left = text::trimmed(texts.back()); !left.empty();) words.push_back(text::take_word(left));
       return words;
     };
-    if (const auto words = words_of("pulsecast_water"); !words.empty()) made.smooth = water_for_lasers(m.name, words, warn);
+    if (const auto words = words_of("pulsecast_water"); !words.empty())
+      made.smooth = water_for_lasers(m.name, words, warn);
     set_own_light(made, m, words_of);
   }
 
@@ -220,7 +237,8 @@ class MtlReader : private StatementBuffer {
     }
     for (const double wavelength : all)
       if (wavelength != all.front())
-        throw wrong("water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the coefficients");
+        throw wrong(
+            "water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the coefficients");
     try {
       return water_of(words, all.front());
     } catch (const SettingError& refused) {
@@ -228,12 +246,14 @@ class MtlReader : private StatementBuffer {
     }
   }
 
-  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
+  [[nodiscard]] static std::string nanometres(double metres) {
+    return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3);
+  }
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;
-  bool begun_ = false, repeated_ = false;                             // `repeated_`: the current material is not the first of its name
-  std::string current_ = "default";                                   // name of the current material
+  bool begun_ = false, repeated_ = false;  // `repeated_`: the current material is not the first of its name
+  std::string current_ = "default";        // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
   std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
 };

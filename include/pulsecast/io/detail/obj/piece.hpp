@@ -63,7 +63,9 @@ class ObjPiece : private StatementBuffer {
   /// Reads up to the first error.
   void read() {
     tinyobj::callback_t callbacks;
-    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) { static_cast<ObjPiece*>(self)->vertex({x, y, z}); };
+    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) {
+      static_cast<ObjPiece*>(self)->vertex({x, y, z});
+    };
     callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
       static_cast<ObjPiece*>(self)->face({corners, static_cast<std::size_t>(count)});
     };
@@ -80,15 +82,17 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before` vertices of earlier ones;
-  /// `all_places` and `places_before` are those of texture coordinates.
-  void triangulate(std::span<const Vec3> all, std::size_t before, std::span<const Vec2> all_places = {}, std::size_t places_before = 0) {
+  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before`
+  /// vertices of earlier ones; `all_places` and `places_before` are those of texture coordinates.
+  void triangulate(std::span<const Vec3> all, std::size_t before, std::span<const Vec2> all_places = {},
+                   std::size_t places_before = 0) {
     triangles.reserve(faces_.size());
     triangle_uses.reserve(faces_.size());
     std::size_t first = 0;
     for (const Face& face : faces_) {
       const auto given = std::span(corners_).subspan(first, face.corners);
-      if (textured_) take_places(face, std::span(place_corners_).subspan(first, face.corners), all_places, places_before);
+      if (textured_)
+        take_places(face, std::span(place_corners_).subspan(first, face.corners), all_places, places_before);
       first += face.corners;
       numbers_.clear();
       positions_.clear();
@@ -110,8 +114,9 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
-  std::vector<std::size_t> without_place;    ///< by index into `uses`: corners without texture coordinates, if they are read
-  std::vector<Note> crossings;               ///< polygons whose outline crosses itself
+  std::vector<std::size_t>
+      without_place;            ///< by index into `uses`: corners without texture coordinates, if they are read
+  std::vector<Note> crossings;  ///< polygons whose outline crosses itself
   std::optional<Note> first_unknown, first_flat;
   std::size_t unknown = 0, flat = 0;
   std::size_t open_line = 0;  ///< line of a last statement without end; 0 if there is none
@@ -126,8 +131,8 @@ class ObjPiece : private StatementBuffer {
   };
 
   /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
-  static constexpr std::array<std::string_view, 15> ignored{"vn", "vt", "vp",     "vw",     "o",   "g",          "s",        "l",
-                                                            "p",  "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
+  static constexpr std::array<std::string_view, 15> ignored{
+      "vn", "vt", "vp", "vw", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
 
   void check(std::string& ready) override {
     const std::vector<std::string_view>& given = words();
@@ -138,7 +143,8 @@ class ObjPiece : private StatementBuffer {
       add_flat(line());
       return;
     } else if (keyword() == "f") {
-      require(std::all_of(given.begin(), given.end(), is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
+      require(std::all_of(given.begin(), given.end(), is_corner),
+              "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl" && given.empty()) {
       uses.push_back({"default", line(), std::nullopt});
@@ -217,8 +223,8 @@ class ObjPiece : private StatementBuffer {
     try {
       rewind();
       while (next_statement() && line() < face_line) continue;
-      fail_here(quoted() + " refers to vertex " + std::to_string(corner) + ": expected from 1 to the " + std::to_string(count) +
-                " vertices above, or from -1 backwards");
+      fail_here(quoted() + " refers to vertex " + std::to_string(corner) + ": expected from 1 to the " +
+                std::to_string(count) + " vertices above, or from -1 backwards");
     } catch (...) {
       failure = {face_line, std::current_exception()};
     }
@@ -230,7 +236,8 @@ class ObjPiece : private StatementBuffer {
     const auto pieces = triangulated(positions_);
     for (const auto& [a, b, c] : pieces) triangle(face, a, b, c);
     if (!pieces.empty()) return;
-    crossings.push_back({face.line, "the outline of the polygon crosses itself: it becomes a fan about its first corner"});
+    crossings.push_back(
+        {face.line, "the outline of the polygon crosses itself: it becomes a fan about its first corner"});
     for (std::size_t k = 2; k < numbers_.size(); ++k) triangle(face, 0, k - 1, k);
   }
 

@@ -16,13 +16,14 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; triangulation takes quadratic time
 
-/// Triangulates a polygon by ear clipping; a convex one becomes the fan about its first corner. Returns corner indices, three a triangle;
-/// empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
+/// Triangulates a polygon by ear clipping; a convex one becomes the fan about its first corner. Returns corner indices,
+/// three a triangle; empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
 /// tinyobjloader 2.0 rc10 triangulates, too, but loses parts of concave polygons away from the origin.
 [[nodiscard]] inline std::vector<std::array<std::size_t, 3>> triangulated(const std::vector<Vec3>& corners) {
   // projection along the axis nearest to the normal, counter-clockwise. Source: Newell, in Sutherland et al. 1974.
   Vec3 normal{};
-  for (std::size_t i = 0; i < corners.size(); ++i) normal += cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    normal += cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
   int axis = 2;
   for (const int k : {1, 0})
     if (std::fabs(normal[k]) > std::fabs(normal[axis])) axis = k;
@@ -32,14 +33,17 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; tria
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     flat.push_back(normal[axis] < 0 ? Vec2{p[v], p[u]} : Vec2{p[u], p[v]});
   }
-  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive if the path from a over b to c turns left
+  const auto left = [&](std::size_t a, std::size_t b,
+                        std::size_t c) {  // positive if the path from a over b to c turns left
     const Vec2 ab = flat[b] - flat[a], ac = flat[c] - flat[a];
     return ab.x * ac.y - ab.y * ac.x;
   };
 
   std::vector<std::size_t> ring(corners.size());
   std::iota(ring.begin(), ring.end(), std::size_t{0});
-  const auto neighbours = [&](std::size_t i) { return std::pair{ring[(i + ring.size() - 1) % ring.size()], ring[(i + 1) % ring.size()]}; };
+  const auto neighbours = [&](std::size_t i) {
+    return std::pair{ring[(i + ring.size() - 1) % ring.size()], ring[(i + 1) % ring.size()]};
+  };
   const auto is_ear = [&](std::size_t i) {
     const auto [before, after] = neighbours(i);
     if (!(left(before, ring[i], after) > 0)) return false;

@@ -32,8 +32,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Reader of a file in windows of some pieces. Pieces are read in parallel, and triangulated in parallel once the vertices before them are
-/// known; results are joined in the order of the file.
+/// Reader of a file in windows of some pieces. Pieces are read in parallel, and triangulated in parallel once the
+/// vertices before them are known; results are joined in the order of the file.
 class ObjReader {
  public:
   ObjReader(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers,
@@ -45,10 +45,12 @@ class ObjReader {
     MeshData& mesh = model_.mesh;
     if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
     if (unknown_ > 0)
-      warn(first_unknown_->line, first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
+      warn(first_unknown_->line,
+           first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
     if (flat_ > 0) warn(first_flat_->line, "a face without area is left out, the first of " + std::to_string(flat_));
     if (mesh.triangles.empty())
-      model_.warnings.push_back(file_.path() + ": holds no face with an area: expected at least one 'f' statement of such a one");
+      model_.warnings.push_back(file_.path() +
+                                ": holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
     return std::move(model_);
   }
@@ -73,15 +75,18 @@ class ObjReader {
       for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
     });
     std::vector<Vec3>& vertices = model_.mesh.vertices;
-    std::vector<std::size_t> before, places_before;  // number of vertices, and of texture coordinates, before each piece
+    std::vector<std::size_t> before,
+        places_before;  // number of vertices, and of texture coordinates, before each piece
     for (const auto& piece : pieces) {
       before.push_back(vertices.size());
       places_before.push_back(places_.size());
       vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
       places_.insert(places_.end(), piece->places.begin(), piece->places.end());
-      if (vertices.size() > std::numeric_limits<int>::max()) file_.fail("has too many vertices: expected fewer than 2^31");
+      if (vertices.size() > std::numeric_limits<int>::max())
+        file_.fail("has too many vertices: expected fewer than 2^31");
     }
-    for_each_index(pieces.size(), workers_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i], places_, places_before[i]); });
+    for_each_index(pieces.size(), workers_,
+                   [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i], places_, places_before[i]); });
     for (const auto& piece : pieces) add(*piece);
     return !pieces.empty();
   }
@@ -89,7 +94,8 @@ class ObjReader {
   void add(ObjPiece& piece) {
     auto crossing = piece.crossings.begin();
     const auto warn_before = [&](std::size_t line) {
-      for (; crossing != piece.crossings.end() && crossing->line < line; ++crossing) warn(crossing->line, crossing->text);
+      for (; crossing != piece.crossings.end() && crossing->line < line; ++crossing)
+        warn(crossing->line, crossing->text);
     };
     for (const ObjPiece::Libraries& statement : piece.libraries) {
       if (statement.line > piece.failure.line) break;
@@ -103,7 +109,8 @@ class ObjReader {
     MeshData& mesh = model_.mesh;
     mesh.triangles.insert(mesh.triangles.end(), piece.triangles.begin(), piece.triangles.end());
     mesh.texture.insert(mesh.texture.end(), piece.texture.begin(), piece.texture.end());
-    for (std::size_t use = 0; use < piece.without_place.size(); ++use) without_place_[piece.uses[use].name] += piece.without_place[use];
+    for (std::size_t use = 0; use < piece.without_place.size(); ++use)
+      without_place_[piece.uses[use].name] += piece.without_place[use];
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
     if (unknown_ == 0) first_unknown_ = piece.first_unknown;
@@ -186,13 +193,15 @@ class ObjReader {
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
   std::optional<Note> first_unknown_, first_flat_;
   std::size_t unknown_ = 0, flat_ = 0;
-  std::map<std::string, std::size_t> without_place_;  // corners without texture coordinates, if they are read, by material
+  std::map<std::string, std::size_t>
+      without_place_;  // corners without texture coordinates, if they are read, by material
   std::size_t open_line_ = 0;
 };
 
 }  // namespace detail
 
-PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers) {
+PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings,
+                                   const Workers& workers) {
   return reading(path, [&] {
     ObjModel model = detail::ObjReader(path, settings, workers).read();
     if (model.pictures.empty() || settings.texture) return model;

@@ -25,12 +25,14 @@
 /// Statements of OBJ and MTL files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
+static_assert(std::same_as<tinyobj::real_t, double>,
+              "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
-inline constexpr double max_number = 1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
+inline constexpr double max_number =
+    1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
 
-/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin with, and
-/// fails at very long ones.
+/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin
+/// with, and fails at very long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
   const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
@@ -92,15 +94,22 @@ class StatementBuffer : public std::streambuf {
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
  protected:
-  /// Sets `ready`, empty at first, to the text for tinyobjloader for the current statement. Throws a `FileError` if it is invalid.
+  /// Sets `ready`, empty at first, to the text for tinyobjloader for the current statement. Throws a `FileError` if it
+  /// is invalid.
   virtual void check(std::string& ready) = 0;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::size_t line() const { return line_; }                   ///< first line of the current statement, from 1
-  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< true for a last line without end
-  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< current statement, with one blank after the keyword
-  [[nodiscard]] std::string_view keyword() const { return std::string_view(statement_).substr(0, statement_.find(' ')); }
-  [[nodiscard]] std::string_view rest() const { return text::trimmed(std::string_view(statement_).substr(keyword().size())); }
+  [[nodiscard]] std::size_t line() const { return line_; }   ///< first line of the current statement, from 1
+  [[nodiscard]] bool line_is_open() const { return open_; }  ///< true for a last line without end
+  [[nodiscard]] const std::string& statement() const {
+    return statement_;
+  }  ///< current statement, with one blank after the keyword
+  [[nodiscard]] std::string_view keyword() const {
+    return std::string_view(statement_).substr(0, statement_.find(' '));
+  }
+  [[nodiscard]] std::string_view rest() const {
+    return text::trimmed(std::string_view(statement_).substr(keyword().size()));
+  }
 
   /// Words after the keyword.
   [[nodiscard]] const std::vector<std::string_view>& words() {
@@ -110,7 +119,9 @@ class StatementBuffer : public std::streambuf {
   }
 
   [[nodiscard]] std::string quoted() const { return text::quoted(statement_); }
-  [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  [[noreturn]] void fail_here(const std::string& problem) const {
+    throw FileError(path_, "line " + std::to_string(line_), problem);
+  }
   void require(bool fulfilled, const char* expected) const {
     if (!fulfilled) fail_here(quoted() + ": expected " + expected);
   }
@@ -126,7 +137,8 @@ class StatementBuffer : public std::streambuf {
     do {
       if (!take_statement()) return false;
     } while (statement_.empty() || statement_.starts_with('#'));
-    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // names may contain it, as in `usemtl Material #25`
+    if (statement_.find('#') != statement_.npos &&
+        !keyword().ends_with("mtl"))  // names may contain it, as in `usemtl Material #25`
       statement_.resize(std::min(statement_.find(" #"), statement_.size()));
     const std::string_view word = keyword(), after = rest();
     if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())

@@ -24,7 +24,8 @@ class CalibrationFile {
   /// @throws FileError for a file that is no map of YAML
   CalibrationFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     InputFile file(path, expected);
-    if (file.size() > InputFile::block_size) file.fail(pulsecast::detail::joined({"is longer than 1 MiB: expected ", expected}));
+    if (file.size() > InputFile::block_size)
+      file.fail(pulsecast::detail::joined({"is longer than 1 MiB: expected ", expected}));
     const std::string text = file.take_rest();
     try {
       root_ = YAML::Load(text);
@@ -68,9 +69,10 @@ class CalibrationFile {
   }
 
   /// As many numbers from `low` to `high`. @throws FileError for anything else
-  [[nodiscard]] std::vector<double> numbers(const YAML::Node& node, const std::string& name, std::size_t count, double low,
-                                            double high) const {
-    if (!node.IsSequence() || node.size() != count) fail(node, pulsecast::detail::joined({name, " is no list of ", std::to_string(count)}));
+  [[nodiscard]] std::vector<double> numbers(const YAML::Node& node, const std::string& name, std::size_t count,
+                                            double low, double high) const {
+    if (!node.IsSequence() || node.size() != count)
+      fail(node, pulsecast::detail::joined({name, " is no list of ", std::to_string(count)}));
     std::vector<double> values;
     for (const YAML::Node& value : node) values.push_back(number(value, name, low, high));
     return values;

@@ -31,7 +31,8 @@ using Ipv4Address = std::array<std::uint8_t, 4>;
 
 namespace detail {
 
-static_assert(std::endian::native == std::endian::little, "packets are little-endian, and are written as the numbers lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "packets are little-endian, and are written as the numbers lie in memory");
 
 /// Writes a number at a position of a packet.
 template <class Number>

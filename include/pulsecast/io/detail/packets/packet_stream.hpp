@@ -60,11 +60,11 @@ struct PacketSource {
   return returns == PacketReturns::last ? echoes.back() : *strongest_but(nullptr, echoes);
 }
 
-/// Layout of a sensor's packets, each of so many firing sequences. `begin` writes what is known before any echo to a payload of zeros, and
-/// `write` the returns of one laser in one sequence of the packet.
+/// Layout of a sensor's packets, each of so many firing sequences. `begin` writes what is known before any echo to a
+/// payload of zeros, and `write` the returns of one laser in one sequence of the packet.
 template <class Format>
-concept PacketFormat = requires(const PacketSource& source, std::span<std::byte> payload, std::size_t number, PulseIndex first,
-                                std::span<const Echo> echoes) {
+concept PacketFormat = requires(const PacketSource& source, std::span<std::byte> payload, std::size_t number,
+                                PulseIndex first, std::span<const Echo> echoes) {
   { Format::port } -> std::convertible_to<std::uint16_t>;
   { Format::validate(source.sensor) } -> std::same_as<void>;
   { Format::size(source) } -> std::same_as<std::size_t>;
@@ -73,8 +73,9 @@ concept PacketFormat = requires(const PacketSource& source, std::span<std::byte>
   { Format::write(source, payload, number, number, echoes) } -> std::same_as<void>;
 };
 
-/// Sink that writes the echoes of a sensor as its packets. Packet n holds the same firing sequences, whatever the run begins with. The
-/// first packet is that of the first echo. From there on, all are passed on, in order, also those without echoes.
+/// Sink that writes the echoes of a sensor as its packets. Packet n holds the same firing sequences, whatever the run
+/// begins with. The first packet is that of the first echo. From there on, all are passed on, in order, also those
+/// without echoes.
 template <PacketFormat Format>
 class PacketStream {
  public:
@@ -91,12 +92,13 @@ class PacketStream {
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
       if (shot.index < next_slot_)
-        throw SettingError("Shot::index", static_cast<double>(shot.index), "", "in ascending order until the packets are closed");
+        throw SettingError("Shot::index", static_cast<double>(shot.index), "",
+                           "in ascending order until the packets are closed");
       next_slot_ = shot.index + 1;
       const PulseIndex sequence = shot.index / lasers;
       open(sequence / sequences);
-      Format::write(source_, payload_, static_cast<std::size_t>(sequence % sequences), static_cast<std::size_t>(shot.index % lasers),
-                    batch.echoes_of(shot));
+      Format::write(source_, payload_, static_cast<std::size_t>(sequence % sequences),
+                    static_cast<std::size_t>(shot.index % lasers), batch.echoes_of(shot));
     }
   }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes

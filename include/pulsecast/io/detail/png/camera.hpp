@@ -26,7 +26,8 @@ struct ImagePoint {
 };
 
 /// Percentiles that leave `share` of all values below, and above; those of a sample for many points.
-[[nodiscard]] std::pair<double, double> percentiles(std::span<const ImagePoint> points, double share, const auto& value) {
+[[nodiscard]] std::pair<double, double> percentiles(std::span<const ImagePoint> points, double share,
+                                                    const auto& value) {
   constexpr std::size_t sample = 200'000;
   std::vector<double> values;
   for (std::size_t i = 0; i < points.size(); i += points.size() / sample + 1)
@@ -46,12 +47,14 @@ class Camera {
   Camera(const ImageSettings& s, std::span<const ImagePoint> points)
       : parallel_(s.field_of_view == 0),
         right_(std::cos(s.azimuth), -std::sin(s.azimuth), 0),
-        forward_(std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation), -std::sin(s.elevation)),
+        forward_(std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation),
+                 -std::sin(s.elevation)),
         up_(cross(right_, forward_)) {
     s.eye ? stand(s, *s.eye) : frame(s, points);
   }
 
-  /// Column and row from the upper left corner of the picture [px], and depth along the view [m]. NaN behind the camera.
+  /// Column and row from the upper left corner of the picture [px], and depth along the view [m]. NaN behind the
+  /// camera.
   [[nodiscard]] Vec3 pixel(const ImagePoint& p) const {
     const Vec3 v = seen(p);
     return {shift_.x + scale_ * v.x, shift_.y - scale_ * v.y, v.z};
@@ -85,14 +88,16 @@ class Camera {
     constexpr double outliers = 0.001, margin = 0.95;
     double radius = 1e-3;  // minimum, for a scene of one point [m]
     for (const Vec3& axis : {right_, forward_, up_}) {
-      const auto [low, high] = percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
+      const auto [low, high] =
+          percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
       centre_ += axis * (0.5 * (low + high));
       radius = std::max(radius, 0.5 * (high - low));
     }
     distance_ = radius / std::tan(0.5 * (parallel_ ? radians(30) : s.field_of_view));
     const auto [x_low, x_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).x; });
     const auto [y_low, y_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).y; });
-    scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius), s.height / std::max(y_high - y_low, 0.01 * radius));
+    scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius),
+                               s.height / std::max(y_high - y_low, 0.01 * radius));
     shift_ = {0.5 * s.width - scale_ * 0.5 * (x_low + x_high), 0.5 * s.height + scale_ * 0.5 * (y_low + y_high)};
   }
 

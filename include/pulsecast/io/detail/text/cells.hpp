@@ -18,14 +18,16 @@ class RowCells {
  public:
   RowCells() = default;
 
-  /// Any of the characters `separators` ends a cell. If `joins_blanks` is set, blanks and tabs around cells do not count, and as separators
-  /// several count as one.
+  /// Any of the characters `separators` ends a cell. If `joins_blanks` is set, blanks and tabs around cells do not
+  /// count, and as separators several count as one.
   RowCells(std::string_view separators, bool joins_blanks) : joins_blanks_(joins_blanks) {
     for (const char c : separators) separates_[static_cast<unsigned char>(c)] = true;
   }
 
-  /// Splits a row into `max_cells` cells at most, without the blanks around them. Valid as long as the row, until the next one.
-  const std::vector<std::string_view>& split(std::string_view row, std::size_t max_cells = std::numeric_limits<std::size_t>::max()) {
+  /// Splits a row into `max_cells` cells at most, without the blanks around them. Valid as long as the row, until the
+  /// next one.
+  const std::vector<std::string_view>& split(std::string_view row,
+                                             std::size_t max_cells = std::numeric_limits<std::size_t>::max()) {
     cells_.clear();
     const auto skip_blanks = [&](std::size_t at) {
       while (joins_blanks_ && at < row.size() && text::is_blank(row[at])) ++at;
@@ -44,7 +46,9 @@ class RowCells {
     return cells_;
   }
 
-  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_; }  ///< of the row that was split last
+  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept {
+    return cells_;
+  }  ///< of the row that was split last
 
  private:
   [[nodiscard]] bool separates(char c) const noexcept { return separates_[static_cast<unsigned char>(c)]; }

@@ -24,7 +24,8 @@ class TextOutput {
  public:
   explicit TextOutput(OutputFile file) : file_(std::move(file)) {}
 
-  /// Adds a position or direction. One that is not finite discards the table and throws a `FileError`; `what` names it there.
+  /// Adds a position or direction. One that is not finite discards the table and throws a `FileError`; `what` names it
+  /// there.
   TextOutput& vector(std::string_view what, const Vec3& v, int decimals) {
     if (!finite(v)) reject(what);
     return reals(decimals, v.x, v.y, v.z);
@@ -41,7 +42,8 @@ class TextOutput {
   TextOutput& nanoseconds(const Tick& time) {
     const bool negative = time.second < 0;
     constexpr std::int64_t unit = 10'000;  // per nanosecond: 0.1 ps
-    const auto units = static_cast<std::int64_t>(std::nearbyint((negative ? 1 - time.fraction : time.fraction) * 1e9 * unit));
+    const auto units =
+        static_cast<std::int64_t>(std::nearbyint((negative ? 1 - time.fraction : time.fraction) * 1e9 * unit));
     const std::int64_t whole = (negative ? -1 - time.second : time.second) * 1'000'000'000 + units / unit;
     std::array<char, 32> digits;
     char* end = digits.data();

@@ -21,16 +21,16 @@ namespace PULSECAST_NAMESPACE::io {
 struct PointColumns {
   using Columns = std::array<std::size_t, 3>;
 
-  std::string separators = {};                       ///< any of these characters; if empty, found in the first row: see `TextPoints`
-  Columns position{0, 1, 2};                         ///< columns of x, y and z
+  std::string separators = {};  ///< any of these characters; if empty, found in the first row: see `TextPoints`
+  Columns position{0, 1, 2};    ///< columns of x, y and z
   std::optional<Columns> normal = Columns{3, 4, 5};  ///< columns of its x, y and z
   std::optional<Columns> colour = Columns{6, 7, 8};  ///< columns of red, green and blue
   static constexpr std::size_t max_column = 999;     ///< upper limit of a column
 
   void validate() const {
     for (const char c : separators)
-      if (std::string_view("+-.#/\r\n").find(c) != std::string_view::npos || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-          (c >= 'a' && c <= 'z'))
+      if (std::string_view("+-.#/\r\n").find(c) != std::string_view::npos || (c >= '0' && c <= '9') ||
+          (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'))
         throw SettingError("PointColumns::separators (character code)", static_cast<unsigned char>(c), "",
                            "that of a character outside numbers, comments and line ends");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})

@@ -21,10 +21,11 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped; so is a first row that is one
-/// whole number, as a count, or has no number, as the names of columns, with a warning. Default separators are semicolons if the first row
-/// has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The first row decides
-/// on normals and colours; others need the columns in use. Throws a `FileError` with path, line and column.
+/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped; so is a first
+/// row that is one whole number, as a count, or has no number, as the names of columns, with a warning. Default
+/// separators are semicolons if the first row has any, else commas, else blanks. Blanks and tabs around a cell are
+/// ignored; as separators, several count as one. The first row decides on normals and colours; others need the columns
+/// in use. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, PointColumns columns) : file_(std::move(file)), columns_(validated(std::move(columns))) {}
@@ -52,7 +53,9 @@ class TextPoints {
     return false;
   }
 
-  [[nodiscard]] Vec3 position() const { return vector(columns_.position); }  ///< of the current point, in coordinates of the file
+  [[nodiscard]] Vec3 position() const {
+    return vector(columns_.position);
+  }  ///< of the current point, in coordinates of the file
   [[nodiscard]] bool has_normals() const noexcept { return columns_.normal.has_value(); }
   [[nodiscard]] Vec3 normal() const { return vector(*columns_.normal); }
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
@@ -72,7 +75,9 @@ class TextPoints {
  private:
   using Columns = PointColumns::Columns;
 
-  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }  ///< of the current row
+  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept {
+    return cells_.cells();
+  }  ///< of the current row
 
   void note(const std::string& oddity) {
     notes_.push_back(pulsecast::detail::joined({file_.path(), ", line ", std::to_string(file_.line()), ": ", oddity}));
@@ -110,8 +115,8 @@ class TextPoints {
     if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && c != '\t'; })) return false;
     split(text);
     const bool is_count = cells().size() == 1 && text::number_in<std::uint64_t>(text);
-    const bool has_number =
-        std::any_of(cells().begin(), cells().end(), [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; });
+    const bool has_number = std::any_of(cells().begin(), cells().end(),
+                                        [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; });
     if (!is_count && (has_number || cells().size() < 3)) return false;
     if (!is_count && names_other_columns(text))
       fail_here("names x, y and z of other columns than those that are read: expected these first");
@@ -132,14 +137,17 @@ class TextPoints {
     begun_ = true;
   }
 
-  [[nodiscard]] Vec3 vector(const Columns& columns) const { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
+  [[nodiscard]] Vec3 vector(const Columns& columns) const {
+    return {number(columns[0]), number(columns[1]), number(columns[2])};
+  }
 
   [[nodiscard]] double number(std::size_t column) const {
     const std::optional<double> value = text::number_in<double>(cells()[column]);
     if (value && std::fabs(*value) <= 1e12) return *value;
     if (std::any_of(cells()[column].begin(), cells()[column].end(), [](unsigned char c) { return c < ' '; }))
       fail_here("holds binary data: expected the text of a point cloud");
-    file_.fail_at_column(column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
+    file_.fail_at_column(
+        column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
   }
 
   [[noreturn]] void too_few() const {

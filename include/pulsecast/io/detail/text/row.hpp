@@ -29,11 +29,14 @@ class TextRow {
   TextRow& add(double value, int decimals) {
     if (std::isnan(value)) return append("nan");
     if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as the general case
-      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)], units = size * unit;
+      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)],
+                   units = size * unit;
       if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
     }
-    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // longest number with sign, point and decimals
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32>
+        digits;  // longest number with sign, point and decimals
+    const auto [end, error] =
+        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
     std::string_view text(digits.data(), end);
     if (text.find_first_not_of("-0.") == std::string_view::npos && text.front() == '-') text.remove_prefix(1);
     return append(text);
@@ -59,8 +62,8 @@ class TextRow {
  private:
   static constexpr std::array powers_of_ten{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error decides ties, and exact ties go to
-  /// even, so the digits are those of the exact product.
+  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error decides ties, and
+  /// exact ties go to even, so the digits are those of the exact product.
   TextRow& append_units(bool negative, double size, double unit, double units, int decimals) {
     const double below = std::floor(units), over_half = (units - below - 0.5) + std::fma(size, unit, -units);
     auto whole = static_cast<std::uint64_t>(below);

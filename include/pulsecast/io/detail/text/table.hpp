@@ -26,12 +26,13 @@ struct Oddity {
   }
 };
 
-/// Reader of a text table, row by row, independent of the locale, with line and column for errors. The separator is given, or found in the
-/// first row: semicolon, else comma, else tab, else blanks, several as one. Quotation marks do not protect separators. Lines may end as on
-/// any system; blank ones are skipped.
+/// Reader of a text table, row by row, independent of the locale, with line and column for errors. The separator is
+/// given, or found in the first row: semicolon, else comma, else tab, else blanks, several as one. Quotation marks do
+/// not protect separators. Lines may end as on any system; blank ones are skipped.
 class TextTable {
  public:
-  /// `expected` content for error messages, as in "a trajectory". Throws a `FileError` if there is no such file, or it is empty.
+  /// `expected` content for error messages, as in "a trajectory". Throws a `FileError` if there is no such file, or it
+  /// is empty.
   TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
       : file_(path, expected), expected_(expected) {
     if (separator) cells_ = cells_between(*separator);
@@ -51,16 +52,19 @@ class TextTable {
   /// Current line without surrounding blanks.
   [[nodiscard]] std::string_view text() const { return text::trimmed(line_text_); }
 
-  [[nodiscard]] std::size_t line() const noexcept { return file_.line(); }           ///< number of the line, from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return file_.line_is_open(); }  ///< true for a last line without end
-  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }    ///< path of the file
+  [[nodiscard]] std::size_t line() const noexcept { return file_.line(); }  ///< number of the line, from 1
+  [[nodiscard]] bool line_is_open() const noexcept {
+    return file_.line_is_open();
+  }                                                                                ///< true for a last line without end
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }  ///< path of the file
 
   /// Cells of the current line without surrounding blanks and quotation marks. Valid until the next line.
   [[nodiscard]] const std::vector<std::string_view>& cells() {
     if (!cells_) cells_ = cells_between(separator_in(text()));
     unquoted_ = cells_->split(line_text_);
     for (std::string_view& cell : unquoted_)
-      if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = text::trimmed(cell.substr(1, cell.size() - 2));
+      if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+        cell = text::trimmed(cell.substr(1, cell.size() - 2));
     return unquoted_;
   }
 
@@ -68,7 +72,9 @@ class TextTable {
   [[noreturn]] void fail_here(const std::string& problem) const { file_.fail_at_line(problem); }
 
   /// `column` is counted from 0 here, from 1 in the message.
-  [[noreturn]] void fail_here(std::size_t column, const std::string& problem) const { file_.fail_at_column(column, problem); }
+  [[noreturn]] void fail_here(std::size_t column, const std::string& problem) const {
+    file_.fail_at_column(column, problem);
+  }
 
   [[nodiscard]] static std::string place(std::size_t line) { return "line " + std::to_string(line); }
 

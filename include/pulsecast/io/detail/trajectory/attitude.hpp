@@ -28,8 +28,8 @@ struct ElementalRotation {
   Vec3 axis;                    ///< axis in the body, unit; right-handed
 };
 
-/// Convention of three angles. At zero the body is level and faces `zero_heading`. It is then rotated about its own axes in the order of
-/// the list; they are perpendicular to each other.
+/// Convention of three angles. At zero the body is level and faces `zero_heading`. It is then rotated about its own
+/// axes in the order of the list; they are perpendicular to each other.
 struct AngleConvention {
   /// Intrinsic rotations; read backwards, the list is that of extrinsic ones.
   std::array<ElementalRotation, 3> turns{
@@ -42,46 +42,55 @@ struct AngleConvention {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t next = (i + 1) % 3;
       require_within("AngleConvention::turns axis (length)", length(turns[i].axis), 1 - rounding, 1 + rounding, "");
-      require_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding, rounding, "");
+      require_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding,
+                     rounding, "");
       if (turns[i].angle == turns[next].angle || turns[i].angle == nullptr)
-        throw SettingError("AngleConvention::turns angle (place)", static_cast<double>(i), "", "roll, pitch and yaw, each once");
+        throw SettingError("AngleConvention::turns angle (place)", static_cast<double>(i), "",
+                           "roll, pitch and yaw, each once");
     }
   }
 };
 
-/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: body axes forward, right, down in a world of north, east,
-/// down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
+/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: body axes forward, right, down in a
+/// world of north, east, down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
 inline const AngleConvention heading_pitch_roll{};
 
 /// `heading_pitch_roll` with roll before pitch. HELIOS++ calls this "ARINC 705".
 inline const AngleConvention helios_arinc_705{
-    .turns = {{{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
+    .turns = {
+        {{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
 
-/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes it.
+/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes
+/// it.
 inline const AngleConvention helios_canonical{
-    .turns = {{{&RollPitchYaw::roll, axis::right}, {&RollPitchYaw::pitch, axis::forward}, {&RollPitchYaw::yaw, axis::up}}}};
+    .turns = {
+        {{&RollPitchYaw::roll, axis::right}, {&RollPitchYaw::pitch, axis::forward}, {&RollPitchYaw::yaw, axis::up}}}};
 
 /// Yaw counter-clockwise from east, then pitch, nose up, then roll, right wing down.
-inline const AngleConvention mathematical{
-    .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, axis::right}, {&RollPitchYaw::roll, axis::forward}}},
-    .zero_heading = pi / 2};
+inline const AngleConvention mathematical{.turns = {{{&RollPitchYaw::yaw, axis::up},
+                                                     {&RollPitchYaw::pitch, axis::right},
+                                                     {&RollPitchYaw::roll, axis::forward}}},
+                                          .zero_heading = pi / 2};
 
-/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: body axes forward, left, up in a world of east,
-/// north, up. Source: ROS REP 103.
-inline const AngleConvention ros_roll_pitch_yaw{
-    .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, -axis::right}, {&RollPitchYaw::roll, axis::forward}}},
-    .zero_heading = pi / 2};
+/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: body axes forward, left, up in a
+/// world of east, north, up. Source: ROS REP 103.
+inline const AngleConvention ros_roll_pitch_yaw{.turns = {{{&RollPitchYaw::yaw, axis::up},
+                                                           {&RollPitchYaw::pitch, -axis::right},
+                                                           {&RollPitchYaw::roll, axis::forward}}},
+                                                .zero_heading = pi / 2};
 
 /// Attitude, from the body to the world, of angles in a convention.
 [[nodiscard]] inline Rotation rotation_of(const RollPitchYaw& angles, const AngleConvention& convention) noexcept {
   Rotation rotation = rotation_about(axis::up, -convention.zero_heading);
-  for (const ElementalRotation& turn : convention.turns) rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
+  for (const ElementalRotation& turn : convention.turns)
+    rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
   return normalize(rotation);
 }
 
-/// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2, pi/2], the others in [-pi, pi]. They
-/// reproduce the attitude to some 1e-14 everywhere. In gimbal lock (middle angle +-pi/2) all rotation is yaw, or the first angle if yaw is
-/// in the middle. Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
+/// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2, pi/2], the others in
+/// [-pi, pi]. They reproduce the attitude to some 1e-14 everywhere. In gimbal lock (middle angle +-pi/2) all rotation
+/// is yaw, or the first angle if yaw is in the middle. Source: half-angle sums of the product of three quaternions, as
+/// in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
 [[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
   const auto& [first, middle, last] = convention.turns;
   const Rotation q = rotation_about(axis::up, convention.zero_heading) * rotation;
@@ -133,15 +142,23 @@ struct Axes {
   }
 
   /// Converts an attitude between these axes to right, forward, up and east, north, up.
-  [[nodiscard]] Rotation from_file(const Rotation& rotation) const noexcept { return of_world() * rotation * conjugate(of_body()); }
+  [[nodiscard]] Rotation from_file(const Rotation& rotation) const noexcept {
+    return of_world() * rotation * conjugate(of_body());
+  }
 
   /// Inverse of `from_file`.
-  [[nodiscard]] Rotation to_file(const Rotation& rotation) const noexcept { return conjugate(of_world()) * rotation * of_body(); }
+  [[nodiscard]] Rotation to_file(const Rotation& rotation) const noexcept {
+    return conjugate(of_world()) * rotation * of_body();
+  }
 
  private:
-  static Rotation down_from_up() noexcept { return rotation_about(axis::right + axis::forward, pi); }  // swaps x and y, and negates z
+  static Rotation down_from_up() noexcept {
+    return rotation_about(axis::right + axis::forward, pi);
+  }  // swaps x and y, and negates z
 
-  [[nodiscard]] Rotation of_world() const noexcept { return world == WorldAxes::east_north_up ? no_rotation : down_from_up(); }
+  [[nodiscard]] Rotation of_world() const noexcept {
+    return world == WorldAxes::east_north_up ? no_rotation : down_from_up();
+  }
   [[nodiscard]] Rotation of_body() const noexcept {
     if (body == BodyAxes::right_forward_up) return no_rotation;
     return body == BodyAxes::forward_right_down ? down_from_up() : rotation_about(axis::up, pi / 2);

@@ -30,7 +30,9 @@ struct QuantityValues {
   std::array<double, 15> values{};  ///< [s, m, rad or 1]
 
   [[nodiscard]] double& operator[](Quantity quantity) noexcept { return values[static_cast<std::size_t>(quantity)]; }
-  [[nodiscard]] double operator[](Quantity quantity) const noexcept { return values[static_cast<std::size_t>(quantity)]; }
+  [[nodiscard]] double operator[](Quantity quantity) const noexcept {
+    return values[static_cast<std::size_t>(quantity)];
+  }
 };
 
 /// Unit of angles in columns whose names do not state it.
@@ -46,12 +48,30 @@ namespace detail {
 
 /// Names of columns; the first of each quantity is the preferred one.
 inline constexpr auto quantity_names = std::to_array<std::pair<std::string_view, Quantity>>({
-    {"time", Quantity::time},      {"t", Quantity::time},       {"gps_time", Quantity::time}, {"gpstime", Quantity::time},
-    {"timestamp", Quantity::time}, {"x", Quantity::x},          {"y", Quantity::y},           {"z", Quantity::z},
-    {"east", Quantity::east},      {"easting", Quantity::east}, {"north", Quantity::north},   {"northing", Quantity::north},
-    {"up", Quantity::up},          {"height", Quantity::up},    {"altitude", Quantity::up},   {"down", Quantity::down},
-    {"roll", Quantity::roll},      {"pitch", Quantity::pitch},  {"yaw", Quantity::yaw},       {"heading", Quantity::yaw},
-    {"qx", Quantity::qx},          {"qy", Quantity::qy},        {"qz", Quantity::qz},         {"qw", Quantity::qw},
+    {"time", Quantity::time},
+    {"t", Quantity::time},
+    {"gps_time", Quantity::time},
+    {"gpstime", Quantity::time},
+    {"timestamp", Quantity::time},
+    {"x", Quantity::x},
+    {"y", Quantity::y},
+    {"z", Quantity::z},
+    {"east", Quantity::east},
+    {"easting", Quantity::east},
+    {"north", Quantity::north},
+    {"northing", Quantity::north},
+    {"up", Quantity::up},
+    {"height", Quantity::up},
+    {"altitude", Quantity::up},
+    {"down", Quantity::down},
+    {"roll", Quantity::roll},
+    {"pitch", Quantity::pitch},
+    {"yaw", Quantity::yaw},
+    {"heading", Quantity::yaw},
+    {"qx", Quantity::qx},
+    {"qy", Quantity::qy},
+    {"qz", Quantity::qz},
+    {"qw", Quantity::qw},
 });
 
 enum class Dimension : std::uint8_t { time, length, angle, number };
@@ -81,7 +101,8 @@ inline constexpr auto units = std::to_array<Unit>({
     {"rad", Dimension::angle, 1},
 });
 
-/// Normal form of a name: small letters, and one underscore for each run of other characters: "Roll [deg]" becomes "roll_deg".
+/// Normal form of a name: small letters, and one underscore for each run of other characters: "Roll [deg]" becomes
+/// "roll_deg".
 [[nodiscard]] inline std::string plain(std::string_view name) {
   std::string result;
   for (const char c : text::lower(name)) {
@@ -97,8 +118,8 @@ inline constexpr auto units = std::to_array<Unit>({
 
 }  // namespace detail
 
-/// Column of a name; empty if unknown. A unit may follow: `time_s`, `x_mm`, `Roll [deg]`; without one, times are in seconds and lengths in
-/// metres. A word may precede a height: `Ellipsoid height`. Case does not matter.
+/// Column of a name; empty if unknown. A unit may follow: `time_s`, `x_mm`, `Roll [deg]`; without one, times are in
+/// seconds and lengths in metres. A word may precede a height: `Ellipsoid height`. Case does not matter.
 [[nodiscard]] inline std::optional<TrajectoryColumn> trajectory_column(std::string_view name, AngleUnit angles) {
   const std::string whole = detail::plain(name);
   for (const auto& [known, quantity] : detail::quantity_names) {
@@ -106,7 +127,8 @@ inline constexpr auto units = std::to_array<Unit>({
     const detail::Dimension dimension = detail::dimension_of(quantity);
     std::string_view unit = std::string_view(whole).substr(known.size());
     if (unit.empty())
-      return TrajectoryColumn{quantity, dimension == detail::Dimension::angle && angles == AngleUnit::degree ? degrees(1) : 1};
+      return TrajectoryColumn{quantity,
+                              dimension == detail::Dimension::angle && angles == AngleUnit::degree ? degrees(1) : 1};
     if (!unit.starts_with('_')) continue;
     unit.remove_prefix(1);
     for (const detail::Unit& u : detail::units)
@@ -123,7 +145,8 @@ inline constexpr auto units = std::to_array<Unit>({
   for (const auto& [known, quantity] : detail::quantity_names) {
     names.emplace_back(known);
     for (const detail::Unit& unit : detail::units)
-      if (unit.dimension == detail::dimension_of(quantity)) names.push_back(std::string(known) + '_' + std::string(unit.name));
+      if (unit.dimension == detail::dimension_of(quantity))
+        names.push_back(std::string(known) + '_' + std::string(unit.name));
   }
   return std::string(text::nearest_name(whole, names).name);
 }
@@ -135,11 +158,13 @@ class TrajectoryColumns {
   TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
     for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
       const auto same = [&](const std::string& other) { return detail::plain(other) == detail::plain(names[i]); };
-      columns_.push_back(std::any_of(left_out.begin(), left_out.end(), same) ? std::nullopt : trajectory_column(names[i], angles));
+      columns_.push_back(std::any_of(left_out.begin(), left_out.end(), same) ? std::nullopt
+                                                                             : trajectory_column(names[i], angles));
       if (columns_.back())
         put(i);
       else if (std::none_of(left_out.begin(), left_out.end(), same)) {
-        problem_ = "is not a known column: did you mean '" + nearest_trajectory_column(names[i]) + "'? Others must be set as left out";
+        problem_ = "is not a known column: did you mean '" + nearest_trajectory_column(names[i]) +
+                   "'? Others must be set as left out";
         culprit_ = i;
       }
     }
@@ -155,13 +180,16 @@ class TrajectoryColumns {
   /// Columns in the order of the file; empty for ignored ones.
   [[nodiscard]] const std::vector<std::optional<TrajectoryColumn>>& all() const noexcept { return columns_; }
 
-  [[nodiscard]] bool has(Quantity quantity) const noexcept { return places_[static_cast<std::size_t>(quantity)].has_value(); }
+  [[nodiscard]] bool has(Quantity quantity) const noexcept {
+    return places_[static_cast<std::size_t>(quantity)].has_value();
+  }
 
  private:
   void put(std::size_t i) {
     std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
     if (place) {
-      problem_ = "duplicates column " + std::to_string(*place + 1) + ": expected one of them, the other set as left out";
+      problem_ =
+          "duplicates column " + std::to_string(*place + 1) + ": expected one of them, the other set as left out";
       culprit_ = i;
     }
     place = i;
@@ -170,14 +198,16 @@ class TrajectoryColumns {
   /// Requires a time, one whole position, and at most one attitude.
   void require_whole() {
     using enum Quantity;
-    const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),
-              quaternion = count({qx, qy, qz, qw});
+    const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}),
+              angles = count({roll, pitch, yaw}), quaternion = count({qx, qy, qz, qw});
     if (!has(time))
       problem_ = "no column is the time: expected one named 'time_s'";
     else if (!(xyz == 3 && directions + vertical == 0) && !(xyz == 0 && directions == 2 && vertical == 1))
       problem_ = "the columns do not define one position: expected either x, y, z or east, north and up or down";
     else if (quaternion > 0 && (quaternion < 4 || angles > 0))
-      problem_ = "the columns do not define one attitude: expected either angles or qx, qy, qz and qw, the others set as left out";
+      problem_ =
+          "the columns do not define one attitude: expected either angles or qx, qy, qz and qw, the others set as left "
+          "out";
   }
 
   [[nodiscard]] int count(std::initializer_list<Quantity> quantities) const {

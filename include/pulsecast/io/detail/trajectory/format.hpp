@@ -22,15 +22,16 @@ enum class ColumnNames : std::uint8_t {
   nowhere,     ///< nowhere, by agreement
 };
 
-/// Format of a trajectory file, for reading and writing. Names and units: see `trajectory_column`. Lines that begin with # are comments.
+/// Format of a trajectory file, for reading and writing. Names and units: see `trajectory_column`. Lines that begin
+/// with # are comments.
 struct TrajectoryFormat {
   ColumnNames names = ColumnNames::first_line;  ///< place of the names
   /// Columns to write, in this order, and to read from a file without names.
   std::vector<std::string> columns{"time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "heading_deg"};
-  std::vector<std::string> left_out{};          ///< columns of the file to ignore
-  char separator = ',';                         ///< comma, semicolon, tab or blank for writing; found when reading, unless fixed
-  bool fixed_separator = false;                 ///< true if files to be read must have this separator
-  bool more_columns = false;                    ///< true if a file may have other columns, which are ignored
+  std::vector<std::string> left_out{};  ///< columns of the file to ignore
+  char separator = ',';          ///< comma, semicolon, tab or blank for writing; found when reading, unless fixed
+  bool fixed_separator = false;  ///< true if files to be read must have this separator
+  bool more_columns = false;     ///< true if a file may have other columns, which are ignored
   AngleUnit angle_unit = AngleUnit::degree;     ///< unit of angles in columns whose names do not state it
   AngleConvention angles = heading_pitch_roll;  ///< meaning of roll, pitch and yaw
   Axes axes{};                                  ///< axes of x, y, z and of qx, qy, qz
@@ -38,7 +39,8 @@ struct TrajectoryFormat {
   void validate() const {
     angles.validate();
     if (std::string_view(",;\t ").find(separator) == std::string_view::npos)
-      throw SettingError("TrajectoryFormat::separator (character code)", separator, "", "a comma, a semicolon, a tab or a blank");
+      throw SettingError("TrajectoryFormat::separator (character code)", separator, "",
+                         "a comma, a semicolon, a tab or a blank");
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (columns[i].find_first_of(separator == ' ' ? ",;\"#\t\r\n " : ",;\"#\t\r\n") != std::string::npos)
         throw SettingError("TrajectoryFormat::columns (index)", static_cast<double>(i), "",
@@ -57,7 +59,8 @@ struct TrajectoryFormat {
 /// CSV: columns in any order, with names and units in the first line.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees. Other columns may be between, if named.
+/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees. Other columns may be
+/// between, if named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
   return {.names = ColumnNames::comments,
           .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},
@@ -73,8 +76,8 @@ struct TrajectoryFormat {
           .angles = helios_canonical};
 }
 
-/// Time, position and quaternion, separated by blanks, as in the TUM RGB-D benchmark (Sturm et al. 2012). Body axes are a robot's: x
-/// forward, y left, z up (ROS REP 103).
+/// Time, position and quaternion, separated by blanks, as in the TUM RGB-D benchmark (Sturm et al. 2012). Body axes are
+/// a robot's: x forward, y left, z up (ROS REP 103).
 [[nodiscard]] inline TrajectoryFormat tum_format() {
   return {.names = ColumnNames::nowhere,
           .columns = {"time", "x", "y", "z", "qx", "qy", "qz", "qw"},

@@ -23,8 +23,8 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as by `Waypoints`. A window that begins at a
-/// jump begins after it; one that ends there ends before it.
+/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as by `Waypoints`. A window
+/// that begins at a jump begins after it; one that ends there ends before it.
 struct TimeWindow {
   std::optional<double> start{};  ///< begin; by default the first pose [s]
   std::optional<double> end{};    ///< end; by default the last pose [s]
@@ -33,7 +33,8 @@ struct TimeWindow {
     if (start) require_finite("TimeWindow::start", *start, "s");
     if (end) require_finite("TimeWindow::end", *end, "s");
     if (start && end && *start > *end)
-      throw SettingError("TimeWindow::start", *start, "s", "no later than the end, " + pulsecast::detail::to_text(*end));
+      throw SettingError("TimeWindow::start", *start, "s",
+                         "no later than the end, " + pulsecast::detail::to_text(*end));
   }
 };
 
@@ -52,7 +53,8 @@ struct TrajectoryTable {
 /// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
 ///
 /// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
-[[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
+[[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path,
+                                              const TrajectoryFormat& format = csv_format(),
                                               const TimeWindow& window = {});
 
 namespace detail {
@@ -127,7 +129,8 @@ class TrajectoryReader {
   void take_names() {
     const std::vector<std::string_view>& cells = table_.cells();
     if (text::finite_number_in(cells.front()))
-      table_.fail_here("has numbers: expected the names of the columns, as in time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
+      table_.fail_here(
+          "has numbers: expected the names of the columns, as in time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
     names_.assign(cells.begin(), cells.end());
     understand();
   }
@@ -164,7 +167,9 @@ class TrajectoryReader {
   }
 
   /// True if extra columns are allowed: the file or the format names the others.
-  [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
+  [[nodiscard]] bool may_have_more() const noexcept {
+    return format_.more_columns && (named_ || format_.names != ColumnNames::comments);
+  }
 
   void leave_out_unknown() {
     std::string unknown;
@@ -176,7 +181,8 @@ class TrajectoryReader {
       format_.left_out.push_back(name);
       unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
     }
-    if (!unknown.empty()) result_.warnings.push_back(table_.path() + ": unknown columns are left out: " + unknown.substr(0, 1000));
+    if (!unknown.empty())
+      result_.warnings.push_back(table_.path() + ": unknown columns are left out: " + unknown.substr(0, 1000));
   }
 
   void row() {
@@ -208,7 +214,8 @@ class TrajectoryReader {
     const Rotation given = pulsecast::detail::rotation_wxyz(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
+      table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) +
+                       ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
@@ -229,12 +236,16 @@ class TrajectoryReader {
 
   void remarks() {
     const auto of = [](const Oddity& oddity) { return ", the first of " + std::to_string(oddity.count); };
-    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the previous pose" + of(unsorted_) + ": the poses were sorted by time");
+    if (unsorted_.count > 0)
+      warn(unsorted_.first, "is earlier than the previous pose" + of(unsorted_) + ": the poses were sorted by time");
     if (repeated_.count > 0) warn(repeated_.first, "repeats a pose" + of(repeated_) + ": it is left out");
-    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion that is not unit" + of(not_unit_) + ": it is normalized");
+    if (not_unit_.count > 0)
+      warn(not_unit_.first, "has a quaternion that is not unit" + of(not_unit_) + ": it is normalized");
     if (columns_->has(Quantity::qw)) return;
-    for (const auto& [quantity, name] : {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
-      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column for the " + name + ": 0 is assumed");
+    for (const auto& [quantity, name] :
+         {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
+      if (!columns_->has(quantity))
+        result_.warnings.push_back(table_.path() + ": no column for the " + name + ": 0 is assumed");
   }
 
   /// Cuts the poses to the window and starts its clock.
@@ -249,8 +260,10 @@ class TrajectoryReader {
     if (window.end && *window.end > last)
       result_.warnings.push_back(table_.path() + ": the window ends after the last pose, at " + seconds(last));
     result_.start_time = start;
-    const auto within = std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
-    const auto behind = std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
+    const auto within =
+        std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
+    const auto behind =
+        std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
     result_.poses.push_back((within - 1)->pose.time == start ? (within - 1)->pose : between(within, start));
     Oddity jumps;
     for (auto row = within; row != behind; ++row) {
@@ -261,8 +274,8 @@ class TrajectoryReader {
     note_gaps();
     for (TimedPose& pose : result_.poses) pose.time -= start;
     if (jumps.count > 0)
-      warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " + std::to_string(jumps.count) +
-                            ": a jump of the platform");
+      warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " +
+                            std::to_string(jumps.count) + ": a jump of the platform");
   }
 
   /// Notes intervals without poses of more than 20 times the median, from 4 intervals on.
@@ -283,8 +296,8 @@ class TrajectoryReader {
     }
     if (gaps > 0)
       result_.warnings.push_back(
-          table_.path() + ": no pose between " + seconds(poses[longest - 1].time) + " and " + seconds(poses[longest].time) +
-          ", the longest of " + std::to_string(gaps) +
+          table_.path() + ": no pose between " + seconds(poses[longest - 1].time) + " and " +
+          seconds(poses[longest].time) + ", the longest of " + std::to_string(gaps) +
           " gaps of more than 20 times the median interval: poses are interpolated across it; windows (tStart, tEnd) "
           "leave gaps out");
   }
@@ -292,8 +305,9 @@ class TrajectoryReader {
   /// Pose at a time between a row and the one before.
   [[nodiscard]] static TimedPose between(std::vector<Row>::const_iterator row, double time) {
     const TimedPose &before = (row - 1)->pose, &after = row->pose;
-    const auto pose = Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
-                          .at(Tick::of_seconds(time - before.time));
+    const auto pose =
+        Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
+            .at(Tick::of_seconds(time - before.time));
     return {time, pose.position, pose.rotation};
   }
 
@@ -316,7 +330,8 @@ class TrajectoryReader {
 
 }  // namespace detail
 
-inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format, const TimeWindow& window) {
+inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format,
+                                       const TimeWindow& window) {
   return reading(path, [&] { return detail::TrajectoryReader(path, format).read(window); });
 }
 
