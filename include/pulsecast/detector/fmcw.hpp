@@ -30,9 +30,9 @@ struct FmcwSettings {
   double threshold = 1e-12;       ///< least power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
   bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum
-                            ///< efficiency, has the power of the noise
-  bool speckle = false;          ///< adds fields of random phases, as of rough surfaces, in place of powers
-  std::size_t returns_max = 15;  ///< strongest echoes kept, from 1 to 64
+                                  ///< efficiency, has the power of the noise
+  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
+  std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 
   /// @throws SettingError
   void validate() const {
