@@ -8,8 +8,8 @@
 
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scene/any_target.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "surveys.hpp"
 

@@ -22,7 +22,7 @@
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "report.hpp"
 #include "scenes.hpp"

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include <pulsecast/detector/band_limited_receiver.hpp>
+#include <pulsecast/material/weather.hpp>
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "scenes.hpp"

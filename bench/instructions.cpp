@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "scenes.hpp"
 #include "surveys.hpp"

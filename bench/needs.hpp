@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 /// What the programs `needs_*.cpp` share: the same ground, the same flight, one clock. They differ in what they hold
 /// besides.

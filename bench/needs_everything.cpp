@@ -14,9 +14,9 @@
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 #include <pulsecast/scanner/any_source.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "needs.hpp"
 

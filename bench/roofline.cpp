@@ -18,7 +18,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "report.hpp"
 #include "scenes.hpp"

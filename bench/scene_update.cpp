@@ -17,8 +17,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/deforming_mesh.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/shape/deforming_mesh.hpp>
 
 #include "../examples/tree.hpp"
 

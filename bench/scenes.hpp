@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/material/variation.hpp>
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
-#include <pulsecast/scene/variation.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "../examples/street.hpp"
 #include "../examples/tree.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "report.hpp"
 #include "scenes.hpp"

@@ -22,10 +22,10 @@
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/platform/block_flight.hpp>
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "command_line.hpp"
 #include "summary.hpp"

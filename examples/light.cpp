@@ -16,12 +16,12 @@
 #include <pulsecast/deflector/palmer_mirror.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
+#include <pulsecast/material/water_types.hpp>
+#include <pulsecast/material/weather.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/water_surface.hpp>
-#include <pulsecast/scene/water_types.hpp>
-#include <pulsecast/scene/weather.hpp>
-#include <pulsecast/scene/wind_waves.hpp>
+#include <pulsecast/shape/water_surface.hpp>
+#include <pulsecast/shape/wind_waves.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "command_line.hpp"

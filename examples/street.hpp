@@ -15,7 +15,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Two streets that cross in a small town: houses with windows, parked cars, lamp posts, trees; about 50,000 triangles.
 /// One street runs from south to north, the other from west to east; they cross at the origin.

@@ -12,7 +12,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Trees made by code: what grows where is drawn from a seed, so the same seed gives the same tree everywhere.
 namespace wood {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "tree.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "../../examples/wood.hpp"
 #include "../report.hpp"

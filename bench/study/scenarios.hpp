@@ -14,8 +14,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
-#include <pulsecast/scene/height_field.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
 
 #include "../../examples/street.hpp"
 #include "../../examples/wood.hpp"

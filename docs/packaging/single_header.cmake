@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 
 # Writes headers, given as a list of their paths, and all that they include of the library as one file:
-# cmake -DINCLUDE=include "-DHEADERS=pulsecast/pulsecast.hpp;pulsecast/scene/voxel_grid.hpp" -DOUT=pulsecast.hpp -P single_header.cmake
+# cmake -DINCLUDE=include "-DHEADERS=pulsecast/pulsecast.hpp;pulsecast/shape/voxel_grid.hpp" -DOUT=pulsecast.hpp -P single_header.cmake
 # INCLUDE is a folder, or a list of folders of which the first that has a header gives it.
 cmake_minimum_required(VERSION 3.25)
 set(written)

@@ -10,7 +10,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 #include "options.hpp"
 

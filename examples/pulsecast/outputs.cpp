@@ -19,7 +19,7 @@
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/scene/hillshade.hpp>
+#include <pulsecast/shape/hillshade.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;

@@ -11,7 +11,7 @@
 #include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 #include "options.hpp"
 

@@ -21,11 +21,11 @@
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/material/water_types.hpp>
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/ray_queries.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/water_types.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../pulsecast/loading.hpp"

@@ -25,6 +25,8 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/echo.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/material/spectrum.hpp>
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/straight_line.hpp>
@@ -34,11 +36,9 @@
 #include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/scanner.hpp>
-#include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/spectrum.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/version.hpp>

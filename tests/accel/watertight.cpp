@@ -9,7 +9,7 @@
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/kd_tree.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/scenes.hpp"
 

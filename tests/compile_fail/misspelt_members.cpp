@@ -51,7 +51,7 @@
 #include <pulsecast/run.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "../support/archetypes.hpp"
 

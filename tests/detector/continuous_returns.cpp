@@ -18,7 +18,7 @@
 #include <pulsecast/detector/photon_counting.hpp>
 #include <pulsecast/detector/returns.hpp>
 #include <pulsecast/detector/shape_deviation.hpp>
-#include <pulsecast/scene/weather.hpp>
+#include <pulsecast/material/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/detect.hpp"

@@ -13,7 +13,7 @@
 
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
-#include <pulsecast/scene/pure_water.hpp>
+#include <pulsecast/material/pure_water.hpp>
 
 #include "support/temporary_folder.hpp"
 

@@ -18,7 +18,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "extremes/detectors.hpp"
 #include "extremes/row.hpp"

@@ -14,9 +14,9 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "extremes/meshes.hpp"
 #include "extremes/row.hpp"

@@ -16,7 +16,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "extremes/detectors.hpp"
 #include "extremes/row.hpp"

@@ -15,7 +15,7 @@
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "extremes/row.hpp"
 #include "support/double_double.hpp"

@@ -15,9 +15,9 @@
 
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "extremes/meshes.hpp"
 #include "extremes/row.hpp"

@@ -25,7 +25,7 @@
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/io/scene_cache.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "fuzz/fuzz.hpp"
 #include "support/generators.hpp"

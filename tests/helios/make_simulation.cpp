@@ -16,7 +16,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/cloud.hpp>
-#include <pulsecast/scene/weather.hpp>
+#include <pulsecast/material/weather.hpp>
 
 #include "support/laws.hpp"
 #include "support/relative.hpp"

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include <pulsecast/io/detail/geotiff/samples.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"

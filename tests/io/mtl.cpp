@@ -10,7 +10,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/scene/water_types.hpp>
+#include <pulsecast/material/water_types.hpp>
 
 #include "support/file_errors.hpp"
 #include "support/relative.hpp"

@@ -17,7 +17,7 @@
 
 #include <pulsecast/io/scan_splitter.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"

@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 #include <stb/stb_image_write.h>
 
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/shape/height_field.hpp>
 
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"

@@ -25,8 +25,8 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 namespace pulsecast::io {
 namespace {

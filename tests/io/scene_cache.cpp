@@ -16,11 +16,11 @@
 
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"

@@ -17,7 +17,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"

@@ -13,7 +13,7 @@
 
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "python/interpreter.hpp"
 

@@ -9,11 +9,11 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/platform/pose_errors.hpp>
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scene/layered.hpp>
-#include <pulsecast/scene/media.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/sensor/velodyne.hpp>
 #include <pulsecast/transport/light_paths.hpp>

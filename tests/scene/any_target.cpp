@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/layered.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include <doctest/doctest.h>
 

@@ -16,8 +16,8 @@
 
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "support/allocations.hpp"
 #include "support/generators.hpp"

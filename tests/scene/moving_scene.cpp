@@ -21,7 +21,7 @@
 #include <pulsecast/run.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/scanner.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 
 #include "support/archetypes.hpp"

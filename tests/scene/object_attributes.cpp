@@ -14,7 +14,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/refused_field.hpp"
 

@@ -13,10 +13,10 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/material/spectrum.hpp>
 #include <pulsecast/scene/layered.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/spectrum.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 using namespace pulsecast;
 

@@ -14,12 +14,12 @@
 
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"

@@ -24,7 +24,7 @@
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/allocations.hpp"
 #include "support/generators.hpp"

@@ -14,7 +14,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/allocations.hpp"
 #include "support/archetypes.hpp"

@@ -11,7 +11,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/scene/layered.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 namespace pulsecast {
 namespace {

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 /// Pulses through a transport alone, without a detector.

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/generators.hpp"
 

@@ -14,7 +14,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"

@@ -13,7 +13,7 @@
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"

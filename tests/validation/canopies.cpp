@@ -18,8 +18,8 @@
 
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "support/generators.hpp"
 #include "validation/one_pulse.hpp"

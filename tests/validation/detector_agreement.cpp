@@ -19,7 +19,7 @@
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "../../examples/tree.hpp"
 #include "support/generators.hpp"

@@ -22,7 +22,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 
 #include "validation/table.hpp"

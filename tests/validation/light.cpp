@@ -17,10 +17,10 @@
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/scene/transmissive_voxels.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
-#include <pulsecast/scene/water_surface.hpp>
-#include <pulsecast/scene/wind_waves.hpp>
+#include <pulsecast/shape/transmissive_voxels.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
+#include <pulsecast/shape/water_surface.hpp>
+#include <pulsecast/shape/wind_waves.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/generators.hpp"

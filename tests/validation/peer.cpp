@@ -14,8 +14,8 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scene/material.hpp>
 
 #include "validation/table.hpp"
 

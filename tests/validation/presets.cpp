@@ -12,9 +12,9 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/scene/media.hpp>
-#include <pulsecast/scene/water_types.hpp>
-#include <pulsecast/scene/weather.hpp>
+#include <pulsecast/material/media.hpp>
+#include <pulsecast/material/water_types.hpp>
+#include <pulsecast/material/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/light.hpp"

@@ -17,7 +17,7 @@
 
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/scene/scene.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"

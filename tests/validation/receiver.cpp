@@ -21,7 +21,7 @@
 #include <pulsecast/detector/phase_shift.hpp>
 #include <pulsecast/detector/photon_counting.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
 
 #include "validation/table.hpp"
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/accel/binary_sah_tree.hpp>
+#include <pulsecast/accel/detail/binary_sah_tree.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

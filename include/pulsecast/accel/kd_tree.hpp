@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/accel/kd_tree_builder.hpp>
-#include <pulsecast/accel/sah.hpp>
+#include <pulsecast/accel/detail/kd_tree_builder.hpp>
+#include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>

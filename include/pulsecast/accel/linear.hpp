@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/accel/sah.hpp>
+#include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 

@@ -20,13 +20,13 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
+#include <pulsecast/detector/detail/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/filtered_noise.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
+#include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
-#include <pulsecast/detector/filtered_noise.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
-#include <pulsecast/detector/received_pulse.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 

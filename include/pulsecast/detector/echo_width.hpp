@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -17,8 +17,8 @@
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

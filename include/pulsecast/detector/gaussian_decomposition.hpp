@@ -16,10 +16,10 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
-#include <pulsecast/detector/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/system_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

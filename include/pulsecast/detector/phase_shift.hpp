@@ -15,7 +15,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -17,10 +17,10 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
-#include <pulsecast/detector/by_pulse_length.hpp>
-#include <pulsecast/detector/peaks.hpp>
+#include <pulsecast/detector/detail/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/peaks.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -9,7 +9,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/detector/filtered_noise.hpp>
+#include <pulsecast/detector/detail/filtered_noise.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

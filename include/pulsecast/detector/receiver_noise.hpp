@@ -9,7 +9,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/ideal_samples.hpp>
+#include <pulsecast/detector/detail/ideal_samples.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {

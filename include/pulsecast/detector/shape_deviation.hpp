@@ -14,7 +14,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
-#include <pulsecast/detector/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -18,11 +18,11 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/raster.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/raster.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Converts the scene of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {

@@ -19,11 +19,11 @@
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
 namespace PULSECAST_NAMESPACE::helios {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -10,7 +10,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Meshes of PLY, glTF, GLB, STL, DAE and FBX files, by assimp. OBJ files are read by `read_obj`. Other formats of
 /// assimp are untested.

@@ -13,7 +13,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

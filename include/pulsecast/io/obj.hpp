@@ -11,8 +11,8 @@
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
-#include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -10,9 +10,9 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/scene/image.hpp>
-#include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/material/image.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Pictures of surfaces: PNG, JPEG, BMP, TGA, GIF, PSD and PNM, read by stb_image.
 namespace PULSECAST_NAMESPACE::io {

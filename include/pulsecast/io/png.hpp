@@ -25,7 +25,7 @@
 #include <pulsecast/io/detail/png/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -12,7 +12,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

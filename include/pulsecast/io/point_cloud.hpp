@@ -14,7 +14,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/point_columns.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -26,7 +26,7 @@
 #include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/version.hpp>

@@ -11,7 +11,7 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
-#include <pulsecast/scene/spectrum.hpp>
+#include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

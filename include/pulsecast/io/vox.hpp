@@ -12,7 +12,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -18,10 +18,10 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/curved_path.hpp>
+#include <pulsecast/platform/detail/curved_path.hpp>
+#include <pulsecast/platform/detail/piecewise_cubic.hpp>
+#include <pulsecast/platform/detail/speed_profile.hpp>
 #include <pulsecast/platform/heading.hpp>
-#include <pulsecast/platform/piecewise_cubic.hpp>
-#include <pulsecast/platform/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

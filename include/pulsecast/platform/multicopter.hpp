@@ -15,9 +15,9 @@
 #include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/detail/piecewise_cubic.hpp>
+#include <pulsecast/platform/detail/speed_profile.hpp>
 #include <pulsecast/platform/heading.hpp>
-#include <pulsecast/platform/piecewise_cubic.hpp>
-#include <pulsecast/platform/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

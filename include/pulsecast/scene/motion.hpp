@@ -20,8 +20,8 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/detail/motion_sweep.hpp>
 #include <pulsecast/scene/detail/motion_timeline.hpp>
+#include <pulsecast/scene/detail/screw.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/screw.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

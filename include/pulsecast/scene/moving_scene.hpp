@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <pulsecast/base/search.hpp>
+#include <pulsecast/scene/detail/moving_index.hpp>
 #include <pulsecast/scene/motion.hpp>
-#include <pulsecast/scene/moving_index.hpp>
 #include <pulsecast/scene/scene.hpp>
 
 namespace PULSECAST_NAMESPACE {

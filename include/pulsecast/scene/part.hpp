@@ -17,7 +17,7 @@
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -11,7 +11,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/surface_query.hpp>
 

@@ -11,7 +11,7 @@
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/triangle.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

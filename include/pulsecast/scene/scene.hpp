@@ -19,7 +19,7 @@
 #include <pulsecast/accel/refit.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/scene/detail/bundle_budget.hpp>
+#include <pulsecast/geometry/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/detail/surface_notes.hpp>
 #include <pulsecast/scene/part.hpp>

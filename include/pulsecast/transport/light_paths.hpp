@@ -10,7 +10,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/media.hpp>
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
 #include <pulsecast/transport/illumination.hpp>
 #include <pulsecast/transport/plane_spread.hpp>

@@ -17,9 +17,9 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
-#include <pulsecast/detector/filtered_noise.hpp>
-#include <pulsecast/detector/pulse_sum.hpp>
-#include <pulsecast/detector/received_pulse.hpp>
+#include <pulsecast/detector/detail/filtered_noise.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
+#include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 

@@ -21,9 +21,9 @@
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/png_heights.hpp>
 #include <pulsecast/io/world_file.hpp>
-#include <pulsecast/scene/class_materials.hpp>
-#include <pulsecast/scene/height_field.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/class_materials.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 /// Conversion of the rasters of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {

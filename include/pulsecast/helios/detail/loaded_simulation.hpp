@@ -34,7 +34,7 @@
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 

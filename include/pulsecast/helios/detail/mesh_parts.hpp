@@ -12,7 +12,7 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/mesh_file.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Parts of mesh files.
 namespace PULSECAST_NAMESPACE::helios {

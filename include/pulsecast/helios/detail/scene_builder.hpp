@@ -26,12 +26,12 @@
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/io/vox.hpp>
-#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/material/variation.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/variation.hpp>
-#include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Conversion of the scene of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {

@@ -24,7 +24,7 @@
 #include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 /// Reading of Esri ASCII grids.
 namespace PULSECAST_NAMESPACE::io {

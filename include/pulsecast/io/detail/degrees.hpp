@@ -8,7 +8,7 @@
 #include <string>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

@@ -19,7 +19,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
 
 /// Reading of leaf projections.
 namespace PULSECAST_NAMESPACE::io {

@@ -26,7 +26,7 @@
 #include <pulsecast/io/detail/text/points.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/point_cloud.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
 
 /// Reading of point clouds.
 namespace PULSECAST_NAMESPACE::io {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/scene/spectrum.hpp>
+#include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

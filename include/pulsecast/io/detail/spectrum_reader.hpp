@@ -21,7 +21,7 @@
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/scene/spectrum.hpp>
+#include <pulsecast/material/spectrum.hpp>
 
 /// Reading of spectra.
 namespace PULSECAST_NAMESPACE::io {

@@ -24,7 +24,7 @@
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/vox.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
 
 /// Reading of voxel files.
 namespace PULSECAST_NAMESPACE::io {

@@ -12,8 +12,8 @@
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/detail/motion_timeline.hpp>
+#include <pulsecast/scene/detail/screw.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/screw.hpp>
 
 /// Boxes around all that a body passes on its timeline.
 namespace PULSECAST_NAMESPACE::detail {

@@ -12,7 +12,7 @@
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/scene/screw.hpp>
+#include <pulsecast/scene/detail/screw.hpp>
 
 /// Motion of a body as a list of steady pieces, in closed form over time.
 namespace PULSECAST_NAMESPACE::detail {

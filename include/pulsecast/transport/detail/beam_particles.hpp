@@ -11,8 +11,8 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/scanner/beam.hpp>
-#include <pulsecast/scene/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/illumination.hpp>
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/illumination.hpp>
 

@@ -12,8 +12,8 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle.hpp>
-#include <pulsecast/scene/fresnel.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/fresnel.hpp>
+#include <pulsecast/material/material.hpp>
 
 /// Contract: light on its way. A `Pencil` is the subrays of a pulse that still seem to come from one point, a
 /// `LightPath` a subray that was refracted.

@@ -14,7 +14,7 @@
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/scene/media.hpp>
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>

@@ -14,7 +14,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/media.hpp>
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/illumination.hpp>

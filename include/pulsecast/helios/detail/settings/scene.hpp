@@ -16,7 +16,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/part_source.hpp>
-#include <pulsecast/scene/media.hpp>
+#include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -164,7 +164,7 @@ struct LightSettings {
   bool operator==(const LightSettings&) const = default;
 };
 
-/// Media by visibility or rate: the functions of `scene/weather.hpp`.
+/// Media by visibility or rate: the functions of `material/weather.hpp`.
 enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, snow };
 
 namespace detail {

@@ -17,7 +17,7 @@
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
 #include <pulsecast/io/world_file.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

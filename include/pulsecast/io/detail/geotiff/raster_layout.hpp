@@ -11,7 +11,7 @@
 #include <tiffio.h>
 
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

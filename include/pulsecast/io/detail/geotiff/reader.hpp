@@ -30,7 +30,7 @@
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/input_file.hpp>
-#include <pulsecast/scene/raster.hpp>
+#include <pulsecast/shape/raster.hpp>
 
 /// Reading of GeoTIFF files.
 namespace PULSECAST_NAMESPACE::io {

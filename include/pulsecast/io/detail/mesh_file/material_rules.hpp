@@ -22,7 +22,7 @@
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 
 /// Materials of mesh files.
 namespace PULSECAST_NAMESPACE::io::detail {

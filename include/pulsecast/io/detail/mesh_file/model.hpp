@@ -14,9 +14,9 @@
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
-#include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/mesh_data.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/part.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Settings and content of mesh files.
 namespace PULSECAST_NAMESPACE::io {

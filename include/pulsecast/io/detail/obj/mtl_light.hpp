@@ -15,8 +15,8 @@
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/water_types.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/material/water_types.hpp>
 
 /// Keys of MTL files for light that goes on from a surface.
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -24,7 +24,7 @@
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/scene/material.hpp>
+#include <pulsecast/material/material.hpp>
 
 /// Reading of MTL files.
 namespace PULSECAST_NAMESPACE::io {

@@ -24,8 +24,8 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
-#include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Reading of OBJ files.
 namespace PULSECAST_NAMESPACE::io {

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_DETAIL_BY_PULSE_LENGTH_HPP
+#define PULSECAST_DETECTOR_DETAIL_BY_PULSE_LENGTH_HPP
+
+#include <utility>
+#include <vector>
+
+#include <pulsecast/pulse.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// What a detector prepares for each pulse length, before the first pulse. A device has few of them.
+template <class Prepared>
+class ByPulseLength {
+ public:
+  /// What was prepared for pulses as long as a laser's; null if nothing was.
+  [[nodiscard]] const Prepared* find(const Laser& laser) const noexcept {
+    for (const auto& [length, prepared] : known_)
+      if (length == laser.pulse_length) return &prepared;
+    return nullptr;
+  }
+
+  /// Keeps what was prepared for a laser, for which there was nothing.
+  void add(const Laser& laser, Prepared prepared) { known_.emplace_back(laser.pulse_length, std::move(prepared)); }
+
+  /// Calls a function with all that was prepared.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (const auto& [length, prepared] : known_) visit(prepared);
+  }
+
+ private:
+  std::vector<std::pair<double, Prepared>> known_;  ///< by full width at half maximum [s]
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

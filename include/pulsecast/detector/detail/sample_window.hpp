@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
+#define PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/detail/peaks.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
+#include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Samples of a waveform as they arrive, in a window of bounded size, and the peaks that are found in it.
+template <EchoWidth Width>
+class SampleWindow {
+ public:
+  /// What a search needs beside the samples.
+  struct Search {
+    const WaveformSettings& settings;  ///< of the detector
+    const Width& width;                ///< measure of widths
+    double min_separation = 0;         ///< closer peaks merge [s]
+    double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
+    bool by_sample =
+        false;         ///< true if the highest sample must reach the threshold, rather than the maximum between samples
+    double reach = 0;  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
+  };
+
+  static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
+
+  /// Allocates the memory.
+  SampleWindow() { samples_.reserve(capacity); }
+
+  /// Forgets all samples.
+  void clear() noexcept { samples_.clear(); }
+
+  [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
+
+  /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to `peaks` when more are to
+  /// come.
+  void take(double number, double power, bool more, const Search& search, std::vector<Peak>& peaks) noexcept {
+    samples_.push_back(power);
+    if (more && samples_.size() == capacity) {
+      const std::size_t cut = last_valley();  // a cut between two echoes
+      find_peaks(number, cut, search, peaks);
+      samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(cut - 2));
+    }
+    if (!more) find_peaks(number, samples_.size() - 2, search, peaks);
+  }
+
+ private:
+  /// End of the last complete echo; two samples before the end if there is no valley.
+  [[nodiscard]] std::size_t last_valley() const noexcept {
+    const std::vector<double>& y = samples_;
+    for (std::size_t i = y.size() - 2; i > 4; --i)
+      if (y[i] < y[i - 1] && y[i] <= y[i + 1]) return i;
+    return y.size() - 2;
+  }
+
+  /// Last of equal samples from index i on.
+  [[nodiscard]] std::size_t last_of_plateau(std::size_t i) const noexcept {
+    while (i + 1 < samples_.size() && samples_[i + 1] == samples_[i]) ++i;
+    return i;
+  }
+
+  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, as of a saturated or
+  /// coarse digitiser.
+  [[nodiscard]] Vertex top_of(std::size_t first, std::size_t last) const noexcept {
+    if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
+    return vertex(&samples_[first]);
+  }
+
+  /// Appends every peak before index `end` of the window, whose last sample has the number `last`.
+  void find_peaks(double last, std::size_t end, const Search& search, std::vector<Peak>& peaks) const noexcept {
+    const WaveformSettings& s = search.settings;
+    const std::vector<double>& y = samples_;
+    const double start = last - static_cast<double>(y.size() - 1);
+    const auto time = [&](std::size_t i) {
+      return (start + static_cast<double>(i)) * s.sample_interval - search.delay;
+    };
+    const auto valley = [&](std::size_t i) {
+      const bool turns = i >= 2 && i + 2 < y.size() && y[i] < y[i - 1] && y[i] <= y[i + 1];
+      if (!turns) return time(i);
+      const std::array<double, 5> below{-y[i - 2], -y[i - 1], -y[i], -y[i + 1], -y[i + 2]};
+      return time(i) + vertex(&below[2]).offset * s.sample_interval;
+    };
+    std::size_t entered = peaks.size();
+    for (std::size_t i = 2; i < end; ++i) {
+      if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
+      const std::size_t plateau_end = last_of_plateau(i);
+      if (plateau_end + 1 < y.size() && y[plateau_end + 1] > y[i]) continue;  // a step of the rise
+      const Vertex top = top_of(i, plateau_end);
+      if ((search.by_sample ? y[i] : top.height) < s.threshold) continue;
+      std::size_t from = i, to = plateau_end > i + 1 ? plateau_end : i;
+      while (from > 0 && y[from - 1] < y[from]) --from;
+      while (to + 1 < y.size() && y[to + 1] < y[to]) ++to;
+      Peak peak{.time = time(i) + top.offset * s.sample_interval,
+                .height = top.height,
+                .begin = valley(from),
+                .end = valley(to)};
+      peak.before = y[from];
+      peak.after = y[to];
+      peak.mark = peak.time;
+      if (s.timing > EchoTiming::peak)
+        peak.mark =
+            (start + echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval - search.delay;
+      merge_or_append(peak, search.min_separation, s.prominence, peaks);
+    }
+    const auto place = [&](double t) { return (t + search.delay) / s.sample_interval - start; };
+    if (search.reach > 0) {
+      for (std::size_t k = entered; k < peaks.size(); ++k) {
+        Peak& peak = peaks[k];
+        if (is_dominated(k, s, peaks)) continue;
+        const double reach = std::fmin(search.reach, 0.5 * distance_of_echoes(k, s, peaks)) / s.sample_interval;
+        peak.mark += (detail::filtered_top(y, place(peak.time), reach) - place(peak.time)) * s.sample_interval;
+      }
+    }
+    if constexpr (!std::same_as<Width, NoWidth>) {
+      for (; entered < peaks.size(); ++entered) {
+        Peak& peak = peaks[entered];
+        if (is_dominated(entered, s, peaks)) continue;
+        const auto index = [&](double t) { return static_cast<std::size_t>(std::lround(place(t))); };
+        const std::size_t from = index(peak.begin), to = index(peak.end);
+        peak.width = search.width.width(std::span(y).subspan(from, to - from + 1), s.sample_interval);
+      }
+    }
+  }
+
+  std::vector<double> samples_;
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

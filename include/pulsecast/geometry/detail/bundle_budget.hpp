@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
+#define PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/geometry/single_ray.hpp>
+
+namespace PULSECAST_NAMESPACE::detail {
+
+/// Limit of the search of an accelerator by a bundle, which asks for it after each leaf. A bundle meets all primitives
+/// between its rays: where they are many, as the leaves in a broad beam, single rays are faster, and the bundle gives
+/// up: nothing more is in its limit.
+template <class Hits>
+struct BudgetedLimit {
+  static constexpr int most = 128;  ///< leaves that cost about as much as single rays
+
+  const Hits& nearest;    ///< hits so far
+  mutable int asked = 0;  ///< times that the limit was asked for
+
+  /// As in `ClosestHits`.
+  template <class Rays>
+  [[nodiscard]] double limit(const Rays& rays) const noexcept {
+    return ++asked > most ? -std::numeric_limits<double>::infinity() : nearest.limit(rays);
+  }
+  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return nearest.limit_of(j); }  ///< as in `ClosestHits`
+
+  [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
+};
+
+/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a
+/// `BundleOfOne` to a `ClosestHit`.
+template <class Rays, HitsOf<Rays> Hits, class Search>
+void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) noexcept {
+  for (std::size_t j = 0; j < rays.size; ++j) {
+    BundleOfOne one(rays.ray(j));
+    one.direction_length = rays.direction_length;
+    ClosestHit hit(nearest.limit_of(j));
+    hit.part = nearest.part;
+    search(one, hit);
+    if (!hit.met(0)) continue;
+    nearest.part = std::uint64_t{hit.part_of(0)} << 32;
+    nearest.offer(j, hit.range, hit.primitive_of(0));
+  }
+}
+
+}  // namespace PULSECAST_NAMESPACE::detail
+
+#endif

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_IMAGE_HPP
+#define PULSECAST_MATERIAL_IMAGE_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/vector.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the
+/// picture, (1, 1) the upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.
+[[nodiscard]] inline std::size_t texel_at(std::uint32_t width, std::uint32_t height, const Vec2& at) noexcept {
+  const auto place = [](double coordinate, std::uint32_t count) noexcept {
+    const double turn = coordinate - std::floor(coordinate);  // 1 for a coordinate just below a whole number
+    return std::min(static_cast<std::size_t>(turn * count), std::size_t{count} - 1);
+  };
+  return (std::size_t{height} - 1 - place(at.y, height)) * width + place(at.x, width);
+}
+
+/// Picture of a surface, eight bits a channel.
+struct Image {
+  std::uint32_t width = 0, height = 0;     ///< size [pixel]
+  std::uint32_t channels = 0;              ///< 1: grey; 2: grey and opacity; 3: red, green and blue; 4: and opacity
+  SharedArray<std::uint8_t> samples = {};  ///< channels of each pixel, row by row from the top left; shared by copies
+
+  /// @throws SettingError for a size of zero, or another number of samples
+  void validate() const {
+    require_within("Image::width", width, 1, 65536, "pixel");
+    require_within("Image::height", height, 1, 65536, "pixel");
+    require_within("Image::channels", channels, 1, 4, "");
+    const double count = static_cast<double>(width) * height * channels;
+    require_within("Image::samples (number)", static_cast<double>(samples.size()), count, count, "");
+  }
+
+  /// True if pixels have an opacity, as their last channel.
+  [[nodiscard]] bool has_opacity() const noexcept { return channels == 2 || channels == 4; }
+
+  /// Channels of the pixel at texture coordinates, as of `texel_at`.
+  [[nodiscard]] std::span<const std::uint8_t> at(const Vec2& texture) const noexcept {
+    return {samples.data() + texel_at(width, height, texture) * channels, channels};
+  }
+  /// Red, green and blue at texture coordinates, from 0 to 1, as displays take them (sRGB).
+  [[nodiscard]] Vec3 colour(const Vec2& texture) const noexcept {
+    const auto pixel = at(texture);
+    const auto share = [&](std::size_t channel) noexcept { return pixel[channels < 3 ? 0 : channel] / 255.0; };
+    return {share(0), share(1), share(2)};
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

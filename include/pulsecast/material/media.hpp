@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_MEDIA_HPP
+#define PULSECAST_MATERIAL_MEDIA_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/material/medium.hpp>
+#include <pulsecast/material/weather.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Box of all places.
+[[nodiscard]] inline Box everywhere() noexcept {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  return {{-far, -far, -far}, {far, far, far}};
+}
+
+/// Medium in a part of the air: fog, rain, smoke, dust.
+struct MediumRegion {
+  Medium medium{};            ///< medium, of index 1
+  Box bounds = everywhere();  ///< place [m]
+  /// Numbers of equal cells of the box along x, y and z, with `densities`.
+  std::array<std::size_t, 3> cells{1, 1, 1};
+  /// Factors of the medium's coefficients by cell, x fastest and z slowest; all 1 if empty.
+  SharedArray<float> densities{};
+  /// Particles that the medium is the mean of: a beam meets them one by one, as long as they are few. None by default.
+  Precipitation particles{};
+
+  /// Rain or snow in a box.
+  [[nodiscard]] static MediumRegion of(const Precipitation& particles, const Box& bounds = everywhere()) noexcept {
+    return {.medium = particles.medium(), .bounds = bounds, .particles = particles};
+  }
+
+  void validate() const {
+    medium.validate();
+    require_within("MediumRegion::medium (index)", medium.index, 1, 1, "");
+    particles.validate();
+    if (bounds.empty()) throw SettingError("MediumRegion::bounds (volume)", 0, "m^3", "greater than 0");
+    if (densities.empty()) return;
+    const Vec3 size = bounds.size();
+    require_finite("MediumRegion::bounds (size, with densities)", size.x + size.y + size.z, "m");
+    const auto count = static_cast<double>(cells[0]) * static_cast<double>(cells[1]) * static_cast<double>(cells[2]);
+    require_within("MediumRegion::densities (number)", static_cast<double>(densities.size()), count, count, "");
+    for (const float density : densities) require_not_negative("MediumRegion::densities", density, "");
+  }
+};
+
+/// Media in the air, in boxes of which each is inside another or apart from it: the innermost counts. Copies share
+/// their memory.
+class Media {
+ public:
+  /// Clear air.
+  Media() = default;
+  /// @throws SettingError for values out of range, or boxes that overlap without one inside the other
+  explicit Media(std::vector<MediumRegion> regions) {
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      regions[i].validate();
+      for (std::size_t k = 0; k < i; ++k) require_nested(regions[k].bounds, regions[i].bounds, i);
+    }
+    outermost_first(regions);
+    uniform_ = regions.size() == 1 && regions[0].densities.empty() && regions[0].bounds.min == everywhere().min &&
+               regions[0].bounds.max == everywhere().max;
+    regions_ = std::make_shared<const std::vector<MediumRegion>>(std::move(regions));
+  }
+
+  /// True for clear air.
+  [[nodiscard]] bool empty() const noexcept { return !regions_ || regions_->empty(); }
+
+  /// True if there are particles in any region.
+  [[nodiscard]] bool has_particles() const noexcept {
+    return !empty() && std::any_of(regions_->begin(), regions_->end(),
+                                   [](const MediumRegion& r) { return r.particles.density > 0; });
+  }
+
+  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium,
+  /// in their order.
+  template <class Visitor>
+  void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
+    if (empty()) return;
+    if (uniform_) return near < far ? visit(near, far, regions_->front(), 1.0) : void();
+    for (double from = near; from < far;) {
+      const MediumRegion* innermost = nullptr;
+      double to = far;
+      Passage here;
+      for (const MediumRegion& region : *regions_) {
+        const Passage p = passage(origin, direction, region.bounds);
+        if (!(p.in < p.out) || !(from < p.out)) continue;
+        if (p.in > from) {
+          to = std::min(to, p.in);
+        } else {
+          innermost = &region;
+          here = p;
+        }
+      }
+      if (innermost) {
+        to = std::min(to, here.out);
+        if (innermost->densities.empty())
+          visit(from, to, *innermost, 1.0);
+        else
+          along_cells(origin, direction, from, to, *innermost, visit);
+      }
+      if (!(to > from)) return;
+      from = to;
+    }
+  }
+
+ private:
+  /// Ranges at which a ray enters a box and leaves it [m].
+  struct Passage {
+    double in = -std::numeric_limits<double>::infinity(), out = std::numeric_limits<double>::infinity();
+  };
+
+  static Passage passage(const Vec3& origin, const Vec3& direction, const Box& box) noexcept {
+    Passage p;
+    for (int k = 0; k < 3; ++k) {
+      if (direction[k] == 0) {
+        if (!(origin[k] >= box.min[k] && origin[k] < box.max[k])) return {0, 0};
+        continue;
+      }
+      const double low = (box.min[k] - origin[k]) / direction[k], high = (box.max[k] - origin[k]) / direction[k];
+      p.in = std::max(p.in, std::min(low, high));
+      p.out = std::min(p.out, std::max(low, high));
+    }
+    return p;
+  }
+
+  /// Visits the cells of a region between two ranges inside it.
+  template <class Visitor>
+  static void along_cells(const Vec3& origin, const Vec3& direction, double from, double to, const MediumRegion& region,
+                          const Visitor& visit) noexcept {
+    std::array<std::size_t, 3> cell{};
+    std::array<double, 3> edge{};
+    const Vec3 start = origin + from * direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      edge[k] = (region.bounds.max[axis] - region.bounds.min[axis]) / static_cast<double>(region.cells[k]);
+      const double at = std::floor((start[axis] - region.bounds.min[axis]) / edge[k]);
+      cell[k] = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(region.cells[k] - 1)));
+    }
+    while (from < to) {
+      double end = to;
+      std::size_t through = 3;  // axis of the face
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int axis = static_cast<int>(k);
+        if (direction[axis] == 0) continue;
+        const double plane =
+            region.bounds.min[axis] + edge[k] * static_cast<double>(cell[k] + (direction[axis] > 0 ? 1 : 0));
+        const double range = std::max(from, (plane - origin[axis]) / direction[axis]);
+        if (range < end) {
+          end = range;
+          through = k;
+        }
+      }
+      const double density =
+          static_cast<double>(region.densities[cell[0] + region.cells[0] * (cell[1] + region.cells[1] * cell[2])]);
+      if (end > from && density > 0) visit(from, end, region, density);
+      from = end;
+      if (through == 3) return;
+      const bool up = direction[static_cast<int>(through)] > 0;
+      if (up ? cell[through] + 1 == region.cells[through] : cell[through] == 0) return;
+      up ? ++cell[through] : --cell[through];
+    }
+  }
+
+  static bool inside(const Box& inner, const Box& outer) noexcept {
+    for (int k = 0; k < 3; ++k)
+      if (!(inner.min[k] >= outer.min[k] && inner.max[k] <= outer.max[k])) return false;
+    return true;
+  }
+  static void require_nested(const Box& a, const Box& b, std::size_t number) {
+    for (int k = 0; k < 3; ++k)
+      if (!(a.min[k] < b.max[k] && b.min[k] < a.max[k])) return;
+    if (inside(a, b) == inside(b, a))
+      throw SettingError("Media (region)", static_cast<double>(number), "",
+                         "one that is inside another, around it, or apart from it");
+  }
+  /// Sorts nested boxes, so that each comes after those that it is inside of.
+  static void outermost_first(std::vector<MediumRegion>& regions) {
+    std::vector<std::size_t> around(regions.size());
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      for (std::size_t k = 0; k < regions.size(); ++k)
+        around[i] += inside(regions[i].bounds, regions[k].bounds) ? 1 : 0;
+    std::vector<MediumRegion> sorted;
+    for (std::size_t depth = 0; depth <= regions.size(); ++depth)
+      for (std::size_t i = 0; i < regions.size(); ++i)
+        if (around[i] == depth) sorted.push_back(regions[i]);
+    regions = std::move(sorted);
+  }
+
+  std::shared_ptr<const std::vector<MediumRegion>> regions_{};
+  bool uniform_ = false;  ///< true if a single medium is everywhere
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

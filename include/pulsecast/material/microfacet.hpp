@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_MICROFACET_HPP
+#define PULSECAST_MATERIAL_MICROFACET_HPP
+
+#include <cmath>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/material/fresnel.hpp>
+
+/// Contract: closed forms of light at a rough surface of small smooth facets, whose slopes are Gaussian.
+namespace PULSECAST_NAMESPACE {
+
+/// Rough surface: facets whose slope has a root mean square of `slope` in all, of a refractive index.
+struct Microfacets {
+  double slope = 0.3;  ///< root mean square of the slope, both axes together, greater than 0
+  double index = 1.5;  ///< refractive index of the facets
+
+  /// Density of the facets' normals by solid angle, at a cosine to the mean normal [1/sr].
+  /// Source: Beckmann & Spizzichino 1963; Cook & Torrance 1982.
+  [[nodiscard]] double density(double cosine) const noexcept {
+    if (!(cosine > 0)) return 0;
+    const double c2 = cosine * cosine, m2 = slope * slope;
+    return std::exp((c2 - 1) / (c2 * m2)) / (pi * m2 * c2 * c2);
+  }
+
+  /// Ratio of the facets' area that hides others to that which is seen, from a direction. Source: Smith 1967.
+  [[nodiscard]] double hidden(double cosine) const noexcept {
+    const double sine2 = 1 - cosine * cosine;
+    if (!(sine2 > 0)) return 0;
+    const double a = cosine / (slope * std::sqrt(sine2));
+    return (std::exp(-a * a) / (a * std::sqrt(pi)) - std::erfc(a)) / 2;
+  }
+
+  /// Share of the light reflected at the mean normal, of unpolarised light.
+  [[nodiscard]] double reflected(double cos_incidence) const noexcept {
+    return fresnel_split(cos_incidence, index).reflected;
+  }
+
+  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and what hides one on
+  /// the way there hides it on the way back. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
+  [[nodiscard]] double backscatter(double cos_incidence) const noexcept {
+    if (!(cos_incidence > 0)) return 0;
+    return pi * reflected(1) * density(cos_incidence) / (4 * cos_incidence * (1 + hidden(cos_incidence)));
+  }
+
+  /// Radiance towards a direction by the irradiance from another, times the cosine of the first; unit vectors away from
+  /// the surface [1/sr]. Its integral over the directions is at most the share that facets reflect. Source: Torrance &
+  /// Sparrow 1967; height-correlated masking and shadowing, Ross, Dion & Potvin 2005.
+  [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal) const noexcept {
+    const double in = dot(from, normal), out = dot(to, normal);
+    if (!(in > 0 && out > 0)) return 0;
+    const Vec3 facet = normalize(from + to);
+    return reflected(dot(facet, from)) * density(dot(facet, normal)) / (4 * in * (1 + hidden(in) + hidden(out)));
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

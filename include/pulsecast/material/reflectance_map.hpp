@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_REFLECTANCE_MAP_HPP
+#define PULSECAST_MATERIAL_REFLECTANCE_MAP_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/material/image.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Linear share of light, from 0 to 1, of a sample of a picture. Source: IEC 61966-2-1 (sRGB).
+[[nodiscard]] inline double linear_share(std::uint8_t sample) noexcept {
+  static const auto table = [] {
+    std::array<double, 256> shares{};
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const double full = static_cast<double>(i) / 255;
+      shares[i] = full <= 0.04045 ? full / 12.92 : std::pow((full + 0.055) / 1.055, 2.4);
+    }
+    return shares;
+  }();
+  return table[sample];
+}
+
+/// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
+/// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all
+/// wavelengths.
+struct ReflectanceMap {
+  Image image{};  ///< picture
+  std::array<double, 3> wavelengths{612e-9, 549e-9,
+                                    465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
+  /// If not zero, the mean of red, green and blue: the picture tells a pattern alone, and the reflectance is that of
+  /// the material times the ratio of a pixel to the mean, at most 1. For light that the picture does not show, as of
+  /// 1064 nm.
+  Vec3 mean{};
+
+  /// Map of a pattern: the mean is that of all pixels, and 1 for a channel that is black.
+  [[nodiscard]] static ReflectanceMap pattern(Image image) {
+    image.validate();
+    ReflectanceMap map{.image = std::move(image)};
+    const std::size_t pixels = std::size_t{map.image.width} * map.image.height;
+    for (std::size_t k = 0; k < 3; ++k) {
+      double sum = 0;
+      for (std::size_t i = 0; i < pixels; ++i)
+        sum += linear_share(map.image.samples[i * map.image.channels + map.channel(k)]);
+      map.mean[static_cast<int>(k)] = sum > 0 ? sum / static_cast<double>(pixels) : 1;
+    }
+    return map;
+  }
+
+  /// @throws SettingError for values out of range
+  void validate() const {
+    image.validate();
+    for (const double wavelength : wavelengths)
+      require_within("ReflectanceMap::wavelengths", wavelength, 1e-8, 1e-3, "m");
+    require_positive("ReflectanceMap::wavelengths (from green to red)", wavelengths[0] - wavelengths[1], "m");
+    require_positive("ReflectanceMap::wavelengths (from blue to green)", wavelengths[1] - wavelengths[2], "m");
+    for (int k = 0; k < 3; ++k) require_within("ReflectanceMap::mean", mean[k], 0, 1, "");
+    if (mean != Vec3{}) require_positive("ReflectanceMap::mean (least)", std::min({mean.x, mean.y, mean.z}), "");
+  }
+
+  /// Reflectance at a wavelength [m] and texture coordinates, where that of the material is `even`.
+  [[nodiscard]] double reflectance(double wavelength, const Vec2& texture, double even) const noexcept {
+    const auto pixel = image.at(texture);
+    const auto at = [&](std::size_t k) noexcept {
+      const double share = linear_share(pixel[channel(k)]);
+      return mean == Vec3{} ? share : share / mean[static_cast<int>(k)];
+    };
+    const auto& w = wavelengths;
+    double value = at(0);
+    if (wavelength <= w[2])
+      value = at(2);
+    else if (wavelength < w[0]) {
+      const std::size_t k = wavelength < w[1] ? 1 : 0;  // between channels k and k + 1
+      const double towards_shorter = (w[k] - wavelength) / (w[k] - w[k + 1]);
+      value = at(k) + towards_shorter * (at(k + 1) - at(k));
+    }
+    return std::min(mean == Vec3{} ? value : value * even, 1.0);
+  }
+
+ private:
+  /// Channel of red, green or blue.
+  [[nodiscard]] std::size_t channel(std::size_t k) const noexcept { return image.channels < 3 ? 0 : k; }
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SHAPE_LATTICE_RAY_HPP
+#define PULSECAST_SHAPE_LATTICE_RAY_HPP
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <pulsecast/geometry/bundle.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Cell of a lattice, along x, y and z.
+using LatticeCell = std::array<std::int32_t, 3>;
+
+/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x comes before y
+/// before z, as by symbolic perturbation. So a ray through an edge or a corner still passes from a cell to its
+/// neighbour through a face.
+struct Crossing {
+  static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings at that range
+
+  double range = 0;  ///< range of the crossing [m]
+  int axis = begin;  ///< normal axis of the plane
+
+  /// True if this crossing comes first.
+  [[nodiscard]] bool before(const Crossing& other) const noexcept {
+    return range < other.range || (range == other.range && axis < other.axis);
+  }
+};
+
+/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same to the last bit for the
+/// cells on both sides, so neighbours leave no gap. A cell owns its lower faces, for rays that run along them.
+class LatticeRay {
+ public:
+  /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
+  template <class Rays>
+  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept
+      : edge_(edge), per_edge_(1 / edge) {
+    const Vec3 direction = rays.direction(j);
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      start_[axis] = corner[k] - rays.origin[k];
+      speed_[axis] = direction[k];
+      per_speed_[axis] = 1 / direction[k];
+      sense_[axis] = !std::isfinite(per_speed_[axis]) ? 0 : direction[k] > 0 ? 1 : -1;
+    }
+    valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);
+  }
+
+  /// True if origin and direction are finite and the ray moves along at least one axis.
+  [[nodiscard]] bool valid() const noexcept { return valid_; }
+
+  /// Sign of the direction, +1 or -1; 0 if the ray stays between two planes.
+  [[nodiscard]] int sense(int k) const noexcept { return sense_[static_cast<std::size_t>(k)]; }
+
+  /// Crossing with a plane by its number, whole or not. Requires sense(k) != 0.
+  [[nodiscard]] Crossing crossing(int k, double plane) const noexcept {
+    const auto axis = static_cast<std::size_t>(k);
+    return {(start_[axis] + edge_ * plane) * per_speed_[axis], k};
+  }
+
+  /// True if a ray with sense(k) = 0 is at or above a plane.
+  [[nodiscard]] bool above(int k, double plane) const noexcept {
+    return start_[static_cast<std::size_t>(k)] + edge_ * plane <= 0;
+  }
+
+  /// Position along an axis at a range [m], up to rounding [edges].
+  [[nodiscard]] double position(int k, double range) const noexcept {
+    const auto axis = static_cast<std::size_t>(k);
+    return (range * speed_[axis] - start_[axis]) * per_edge_;
+  }
+
+  /// Entry into and exit from a box [edges]. The ray misses the box unless `in` is before `out`.
+  struct Passage {
+    Crossing in{-std::numeric_limits<double>::infinity(), 0};  ///< entry
+    Crossing out{std::numeric_limits<double>::infinity(), 0};  ///< exit
+  };
+  /// Passage through a cell.
+  [[nodiscard]] Passage through(const LatticeCell& cell) const noexcept {
+    std::array<double, 3> low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = cell[k];
+      high[k] = cell[k] + 1;
+    }
+    return through(low, high);
+  }
+  /// Passage through the box between two corners [edges].
+  [[nodiscard]] Passage through(const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept {
+    Passage p;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      if (sense(k) == 0) {
+        if (!above(k, low[axis]) || above(k, high[axis])) return {.in = Passage{}.out, .out = Passage{}.in};
+        continue;
+      }
+      const Crossing in = crossing(k, sense(k) > 0 ? low[axis] : high[axis]),
+                     out = crossing(k, sense(k) > 0 ? high[axis] : low[axis]);
+      if (p.in.before(in)) p.in = in;
+      if (out.before(p.out)) p.out = out;
+    }
+    return p;
+  }
+
+ private:
+  double edge_, per_edge_;
+  std::array<double, 3> start_, speed_, per_speed_;
+  std::array<int, 3> sense_;
+  bool valid_;
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SHAPE_TRANSMISSIVE_VOXELS_HPP
+#define PULSECAST_SHAPE_TRANSMISSIVE_VOXELS_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/shape/detail/leaf_columns.hpp>
+#include <pulsecast/shape/detail/voxel_columns.hpp>
+#include <pulsecast/shape/leaf_angles.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
+#include <pulsecast/shape/voxel_index.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
+///
+/// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and
+/// consumes it from voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws
+/// are independent between parts. A ray that begins inside counts its path from there. Density and paths are in metres
+/// of the part's own frame: scaling a plant keeps its transmittance. G is taken in that frame too, z being the
+/// vertical. Leaves send back as tilted surfaces do: the cosine of incidence is their mean squared cosine by their mean
+/// cosine.
+///
+/// Leaves without an area are as small as the subrays: each ray draws for itself, so that echoes depend on the number
+/// of subrays. With an area, rays that pass as close to each other as a leaf is wide share their draws; echoes and
+/// their deviation are then as of facets of that area, and leaves stay from pulse to pulse, each with an incidence of
+/// its own. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
+struct TransmissiveVoxels {
+  LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
+  bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
+  double leaf_area = 0;  ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
+  double clumping =
+      1;  ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; from 0.01 to 10
+
+  void validate() const {
+    require_within("TransmissiveVoxels::leaf_area", leaf_area, 0, 100, "m^2");
+    require_within("TransmissiveVoxels::clumping", clumping, 0.01, 10, "");
+  }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    leaf_angles.archive(a);
+    a(tilted_leaves, leaf_area, clumping);
+  }
+
+  /// Data of the voxels that this filling needs, by number of the voxel.
+  class Columns {
+   public:
+    explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : densities_(detail::reordered<float>(data.densities, order)) {
+      if (densities_.empty())
+        throw SettingError("VoxelData::densities", 0, "",
+                           "as many as cells, " + std::to_string(data.cells.size()) + ", for transmissive voxels");
+    }
+
+    [[nodiscard]] std::size_t memory() const noexcept { return densities_.memory(); }
+
+    /// Visitor of the voxels along a ray, which consumes its optical depth.
+    template <class Rays, class Hits>
+    class Meeting {
+     public:
+      /// Ray j of a bundle; `nearest` gets its hit.
+      Meeting(const Columns& columns, const TransmissiveVoxels& leaves, const Rays& rays, std::size_t j,
+              Hits& nearest) noexcept
+          : columns_(columns), leaves_(leaves), rays_(rays), j_(j), nearest_(nearest) {}
+
+      /// Passes a voxel; returns the range limit of the walk [m].
+      double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
+        if (per_density_ == 0) begin(in.range);
+        const double extinction = static_cast<double>(columns_.densities_[number]) * per_density_;
+        for (double from = in.range;;) {
+          if (from >= layer_.end) draw(from);
+          const double to = std::min(out.range, layer_.end), depth = extinction * (to - from);
+          if (depth > 0 && depth >= left_) return meet(std::min(from + left_ / extinction, to), number);
+          left_ -= depth;
+          if (to == out.range) return infinity;
+          from = to;
+        }
+      }
+
+      /// Ends the walk.
+      void finish() noexcept {}
+
+     private:
+      static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+      double meet(double at, std::uint32_t number) noexcept {
+        if (!(at > rays_.near)) at = std::nextafter(rays_.near, infinity);
+        nearest_.offer(j_, at, number);
+        return -infinity;
+      }
+
+      void begin(double range) noexcept {
+        const Vec3 direction = rays_.direction(j_);
+        per_density_ = leaves_.clumping * leaves_.leaf_angles.projection(direction) * rays_.direction_length;
+        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // all leaves edge-on
+        if (leaves_.leaf_area > 0) columns_of_leaves_ = {rays_.origin, direction, leaves_.leaf_area};
+        draw(range);
+      }
+
+      /// Draws the optical depth for the layer at a range: one without an end for leaves without a size.
+      void draw(double range) noexcept {
+        RandomKey key{rays_.seed, rays_.pulse, rays_.first_subray + static_cast<std::uint32_t>(j_), Purpose::free_path,
+                      static_cast<std::uint32_t>(nearest_.part >> 32)};
+        if (leaves_.leaf_area > 0) {
+          layer_ = columns_of_leaves_.at(range);
+          key.pulse = layer_.column.layer;
+          key.subray = layer_.column.place;
+        }
+        left_ = -std::log(uniform(key));
+      }
+
+      const Columns& columns_;
+      const TransmissiveVoxels& leaves_;
+      const Rays& rays_;
+      std::size_t j_;
+      Hits& nearest_;
+      detail::LeafColumns columns_of_leaves_{};
+      detail::LeafColumns::Layer layer_{};
+      double left_ = 0;         ///< optical depth left to the ray
+      double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
+    };
+
+    template <class Rays, class Hits>
+    [[nodiscard]] Meeting<Rays, Hits> meeting(const TransmissiveVoxels& settings, const LatticeRay&, const Rays& rays,
+                                              std::size_t j, Hits& nearest) const noexcept {
+      return {*this, settings, rays, j, nearest};
+    }
+
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
+      if (!settings.tilted_leaves) return {};
+      const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
+      double cosine = settings.leaf_angles.incidence_cosine(along);
+      if (settings.leaf_area >
+          0) {  // a leaf's own, of that mean: as of spherical leaves if 2/3, whose squared cosine is uniform
+        const LatticeRay::Passage passage = index.ray(rays, j).through(index.cell(number));
+        const detail::LeafColumns columns(rays.origin, direction, settings.leaf_area);
+        const detail::LeafColumn column = columns.at(0.5 * (passage.in.range + passage.out.range)).column;
+        cosine = std::pow(uniform({rays.seed, column.layer, column.place, Purpose::leaf_tilt, 0}), 1 / cosine - 1);
+      }
+      const Vec3 aside =
+          pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
+      return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(densities_);
+    }
+
+   private:
+    SharedArray<float> densities_;
+  };
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SHAPE_VOXEL_GRID_HPP
+#define PULSECAST_SHAPE_VOXEL_GRID_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/detail/bundle_interval.hpp>
+#include <pulsecast/geometry/single_ray.hpp>
+#include <pulsecast/shape/detail/solid_meeting.hpp>
+#include <pulsecast/shape/detail/voxel_columns.hpp>
+#include <pulsecast/shape/detail/voxel_index_builder.hpp>
+#include <pulsecast/shape/transmissive_voxels.hpp>
+#include <pulsecast/shape/voxel_data.hpp>
+#include <pulsecast/shape/voxel_index.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Surface direction of a voxel.
+enum class Incidence : std::uint8_t {
+  normal,         ///< the voxel's normal; its face's if it has none
+  face,           ///< normal of the face of the cube that the ray meets
+  perpendicular,  ///< always towards the scanner
+};
+
+/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far
+/// side, as with any closed surface.
+struct OpaqueVoxels {
+  Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(incidence);
+  }
+
+  /// Data of the voxels that this filling needs, by number of the voxel.
+  class Columns {
+   public:
+    explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : normals_(detail::reordered<detail::PackedVector>(data.normals, order)) {}
+
+    [[nodiscard]] std::size_t memory() const noexcept { return normals_.memory(); }
+
+    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay&, std::uint32_t, const LatticeCell&, const Crossing& in,
+                                              const Crossing& out) const noexcept {
+      return {in, out};
+    }
+
+    template <class Rays, class Hits>
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
+                               Hits& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
+    }
+
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
+      if (settings.incidence == Incidence::perpendicular) return {};
+      if (settings.incidence == Incidence::normal && !normals_.empty()) {
+        const Vec3 kept = normals_[number].unpacked();
+        if (kept != Vec3{}) return normalize(kept);
+      }
+      const LatticeRay ray = index.ray(rays, j);
+      return detail::face_normal(ray, ray.through(index.cell(number)), rays.near);
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(normals_);
+    }
+
+   private:
+    SharedArray<detail::PackedVector> normals_;
+  };
+};
+
+/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser
+/// et al. 2021. Requires scales; normals are not kept, so `Incidence::normal` means the face.
+struct ScaledVoxels {
+  Incidence incidence = Incidence::face;  ///< surface direction of all voxels
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(incidence);
+  }
+
+  /// Data of the voxels that this filling needs, by number of the voxel.
+  class Columns {
+   public:
+    explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : scales_(detail::reordered<float>(data.scales, order)),
+          shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
+      if (scales_.empty())
+        throw SettingError("VoxelData::scales", 0, "",
+                           "as many as cells, " + std::to_string(data.cells.size()) + ", for scaled voxels");
+    }
+
+    [[nodiscard]] std::size_t memory() const noexcept { return scales_.memory() + shifts_.memory(); }
+
+    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay& ray, std::uint32_t number, const LatticeCell& cell,
+                                              const Crossing&, const Crossing&) const noexcept {
+      const double half = static_cast<double>(scales_[number]) / 2;
+      const Vec3 shift = shifts_.empty() ? Vec3{} : shifts_[number].unpacked();
+      std::array<double, 3> low, high;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double centre = 0.5 + shift[static_cast<int>(k)];
+        low[k] = cell[k] + std::max(centre - half, 0.0);
+        high[k] = cell[k] + std::min(centre + half, 1.0);
+      }
+      return ray.through(low, high);
+    }
+
+    template <class Rays, class Hits>
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
+                               Hits& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
+    }
+
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index,
+                              const Rays& rays, std::size_t j) const noexcept {
+      if (settings.incidence == Incidence::perpendicular) return {};
+      const LatticeRay ray = index.ray(rays, j);
+      return detail::face_normal(ray, passage(ray, number, index.cell(number), {}, {}), rays.near);
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(scales_, shifts_);
+    }
+
+   private:
+    SharedArray<float> scales_;
+    SharedArray<detail::PackedVector> shifts_;
+  };
+};
+
+/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data.
+/// Keeps only the data that the filling needs, in at most 40 bytes per voxel plus 16. `Filling`: `OpaqueVoxels`,
+/// `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
+template <class Filling = OpaqueVoxels>
+class VoxelGrid {
+ public:
+  static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;  ///< true if its surfaces are foliage
+  static constexpr bool keyless = !of_leaves;  ///< as the concept KeylessGeometry describes
+
+  explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
+
+  /// @throws SettingError as `VoxelData::validate` and `VoxelIndex`, or for a column that the filling lacks
+  explicit VoxelGrid(const VoxelData& data, Filling filling = {}) : VoxelGrid(data, std::move(filling), {}) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
+  [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
+  [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
+
+  /// Memory held [byte], without the table of leaf angles, which grids may share.
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return index_.memory() + columns_.memory() + materials_.memory();
+  }
+
+  /// Cell of a voxel, which contains its hits [m].
+  [[nodiscard]] Box cell(PrimitiveIndex i) const noexcept {
+    const LatticeCell c = index_.cell(i);
+    const Vec3 low = bounds().min + index_.edge() * Vec3(c[0], c[1], c[2]);
+    return {low, low + Vec3(index_.edge())};
+  }
+
+  /// For a bundle or a `BundleOfOne`.
+  template <class Rays, HitsOf<Rays> Hits>
+  void closest(const Rays& rays, Hits& nearest) const noexcept {
+    const Vec3 centre = bounds().centre();
+    const auto span =
+        BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
+    if (span.empty() || span.entry > nearest.limit(rays)) return;
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      const LatticeRay ray = index_.ray(rays, j);
+      auto meeting = columns_.meeting(filling_, ray, rays, j, nearest);
+      index_.walk(ray, rays.near, nearest.limit_of(j),
+                  [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
+      meeting.finish();
+    }
+  }
+
+  /// All hits of a ray with solid voxels: the closest one from each on. Light through leaves ends at its first leaf.
+  void closest(const BundleOfOne& ray, HitBuffer& hits) const noexcept {
+    if constexpr (of_leaves)
+      hits.offer_first(ray, [this](const BundleOfOne& from, ClosestHit& first) noexcept { closest(from, first); });
+    else
+      hits.offer_chain(ray, [this](const BundleOfOne& from, ClosestHit& next) noexcept { closest(from, next); });
+  }
+
+  template <class Rays>
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+    return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
+  }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    index_.archive(a);
+    filling_.archive(a);
+    columns_.archive(a);
+    a(materials_, material_count_);
+  }
+
+ private:
+  VoxelGrid(const VoxelData& data, Filling filling, std::vector<std::uint32_t> order)
+      : filling_(validated(std::move(filling))),
+        index_(validated_data(data), order),
+        columns_(data, order),
+        materials_(detail::reordered<std::uint16_t>(data.materials, order)) {
+    for (const std::uint16_t m : materials_)
+      material_count_ = std::max<std::uint64_t>(material_count_, std::uint64_t{m} + 1);
+  }
+
+  static const VoxelData& validated_data(const VoxelData& data) {
+    data.validate();
+    return data;
+  }
+
+  Filling filling_{};
+  VoxelIndex index_;
+  typename Filling::Columns columns_;
+  SharedArray<std::uint16_t> materials_;
+  std::uint64_t material_count_ = 1;
+};
+
+static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> &&
+              Geometry<VoxelGrid<TransmissiveVoxels>>);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

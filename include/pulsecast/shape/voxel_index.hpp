@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SHAPE_VOXEL_INDEX_HPP
+#define PULSECAST_SHAPE_VOXEL_INDEX_HPP
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/shape/detail/lattice_walker.hpp>
+#include <pulsecast/shape/detail/voxel_keys.hpp>
+#include <pulsecast/shape/lattice_ray.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+struct VoxelData;
+namespace detail {
+class VoxelIndexBuilder;
+}
+
+/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks
+/// are bits of blocks of as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the
+/// whole lattice lets rays leap over empty cubes. Takes at most 26 bytes per occupied cell at any positions, plus 16.
+/// Source: Amanatides & Woo 1987 (traversal).
+class VoxelIndex {
+ public:
+  /// Greatest extent along an axis [cells].
+  static constexpr std::uint32_t longest = detail::max_lattice_extent;
+
+  explicit VoxelIndex(DeserializeTag) {}
+
+  /// Sets `order` to the data's cell index of each number. `shape/voxel_grid.hpp` defines this; it takes no part in
+  /// tracing.
+  /// @throws SettingError for a duplicate cell, or an extent above `longest`
+  VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order);
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Edge of a cell [m].
+  [[nodiscard]] double edge() const noexcept { return edge_; }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return keys_.memory() + slots_.memory() + block_masks_.memory() + block_first_.memory() + brick_masks_.memory() +
+           brick_first_.memory() + pyramid_.memory();
+  }
+
+  /// Cell of a number below `size()`, relative to the lower corner of the bounds.
+  [[nodiscard]] LatticeCell cell(std::uint32_t number) const noexcept {
+    const std::size_t brick = holder(brick_first_, number);
+    const unsigned bit = nth_bit(brick_masks_[brick], number - brick_first_[brick]);
+    if (height_ == 1) return detail::child_cell(detail::unpacked_cell(keys_[brick]), bit);
+    const std::size_t block = holder(block_first_, static_cast<std::uint32_t>(brick));
+    const unsigned place = nth_bit(block_masks_[block], static_cast<std::uint32_t>(brick) - block_first_[block]);
+    return detail::child_cell(detail::child_cell(detail::unpacked_cell(keys_[block]), place), bit);
+  }
+
+  /// Ray j in the lattice, relative to the lower corner of the bounds.
+  template <class Rays>
+  [[nodiscard]] LatticeRay ray(const Rays& rays, std::size_t j) const noexcept {
+    return {corner_, edge_, rays, j};
+  }
+
+  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order.
+  /// Stops at a cell beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
+  template <class Visit>
+  void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
+    detail::LatticeWalker at(ray, near, extent_);
+    if (!at.inside) return;
+    Place place;
+    limit = std::min(limit, std::numeric_limits<double>::max());  // planes never crossed are beyond
+    while (at.in.range <= limit) {
+      if (outside(at.cell)) return;
+      if (const Empty empty = around(at.cell, place); empty.shift > 0) {
+        if (!at.leap(empty.shift, empty.siblings)) return;
+        continue;
+      }
+      const std::uint64_t mask = brick_masks_[place.brick];
+      for (;;) {
+        const unsigned bit = detail::cell_bit(at.cell, 0);
+        const int axis = detail::LatticeWalker::first_of(at.next);
+        if (mask >> bit & 1) {
+          const auto number = brick_first_[place.brick] +
+                              static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+          const Crossing out{at.next[static_cast<std::size_t>(axis)], axis};
+          limit = std::min<double>(limit, visit(number, at.cell, at.in, out));
+        }
+        const bool same_brick = at.step(axis);
+        if (!same_brick || !(at.in.range <= limit)) break;
+      }
+    }
+  }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(bounds_, corner_, edge_, extent_, size_, height_, levels_, level_count_);
+    a(keys_, slots_, block_masks_, block_first_, brick_masks_, brick_first_, pyramid_);
+  }
+
+ private:
+  friend class detail::VoxelIndexBuilder;
+
+  /// Position of a walk in the tree.
+  struct Place {
+    std::uint64_t key = ~std::uint64_t{0};  ///< key of `root`
+    std::uint32_t root = 0, brick = 0;
+  };
+
+  static constexpr std::uint32_t nothing = ~std::uint32_t{0};
+
+  /// Last node whose first child is not after `child`.
+  static std::size_t holder(const SharedArray<std::uint32_t>& first, std::uint32_t child) noexcept {
+    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), child) - first.begin()) - 1;
+  }
+
+  static unsigned nth_bit(std::uint64_t mask, std::uint32_t n) noexcept {
+    for (; n > 0; --n) mask &= mask - 1;
+    return static_cast<unsigned>(std::countr_zero(mask));
+  }
+
+  std::uint32_t root(std::uint64_t key) const noexcept {
+    for (std::size_t s = detail::hash_slot(key, slots_.size()); slots_[s] != nothing;
+         s = s + 1 == slots_.size() ? 0 : s + 1)
+      if (keys_[slots_[s]] == key) return slots_[s];
+    return nothing;
+  }
+
+  bool outside(const LatticeCell& c) const noexcept {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (static_cast<std::uint32_t>(c[k]) >= static_cast<std::uint32_t>(extent_[k])) return true;
+    return false;
+  }
+
+  /// Empty cube: log2 of its edge [cells], 0 for none; and the occupancy mask of the 4 x 4 x 4 that it belongs to.
+  struct Empty {
+    int shift = 0;
+    std::uint64_t siblings = 0;
+  };
+
+  /// Largest empty cube around a cell, or none; then `place` is set to the brick.
+  Empty around(const LatticeCell& c, Place& place) const noexcept {
+    Empty empty;
+    for (std::size_t i = 0; i < level_count_; ++i) {
+      const detail::VoxelLevel& level = levels_[i];
+      const std::uint64_t siblings = pyramid_[level.word(c)];
+      if (!(siblings >> detail::cell_bit(c, level.shift) & 1))
+        empty = {level.shift, siblings};
+      else if (level.words == 0)
+        break;
+    }
+    if (empty.shift > 0) return empty;
+    const std::uint64_t key = detail::packed_cell(c, 2 * height_);
+    if (key != place.key) {
+      place.key = key;
+      place.root = root(key);
+    }
+    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // unknown roots around it count as occupied
+    place.brick = place.root;
+    if (height_ == 1) return {};
+    const std::uint64_t mask = block_masks_[place.root];
+    const unsigned bit = detail::cell_bit(c, 2);
+    if (!(mask >> bit & 1)) return {2, mask};
+    place.brick =
+        block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+    return {};
+  }
+
+  Box bounds_;
+  Vec3 corner_{};
+  double edge_ = 1;
+  LatticeCell extent_{};  ///< extent [cells]
+  std::uint32_t size_ = 0;
+  std::int32_t height_ = 1;  ///< 1 for bricks as roots, 2 for blocks
+  std::array<detail::VoxelLevel, 10> levels_{};
+  std::size_t level_count_ = 0;
+  SharedArray<std::uint64_t> keys_;   ///< positions of the roots
+  SharedArray<std::uint32_t> slots_;  ///< hash table of root numbers
+  SharedArray<std::uint64_t> block_masks_;
+  SharedArray<std::uint32_t> block_first_;
+  SharedArray<std::uint64_t> brick_masks_;
+  SharedArray<std::uint32_t> brick_first_;
+  SharedArray<std::uint64_t> pyramid_;
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
