@@ -11,7 +11,7 @@ bash bench/count.sh any_target target |
        END {
          if (found != 4) { print "nothing was counted"; exit 1 }
          for (k = split("single bundle", beams, " "); k > 0; --k) {
-           alone = count["alone_" beams[k]]
+           alone = count["single_part_" beams[k]]
            any = count["any_" beams[k]]
            printf "instructions a pulse, %s: alone %.1f, one of several %.1f; %.1f more\n", beams[k], alone, any, any - alone
          }

@@ -64,7 +64,7 @@ void add(const Report& report, const Case& what, const std::string& name, const 
     for (std::size_t i = 0; i < pulses; ++i) {
       std::copy_n(what.reflections.begin() + static_cast<std::ptrdiff_t>(i * what.number), what.number,
                   scratch.begin());
-      count += detector.detect(Heard{emitter, {}, scratch}, workspace).echoes.size();
+      count += detector.detect(DetectorInput{emitter, {}, scratch}, workspace).echoes.size();
     }
     echoes[k] = count;
   });

@@ -81,7 +81,7 @@ struct Traced {
 struct Blind {
   struct Workspace {};
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
-  [[nodiscard]] Detection detect(const Heard&, Workspace&) const noexcept { return {}; }
+  [[nodiscard]] Detection detect(const DetectorInput&, Workspace&) const noexcept { return {}; }
 };
 
 /// Goes through all pulses; the sum of the echoes' ranges.

@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   const unsigned threads = argc > 2 ? static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10)) : 0;
   const street::Scene town = is_flat ? flat(street::scene(1)) : street::scene(1);
   std::vector<traffic::Vehicle> cars = traffic::cars(20, street::Dice(1, 7)), robots(count);
-  std::vector<Similarity> placements;
+  std::vector<Placement> placements;
   street::Scene moving = traffic::scene_of(cars), unused = moving;
   const Layered world{town, moving};
 

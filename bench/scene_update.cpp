@@ -38,17 +38,17 @@ std::shared_ptr<const Mesh> tent() {
                                                {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}});
 }
 
-std::vector<Similarity> anywhere(wood::Dice& dice) {
-  std::vector<Similarity> all(part_count);
-  for (Similarity& one : all)
+std::vector<Placement> anywhere(wood::Dice& dice) {
+  std::vector<Placement> all(part_count);
+  for (Placement& one : all)
     one = {rotation_about(axis::up, dice.between(0, 2 * pi)),
            dice.between(0.5, 2),
            {dice.between(-500, 500), dice.between(-500, 500), dice.between(0, 20)}};
   return all;
 }
 
-std::vector<Similarity> nudged(std::vector<Similarity> all, wood::Dice& dice) {
-  for (Similarity& one : all) one.translation = one.translation + Vec3{dice.between(-1, 1), dice.between(-1, 1), 0};
+std::vector<Placement> nudged(std::vector<Placement> all, wood::Dice& dice) {
+  for (Placement& one : all) one.translation = one.translation + Vec3{dice.between(-1, 1), dice.between(-1, 1), 0};
   return all;
 }
 
@@ -87,10 +87,10 @@ std::shared_ptr<const PartMotion> motion(Kind kind, wood::Dice& dice) {
       std::vector<TimedPose>{{0, from, no_rotation}, {0.05, to, turned}, {1, from, no_rotation}});
 }
 
-std::vector<Movers::Part> movers(const std::shared_ptr<const Mesh>& shape, std::span<const Similarity> placements,
+std::vector<Movers::Part> movers(const std::shared_ptr<const Mesh>& shape, std::span<const Placement> placements,
                                  Kind kind, wood::Dice& dice) {
   std::vector<Movers::Part> all;
-  for (const Similarity& placement : placements)
+  for (const Placement& placement : placements)
     all.push_back({.geometry = shape, .placement = placement, .motion = motion(kind, dice)});
   return all;
 }
@@ -117,11 +117,11 @@ extern "C" {
 
 [[gnu::noinline]] void update_built(std::vector<World::Part> parts, World& to) { to = World(std::move(parts), 1); }
 
-[[gnu::noinline]] void update_nudged(const World& world, const std::vector<Similarity>& placements, World& to) {
+[[gnu::noinline]] void update_nudged(const World& world, const std::vector<Placement>& placements, World& to) {
   to = world.with_placements(placements, std::move(to), 1);
 }
 
-[[gnu::noinline]] void update_anywhere(const World& world, const std::vector<Similarity>& placements, World& to) {
+[[gnu::noinline]] void update_anywhere(const World& world, const std::vector<Placement>& placements, World& to) {
   to = world.with_placements(placements, std::move(to), 1);
 }
 
@@ -158,9 +158,9 @@ extern "C" {
 int main() {
   wood::Dice dice(3, 0);
   const auto shape = tent();
-  const std::vector<Similarity> first = anywhere(dice);
+  const std::vector<Placement> first = anywhere(dice);
   std::vector<World::Part> parts;
-  for (const Similarity& placement : first) parts.push_back({.geometry = shape, .placement = placement});
+  for (const Placement& placement : first) parts.push_back({.geometry = shape, .placement = placement});
   World now({}), next({});
   update_built(parts, now);
   World unused = now.with_placements(first);

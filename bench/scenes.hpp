@@ -148,10 +148,10 @@ class Bundles {
   }
 
   /// The first ray of bundle i, alone.
-  [[nodiscard]] BundleOfOne ray(std::size_t i) const noexcept {
+  [[nodiscard]] SingleRayPacket ray(std::size_t i) const noexcept {
     const BundleOrigin& from = origins_[i];
     const double* const d = directions_.data() + first_[i];
-    return BundleOfOne(
+    return SingleRayPacket(
         Ray{.origin = from.origin, .direction = {d[0], d[from.size], d[2 * from.size]}, .near = from.near});
   }
 

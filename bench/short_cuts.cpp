@@ -58,9 +58,9 @@ struct WatchedScene {
 struct WatchedDetector : DetectorAdaptor<FullWaveform<>> {
   Counts* counts = nullptr;
 
-  [[nodiscard]] Detection detect(const Heard& heard, FullWaveform<>::Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, FullWaveform<>::Workspace& w) const noexcept {
     w.window.clear();
-    const Detection detection = inner.detect(heard, w);
+    const Detection detection = inner.detect(input, w);
     ++counts->detected;
     if (w.window.empty()) ++counts->in_closed_form;
     return detection;

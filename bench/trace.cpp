@@ -5,7 +5,7 @@
 // beside them Embree 3 on the same rays, by turns in the same run. A row is printed only once the accelerator has given
 // the same answers as `Linear`, bit by bit, on a sample; of Embree it is printed how many of its ranges agree.
 //
-// Rows are named scene/subrays/accelerator, with `alone` for a `BundleOfOne` in place of a bundle: `--only
+// Rows are named scene/subrays/accelerator, with `alone` for a `SingleRayPacket` in place of a bundle: `--only
 // '*/19/Bvh<float>' --only
 // '*/19/Embree*'`. An OBJ file in metres, if one is given, is scanned as a scene of its own. A beam's ratio is to the
 // best of Embree's rows; a single ray's, to the best of `rtcIntersect1`.

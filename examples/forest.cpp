@@ -98,7 +98,7 @@ Forest plant(std::uint64_t seed, std::size_t count, double side, const std::vect
   wood::Dice dice(seed, 50);
   for (std::size_t tree = 1; tree <= count; ++tree) {
     const Vec2 at{dice.between(-0.49, 0.49) * side, dice.between(-0.49, 0.49) * side};
-    const Similarity placement{
+    const Placement placement{
         rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
     const auto model = static_cast<std::size_t>(dice.between(0, static_cast<double>(models.size())));
     for (Forest::Part part : models[model]) {

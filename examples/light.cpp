@@ -121,7 +121,7 @@ void scan(const CommandLine& line, double visibility, double step) {
                         Deflector{head, Deflector{polygon, scanner}}};
 
   const street::Scene map = scene(line.seed, laser.wavelength);
-  const LightPaths light{.least_share = 1e-3, .air = Media({{.medium = fog(visibility, laser.wavelength)}})};
+  const LightPaths light{.share_min = 1e-3, .air = Media({{.medium = fog(visibility, laser.wavelength)}})};
   const Survey survey{tripod,   LatticeFootprint{7}, map,
                       light,    Receiver{},          FullWaveform{{.sample_interval = 1_ns, .threshold = 2e-9}},
                       line.seed};
@@ -172,7 +172,7 @@ using Scene = pulsecast::Scene<TriangleMesh<>, WaterSurface>;
 /// Bed, banks and trees under water with waves. Reflectances at 532 nm.
 Scene scene(std::uint64_t seed, double depth, double wind, double wavelength) {
   std::vector<Scene::Part> parts;
-  const auto place = [&](auto geometry, const MaterialTable& materials, const Similarity& placement = {}) {
+  const auto place = [&](auto geometry, const MaterialTable& materials, const Placement& placement = {}) {
     parts.push_back({.geometry = std::move(geometry),
                      .materials = materials,
                      .placement = placement,

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     // the world: a town that stands still, and cars that are placed anew at each step
     const street::Scene town = street::scene(line.seed);
     std::vector<traffic::Vehicle> cars = traffic::cars(others, street::Dice(line.seed, 7));
-    std::vector<Similarity> placements;
+    std::vector<Placement> placements;
     street::Scene moving = traffic::scene_of(cars), unused = moving;
     const Layered world{town, moving};
 

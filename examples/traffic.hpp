@@ -80,7 +80,7 @@ static_assert(pulsecast::Trajectory<LivePath>);
 }
 
 /// Placements of the cars at a time in the step [s].
-inline void place(const std::vector<Vehicle>& cars, double seconds, std::vector<pulsecast::Similarity>& placements) {
+inline void place(const std::vector<Vehicle>& cars, double seconds, std::vector<pulsecast::Placement>& placements) {
   placements.resize(cars.size());
   for (std::size_t k = 0; k < cars.size(); ++k) {
     const BodyPose pose = cars[k].at(seconds);

@@ -323,7 +323,7 @@ static_assert(!Transport<UnsizedTransport, LeastRayTarget>, "it does not tell ho
 
 struct TransportMayThrow : LeastTransport {
   template <class Map>
-  TransportResult trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const {
+  TransportResult trace(const Map&, const TransportInput&, Workspace&, std::span<Reflection>) const {
     return {};
   }
 };
@@ -331,7 +331,7 @@ static_assert(!Transport<TransportMayThrow, LeastRayTarget>, "trace() is not noe
 
 struct TransportWithoutLedger : LeastTransport {
   template <class Map>
-  std::size_t trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const noexcept {
+  std::size_t trace(const Map&, const TransportInput&, Workspace&, std::span<Reflection>) const noexcept {
     return 0;
   }
 };
@@ -339,24 +339,24 @@ static_assert(!Transport<TransportWithoutLedger, LeastRayTarget>, "trace() retur
 
 struct TransportOfBundles : LeastTransport {
   template <BundleTarget Map>
-  TransportResult trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const noexcept {
+  TransportResult trace(const Map&, const TransportInput&, Workspace&, std::span<Reflection>) const noexcept {
     return {};
   }
 };
 static_assert(Transport<TransportOfBundles, LeastBundleTarget> && !Transport<TransportOfBundles, LeastRayTarget>,
               "a transport may ask more of a map");
 
-static_assert(Detector<LeastDetector> && !ListensAlways<LeastDetector> && !ReadsVelocity<LeastDetector>);
+static_assert(Detector<LeastDetector> && !RunsWithoutReflections<LeastDetector> && !ReadsVelocity<LeastDetector>);
 
 struct Listener : LeastDetector {
-  static constexpr bool listens_always = true, reads_velocity = true;
+  static constexpr bool runs_without_reflections = true, reads_velocity = true;
 };
-static_assert(ListensAlways<Listener> && ReadsVelocity<Listener>);
+static_assert(RunsWithoutReflections<Listener> && ReadsVelocity<Listener>);
 
 struct Deaf : LeastDetector {
-  static constexpr bool listens_always = false, reads_velocity = false;
+  static constexpr bool runs_without_reflections = false, reads_velocity = false;
 };
-static_assert(!ListensAlways<Deaf> && !ReadsVelocity<Deaf>);
+static_assert(!RunsWithoutReflections<Deaf> && !ReadsVelocity<Deaf>);
 
 struct NoWorkspace : LeastDetector {
   void workspace(std::size_t) const = delete;
@@ -369,22 +369,22 @@ struct VoidWorkspace : LeastDetector {
 static_assert(!Detector<VoidWorkspace>, "its workspace is nothing");
 
 struct DetectorMayThrow : LeastDetector {
-  Detection detect(const Heard&, Workspace&) const { return {}; }
+  Detection detect(const DetectorInput&, Workspace&) const { return {}; }
 };
 static_assert(!Detector<DetectorMayThrow>, "detect() is not noexcept");
 
 struct DetectorChanges : LeastDetector {
-  Detection detect(const Heard&, Workspace&) noexcept { return {}; }
+  Detection detect(const DetectorInput&, Workspace&) noexcept { return {}; }
 };
 static_assert(!Detector<DetectorChanges>, "detect() is not const");
 
 struct EchoesOnly : LeastDetector {
-  std::span<const Echo> detect(const Heard&, Workspace&) const noexcept { return {}; }
+  std::span<const Echo> detect(const DetectorInput&, Workspace&) const noexcept { return {}; }
 };
 static_assert(!Detector<EchoesOnly>, "detect() returns echoes, not a detection");
 
 struct ForeignWorkspace : LeastDetector {
-  Detection detect(const Heard&, int&) const noexcept { return {}; }
+  Detection detect(const DetectorInput&, int&) const noexcept { return {}; }
 };
 static_assert(!Detector<ForeignWorkspace>, "detect() does not take the workspace that it makes");
 

@@ -47,7 +47,7 @@ TEST_CASE("a batch hands out the echoes and samples of each shot") {
 
 TEST_CASE("a batch hands out the subrays of each shot, as many for each") {
   const std::vector<Shot> shots(3);
-  std::vector<SubrayHit> subrays(12);
+  std::vector<SubrayRecord> subrays(12);
   for (std::size_t k = 0; k < subrays.size(); ++k) subrays[k].power = static_cast<double>(k);
   const EchoBatch batch{.shots = shots, .echoes = {}, .samples = {}, .subrays = subrays};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -109,23 +109,23 @@ MISSPELT(PrefetchesPrimitives, prefetch_primitives,
          void prefetch_primitives(std::span<const PrimitiveIndex>) const noexcept);
 MISSPELT(PrefetchesPrimitives, announce, void announce(std::span<const PrimitiveIndex>) const noexcept);
 MISSPELT(PrefetchesPrimitives, index, void prefetch(const PrimitiveIndex*) const noexcept);
-MISSPELT(FlatConstant, is_flat, static constexpr bool is_flat = true);
-MISSPELT(FlatConstant, planar, static constexpr bool planar = true);
-MISSPELT(FlatConstant, is_planar, bool is_planar = true);
-MISSPELT(FlatConstant, flat_surface, static constexpr bool flat_surface = true);
+MISSPELT(UniformConstant, is_flat, static constexpr bool is_flat = true);
+MISSPELT(UniformConstant, planar, static constexpr bool planar = true);
+MISSPELT(UniformConstant, is_planar, bool is_planar = true);
+MISSPELT(UniformConstant, flat_surface, static constexpr bool flat_surface = true);
 MISSPELT(
-    FlatConstant, function, static constexpr bool flat() { return true; });
-MISSPELT(FlatConstant, variable, bool flat = true);
+    UniformConstant, function, static constexpr bool uniform_surface() { return true; });
+MISSPELT(UniformConstant, variable, bool flat = true);
 MISSPELT(RecordedConstant, is_recorded, static constexpr bool is_recorded = true);
 MISSPELT(RecordedConstant, record, static constexpr bool record = true);
 MISSPELT(RecordedConstant, records, static constexpr bool records = true);
 MISSPELT(RecordedConstant, records_subrays, static constexpr bool records_subrays = true);
 MISSPELT(RecordedConstant, member, const bool recorded = true);
-MISSPELT(TurnedConstant, turned_per_pulse, static constexpr bool turned_per_pulse = true);
-MISSPELT(TurnedConstant, turned_each_pulse, static constexpr bool turned_each_pulse = true);
-MISSPELT(TurnedConstant, turns_by_pulse, static constexpr bool turns_by_pulse = true);
-MISSPELT(TurnedConstant, turn_by_pulse, static constexpr bool turn_by_pulse = true);
-MISSPELT(TurnedConstant, member, const bool turned_by_pulse = true);
+MISSPELT(RotatesConstant, turned_per_pulse, static constexpr bool turned_per_pulse = true);
+MISSPELT(RotatesConstant, turned_each_pulse, static constexpr bool turned_each_pulse = true);
+MISSPELT(RotatesConstant, turns_by_pulse, static constexpr bool turns_by_pulse = true);
+MISSPELT(RotatesConstant, turn_by_pulse, static constexpr bool turn_by_pulse = true);
+MISSPELT(RotatesConstant, member, const bool rotates_per_pulse = true);
 MISSPELT(SamplesWaveforms, sampling_interval, double sampling_interval() const noexcept);
 MISSPELT(SamplesWaveforms, sample_spacing, double sample_spacing() const noexcept);
 MISSPELT(SamplesWaveforms, sample_time, double sample_time() const noexcept);
@@ -136,11 +136,11 @@ MISSPELT(PreparesForLasers, prepare_laser, void prepare_laser(const Laser&));
 MISSPELT(PreparesForLasers, set_laser, void set_laser(const Laser&));
 MISSPELT(PreparesForLasers, configure, void configure(const Laser&));
 MISSPELT(PreparesForLasers, result, bool prepare(const Laser&));
-MISSPELT(ListensConstant, always_listens, static constexpr bool always_listens = true);
-MISSPELT(ListensConstant, listens, static constexpr bool listens = true);
-MISSPELT(ListensConstant, listen_always, static constexpr bool listen_always = true);
-MISSPELT(ListensConstant, always_on, bool always_on = true);
-MISSPELT(ListensConstant, number, static constexpr int listens_always = 1);
+MISSPELT(RunsWithoutReflectionsConstant, always_listens, static constexpr bool always_listens = true);
+MISSPELT(RunsWithoutReflectionsConstant, listens, static constexpr bool listens = true);
+MISSPELT(RunsWithoutReflectionsConstant, listen_always, static constexpr bool listen_always = true);
+MISSPELT(RunsWithoutReflectionsConstant, always_on, bool always_on = true);
+MISSPELT(RunsWithoutReflectionsConstant, number, static constexpr int runs_without_reflections = 1);
 MISSPELT(VelocityConstant, needs_velocity, static constexpr bool needs_velocity = true);
 MISSPELT(VelocityConstant, reads_velocities, static constexpr bool reads_velocities = true);
 MISSPELT(VelocityConstant, uses_velocity, static constexpr bool uses_velocity = true);
@@ -159,7 +159,7 @@ MISSPELT(MomentWidthMeasure, width_by_moments, double width_by_moments(const Wav
 MISSPELT(MomentWidthMeasure, width_from_moments, double width_from_moments(const WaveformMoments&) const noexcept);
 MISSPELT(MomentWidthMeasure, width_of_moments, double width_of_moments(const WaveformMoments&) const noexcept);
 MISSPELT(MomentWidthMeasure, single, float width(const WaveformMoments&) const noexcept);
-MISSPELT(TruncatedWidthMeasure, least_share, double least_share() const noexcept);
+MISSPELT(TruncatedWidthMeasure, share_min, double share_min() const noexcept);
 MISSPELT(TruncatedWidthMeasure, share_min, double share_min() const noexcept);
 MISSPELT(TruncatedWidthMeasure, minimum_share, double minimum_share() const noexcept);
 MISSPELT(TruncatedWidthMeasure, min_fraction, double min_fraction() const noexcept);
@@ -181,10 +181,10 @@ MISSPELT(MissesCones, misses_all, bool misses_all(const RayCone&) const noexcept
 MISSPELT(MissesCones, throwing, bool misses_cone(const RayCone&) const);
 MISSPELT(ChoosesShots, reads_empty, bool reads_empty() const noexcept);
 MISSPELT(ChoosesShots, reads_misses, bool reads_misses() const noexcept);
-MISSPELT(TimedConstant, is_timed, static constexpr bool is_timed = true);
-MISSPELT(TimedConstant, timed_hits, static constexpr bool timed_hits = true);
-MISSPELT(TimedConstant, time_dependent, static constexpr bool time_dependent = true);
-MISSPELT(TimedConstant, number, static constexpr int timed = 1);
+MISSPELT(TimeDependentConstant, is_timed, static constexpr bool is_timed = true);
+MISSPELT(TimeDependentConstant, timed_hits, static constexpr bool timed_hits = true);
+MISSPELT(TimeDependentConstant, time_dependent, static constexpr bool time_dependent = true);
+MISSPELT(TimeDependentConstant, number, static constexpr int timed = 1);
 MISSPELT(ChoosesShots, wants_empty_shots, bool wants_empty_shots() const noexcept);
 MISSPELT(ChoosesShots, wants_misses, bool wants_misses() const noexcept);
 MISSPELT(ChoosesShots, constant, static constexpr bool reads_empty_shots = true);
@@ -210,7 +210,7 @@ MISSPELT(IdentifiedSurvey, number, int identity() const noexcept);
 
 template <bool value>
 struct Shape : LeastGeometry {
-  static constexpr bool flat = value;
+  static constexpr bool uniform_surface = value;
 };
 template <bool value>
 struct Pattern : LeastFootprint {
@@ -218,7 +218,7 @@ struct Pattern : LeastFootprint {
 };
 template <bool value>
 struct Listener : LeastDetector {
-  static constexpr bool listens_always = value;
+  static constexpr bool runs_without_reflections = value;
 };
 template <bool value>
 struct Speedometer : LeastDetector {
@@ -264,25 +264,25 @@ TEST_CASE("every stage passes over blocked slots, and over no other") {
 }
 
 TEST_CASE("a constant that is false is as one that is absent, and both pass the checks") {
-  CHECK(FlatGeometry<Shape<true>>);
-  CHECK_FALSE(FlatGeometry<Shape<false>>);
-  CHECK_FALSE(FlatGeometry<LeastGeometry>);
-  CHECK_FALSE(KeylessGeometry<LeastGeometry>);
+  CHECK(UniformGeometry<Shape<true>>);
+  CHECK_FALSE(UniformGeometry<Shape<false>>);
+  CHECK_FALSE(UniformGeometry<LeastGeometry>);
+  CHECK_FALSE(DeterministicGeometry<LeastGeometry>);
   CHECK(RecordsSubrays<Pattern<true>>);
   CHECK_FALSE(RecordsSubrays<Pattern<false>>);
   CHECK_FALSE(RecordsSubrays<LeastFootprint>);
-  CHECK(ListensAlways<Listener<true>>);
-  CHECK_FALSE(ListensAlways<Listener<false>>);
-  CHECK_FALSE(ListensAlways<LeastDetector>);
+  CHECK(RunsWithoutReflections<Listener<true>>);
+  CHECK_FALSE(RunsWithoutReflections<Listener<false>>);
+  CHECK_FALSE(RunsWithoutReflections<LeastDetector>);
   CHECK(ReadsVelocity<Speedometer<true>>);
   CHECK_FALSE(ReadsVelocity<Speedometer<false>>);
   CHECK_FALSE(ReadsVelocity<LeastDetector>);
-  CHECK(pulsecast::detail::FlatConstantCheck<Shape<false>>::passed);
-  CHECK(pulsecast::detail::FlatConstantCheck<LeastGeometry>::passed);
+  CHECK(pulsecast::detail::UniformConstantCheck<Shape<false>>::passed);
+  CHECK(pulsecast::detail::UniformConstantCheck<LeastGeometry>::passed);
   CHECK(pulsecast::detail::RecordedConstantCheck<Pattern<false>>::passed);
   CHECK(pulsecast::detail::RecordedConstantCheck<LeastFootprint>::passed);
-  CHECK(pulsecast::detail::ListensConstantCheck<Listener<false>>::passed);
-  CHECK(pulsecast::detail::ListensConstantCheck<LeastDetector>::passed);
+  CHECK(pulsecast::detail::RunsWithoutReflectionsConstantCheck<Listener<false>>::passed);
+  CHECK(pulsecast::detail::RunsWithoutReflectionsConstantCheck<LeastDetector>::passed);
   CHECK(pulsecast::detail::VelocityConstantCheck<Speedometer<false>>::passed);
   CHECK(pulsecast::detail::VelocityConstantCheck<LeastDetector>::passed);
 }

@@ -202,8 +202,8 @@ struct Flawed {
     int uses = 0;
   };
   Workspace workspace(std::size_t subrays) const { return {std::vector<Echo>(subrays + 1), 0}; }
-  Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const std::span<Reflection> reflections = heard.reflections;
+  Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const std::span<Reflection> reflections = input.reflections;
     std::sort(reflections.begin(), reflections.end(),
               [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
     std::size_t n = 0;
@@ -242,7 +242,7 @@ struct FlawedTransport {
   std::size_t reflections(std::size_t subrays) const noexcept { return subrays; }
   Workspace workspace(std::size_t) const { return {}; }
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+  TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                         std::span<Reflection> reflections) const noexcept {
     TransportResult r = DirectLight{}.trace(map, light, w.inside, reflections);
     flaw(r, reflections, light.record, w.uses++);
@@ -460,7 +460,7 @@ TEST_CASE("a map that says too often that a cone meets nothing breaks the law of
 TEST_CASE("transports that keep the law pass, and those that break it do not") {
   using R = TransportResult;
   using Found = std::span<Reflection>;
-  using Record = std::span<SubrayHit>;
+  using Record = std::span<SubrayRecord>;
   CHECK(transport_laws(LeastTransport{}, LeastRayTarget{}, downwards) == "");
   CHECK(transport_flaw_found([](R&, Found, Record, int) {}) == "");
   CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.sent *= 1.001; }), "are sent"));

@@ -339,7 +339,7 @@ TEST_CASE("subrays that are recorded lie where they met the plane, with the powe
     REQUIRE(o.echoes.size() == without.echoes.size());
     CHECK(o.echoes[0].amplitude == without.echoes[0].amplitude);
     double sum = 0;
-    for (const SubrayHit& hit : o.subrays) {
+    for (const SubrayRecord& hit : o.subrays) {
       CHECK(hit.object == 9);
       CHECK(std::fabs(dot(hit.point - plane.point, plane.normal)) < 1e-12);
       sum += hit.power;
@@ -354,7 +354,7 @@ TEST_CASE("subrays that are recorded lie where they met the plane, with the powe
   auto w = missing.workspace();
   const Outcome o = missing(0, w);
   REQUIRE(o.subrays.size() == 7);
-  for (const SubrayHit& hit : o.subrays) {
+  for (const SubrayRecord& hit : o.subrays) {
     CHECK_FALSE(hit.met());
     CHECK(hit.power == 0);
   }
@@ -841,17 +841,17 @@ namespace {
 
 /// Counts what it is asked for, and has an echo of the dark for each third pulse.
 struct DarkCounts : support::LeastDetector {
-  static constexpr bool listens_always = true;
-  std::vector<Heard>* asked = nullptr;
-  Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    if (asked) asked->push_back(heard);
-    if (heard.key.pulse % 3 != 0) return support::LeastDetector::detect(heard, w);
+  static constexpr bool runs_without_reflections = true;
+  std::vector<DetectorInput>* asked = nullptr;
+  Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    if (asked) asked->push_back(input);
+    if (input.key.pulse % 3 != 0) return support::LeastDetector::detect(input, w);
     w[0] = Echo{.range = 3, .amplitude = 1e-9};
     return {w, {}, 0};
   }
 };
 struct DarkCountsOfLight : DarkCounts {
-  static constexpr bool listens_always = false;
+  static constexpr bool runs_without_reflections = false;
 };
 
 /// Pulses ahead, upwards, downwards; each fourth slot is blocked.
@@ -873,7 +873,7 @@ TEST_CASE(
     "a detector that listens always is asked for every pulse sent, also towards the sky; others are asked for light") {
   const Plane ground;
   const Receiver receiver{.range_min = 2, .range_max = 8};
-  std::vector<Heard> asked, asked_of_light;
+  std::vector<DetectorInput> asked, asked_of_light;
   DarkCounts listening;
   listening.asked = &asked;
   DarkCountsOfLight usual;
@@ -897,13 +897,13 @@ TEST_CASE(
     }
     ++sent;
     REQUIRE(asked.size() == sent);
-    const Heard& heard = asked.back();
-    CHECK(heard.key.pulse == i);
-    CHECK(heard.key.seed == 9);
-    CHECK(heard.gate.near == 2);
-    CHECK(heard.gate.far == 8);
-    CHECK(heard.reflections.size() == usually.echoes.size());
-    with_light += heard.reflections.size();
+    const DetectorInput& input = asked.back();
+    CHECK(input.key.pulse == i);
+    CHECK(input.key.seed == 9);
+    CHECK(input.gate.near == 2);
+    CHECK(input.gate.far == 8);
+    CHECK(input.reflections.size() == usually.echoes.size());
+    with_light += input.reflections.size();
     if (i % 3 == 0) {
       CHECK(o.shot.fate == Fate::returned);
       CHECK(o.echoes.size() == 1);
@@ -939,7 +939,7 @@ TEST_CASE("a turned footprint is the same beam, turned by the number of the puls
     CHECK(survey(i, v).energy.share(&EnergyLedger::missed) == missed);
     alike += other(i, u).energy.share(&EnergyLedger::missed) == missed ? 1 : 0;
     met += 1 - missed;
-    for (const SubrayHit& hit : survey(i, v).subrays)
+    for (const SubrayRecord& hit : survey(i, v).subrays)
       if (hit.met()) CHECK(hit.point.x > 0);  // points are those of the turned subrays
   }
   CHECK(met / 500 == support::relative(0.5, 0.02));

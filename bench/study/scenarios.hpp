@@ -159,8 +159,8 @@ template <class AnyScene, class Plant>
     for (double y = -26; y <= 26; y += 6.5) {
       const Vec2 at{x + dice.between(-1.5, 1.5), y + dice.between(-1.5, 1.5)};
       const std::size_t kind = dice.between(0, 1) < 0.5 ? 0 : 1;
-      const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1),
-                                 terrain.on(at)};
+      const Placement placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1),
+                                terrain.on(at)};
       for (auto part : plant(kind)) {
         part.materials = material_table(wood::materials());
         part.placement = placement;

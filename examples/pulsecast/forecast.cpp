@@ -18,7 +18,7 @@
 
 using namespace pulsecast;
 using helios::CompiledSurvey;
-using helios::Receiving;
+using helios::ReceiverOverrides;
 using helios::Sample;
 using helios::SampleBlock;
 using helios::Simulation;
@@ -273,7 +273,7 @@ class Forecaster {
     measure_as_is();
     out.sampled = sampled_;
     prepare_others();
-    for (const Receiving& how : candidates()) out.all.push_back(forecast(how));
+    for (const ReceiverOverrides& how : candidates()) out.all.push_back(forecast(how));
     return out;
   }
 
@@ -335,7 +335,7 @@ class Forecaster {
     double trials = 0;  // in units of the survey's own settings
     const auto own = static_cast<double>(subrays_of(rings_));
     const auto effort = [&](int rings) { return 0.3 + 0.7 * static_cast<double>(subrays_of(rings)) / own; };
-    for (const Receiving& how : candidates()) trials += effort(how.rings.value_or(rings_));
+    for (const ReceiverOverrides& how : candidates()) trials += effort(how.rings.value_or(rings_));
     const auto affordable = [&](double seconds, double each, double least, double most) {
       return static_cast<std::uint64_t>(std::clamp(seconds * workers_ / (each * met_cost_), least, most));
     };
@@ -355,8 +355,8 @@ class Forecaster {
   }
 
   /// Own settings of the survey, then all other plausible ones.
-  [[nodiscard]] std::vector<Receiving> candidates() const {
-    std::vector<Receiving> all{{}};
+  [[nodiscard]] std::vector<ReceiverOverrides> candidates() const {
+    std::vector<ReceiverOverrides> all{{}};
     std::vector<double> bins = round_numbers(pulse_length_ * 1e9 / 64, pulse_length_ * 1e9 / 4);
     for (double& bin : bins) bin /= 1e9;
     bins.push_back(bin_size_);
@@ -366,9 +366,9 @@ class Forecaster {
     return all;
   }
 
-  Forecast forecast(const Receiving& how) {
+  Forecast forecast(const ReceiverOverrides& how) {
     Forecast f{.how = how, .subrays = subrays_of(how.rings.value_or(rings_)), .points = census_.points};
-    const bool other = how != Receiving{};
+    const bool other = how != ReceiverOverrides{};
     double computing = computing_;
     if (other) {
       simulation_.receive(how);
@@ -465,7 +465,7 @@ class Forecaster {
   Census census_;
   double pulse_length_ = std::numeric_limits<double>::infinity(), bin_size_ = std::numeric_limits<double>::infinity();
   int rings_ = 1;
-  Receiving finest_{};
+  ReceiverOverrides finest_{};
   // with the survey's own settings
   double computing_ = 0, met_cost_ = 0, unsure_ = 0;
   std::uint64_t sampled_ = 0;

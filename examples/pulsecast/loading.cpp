@@ -75,6 +75,6 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& ho
   return helios::make_simulation(survey, known.settings, parts);
 }
 
-void for_each_raster(const SurveySettings& survey, const std::function<void(const Raster&, const Similarity&)>& use) {
+void for_each_raster(const SurveySettings& survey, const std::function<void(const Raster&, const Placement&)>& use) {
   for (const auto& [raster, placement] : helios::SceneBuilder(survey.scene, {}).rasters()) use(raster, placement);
 }

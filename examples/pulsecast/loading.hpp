@@ -37,4 +37,4 @@ std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::Sur
 
 /// Calls `use` with each raster of heights in a scene, and its placement.
 void for_each_raster(const pulsecast::helios::SurveySettings& survey,
-                     const std::function<void(const pulsecast::Raster&, const pulsecast::Similarity&)>& use);
+                     const std::function<void(const pulsecast::Raster&, const pulsecast::Placement&)>& use);

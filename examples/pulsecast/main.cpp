@@ -325,14 +325,14 @@ class Session {
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec
-        << " format=" << options_.format << " scale=" << pulsecast::detail::to_text(options_.las_scale)
+        << " format=" << options_.format << " scale=" << text::to_text(options_.las_scale)
         << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
         << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
         << options_.waveform_noise << options_.fixed_incidence << options_.library_physics << options_.light_paths
         << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses
         << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
-    if (options_.misses_at) out << " misses=" << pulsecast::detail::to_text(*options_.misses_at);
+    if (options_.misses_at) out << " misses=" << text::to_text(*options_.misses_at);
     return out.str();
   }
 
@@ -517,7 +517,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
   Picture picture(path);
   for_each_raster(file.survey,
-                  [&](const Raster& raster, const Similarity& placement) { picture.add_ground(raster, placement); });
+                  [&](const Raster& raster, const Placement& placement) { picture.add_ground(raster, placement); });
   const RunSummary summary = simulation.run({.threads = options.threads, .stride = stride}, picture);
   picture.close();
   if (!options.quiet)

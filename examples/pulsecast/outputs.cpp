@@ -185,7 +185,7 @@ struct Picture::Inside {
 Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path)}) {}
 Picture::~Picture() = default;
 void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
-void Picture::add_ground(const Raster& raster, const Similarity& placement) {
+void Picture::add_ground(const Raster& raster, const Placement& placement) {
   inside_->writer.add_ground(raster, hillshade(raster), placement);
 }
 void Picture::close() { inside_->writer.close(); }

@@ -66,7 +66,7 @@ class Picture {
   void operator()(const pulsecast::EchoBatch& batch);
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
   /// Draws the hillshade of a raster behind the points.
-  void add_ground(const pulsecast::Raster& raster, const pulsecast::Similarity& placement);
+  void add_ground(const pulsecast::Raster& raster, const pulsecast::Placement& placement);
   void close();
 
  private:

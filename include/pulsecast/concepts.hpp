@@ -139,7 +139,7 @@ struct Surface {
 /// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes; `material_count()` is the least
 /// length of a part's material table.
 /// `surface(i, rays, j)` is the surface of primitive i at its hit by ray j. The hit point is not passed; a curved primitive recomputes it.
-/// Not required: one surface for all hits of a primitive, as of a `FlatGeometry`.
+/// Not required: one surface for all hits of a primitive, as of a `UniformGeometry`.
 /// Law: pure; random draws depend on the bundle's names only; `closest` offers primitives to `nearest` and does nothing else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& nearest, PrimitiveIndex i, std::size_t j) {
@@ -248,8 +248,8 @@ struct ContinuousReturn {
   [[nodiscard]] double power() const noexcept { return 0.5 * (at_begin + at_end) * (end - begin); }
 };
 
-/// Light of one pulse, as a transport takes it: `transport/illumination.hpp`.
-struct Illumination;
+/// Light of one pulse, as a transport takes it: `transport/transport_input.hpp`.
+struct TransportInput;
 
 /// Result of a transport for one pulse.
 struct TransportResult {
@@ -270,10 +270,10 @@ struct TransportResult {
 /// `reflections(n)` of a pulse of n subrays. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the powers of reflections and continuous
 /// returns, times the pulse length, and at most `scattered`; both are of positive power, from inside the gate; each of
-/// `Illumination::record` is set.
+/// `TransportInput::record` is set.
 /// Not required: `trace<true>(...)`, which also sets velocities: `TracesVelocity`.
 template <class T, class Map>
-concept Transport = std::copyable<T> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
+concept Transport = std::copyable<T> && requires(const T t, const Map& map, const TransportInput& light, std::size_t subrays,
                                                  decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
   { t.reflections(subrays) } noexcept -> std::same_as<std::size_t>;
   { t.trace(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
@@ -281,13 +281,13 @@ concept Transport = std::copyable<T> && requires(const T t, const Map& map, cons
 
 /// Transport that also sets `Reflection::velocity`, if the first template argument of `trace` is true.
 template <class T, class Map>
-concept TracesVelocity = Transport<T, Map> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
+concept TracesVelocity = Transport<T, Map> && requires(const T t, const Map& map, const TransportInput& light, std::size_t subrays,
                                                        decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
   { t.template trace<true>(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
 };
 
 /// Input of a detector for one pulse.
-struct Heard {
+struct DetectorInput {
   const Emitter& emitter;               ///< emitter of the pulse
   RangeGate gate{};                     ///< range gate of the receiver
   std::span<Reflection> reflections{};  ///< all reflections, in any order; a detector may reorder and change them
@@ -304,15 +304,15 @@ struct Detection {
 };
 
 /// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by `workspace(n)` for up
-/// to n reflections. Random draws take `heard.key` with a `purpose` of the detector's own, as `Purpose{128}`, and any `subray` and `part`.
-/// Law: pure; echoes are sorted by range. Unless it `ListensAlways`, nothing heard gives no echo, and the echoes' energy does not exceed
+/// to n reflections. Random draws take `input.key` with a `purpose` of the detector's own, as `Purpose{128}`, and any `subray` and `part`.
+/// Law: pure; echoes are sorted by range. Unless it `RunsWithoutReflections`, nothing heard gives no echo, and the echoes' energy does not exceed
 /// that received.
 /// Not required: use of all reflections; randomness; waveforms, as of one that `SamplesWaveforms`; limits of the laser, as of one that
 /// `ValidatesLaser`; velocities, as of one that `ReadsVelocity`.
 template <class D>
 concept Detector = std::copyable<D> &&
-    requires(const D d, const Heard& heard, std::size_t reflections, decltype(d.workspace(reflections))& workspace) {
-  { d.detect(heard, workspace) } noexcept -> std::same_as<Detection>;
+    requires(const D d, const DetectorInput& input, std::size_t reflections, decltype(d.workspace(reflections))& workspace) {
+  { d.detect(input, workspace) } noexcept -> std::same_as<Detection>;
 };
 
 /// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the

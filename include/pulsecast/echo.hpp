@@ -134,7 +134,7 @@ struct Shot {
 };
 
 /// Return of one subray of a pulse, for studies of footprints. Infinite range for a miss.
-struct SubrayHit : Hit {
+struct SubrayRecord : Hit {
   double power = 0;  ///< received power for a pulse of zero length; 0 outside the range gate [W]
   Vec3 point{};      ///< hit in the world, by the pose as known to the instrument [m]
 };
@@ -145,7 +145,7 @@ struct EchoBatch {
   std::span<const Echo> echoes;  ///< contiguous per shot, sorted by reported range
   std::span<const float> samples;  ///< waveforms: received power [W]
   double sample_interval = 0;      ///< sample spacing of the waveforms [s]
-  std::span<const SubrayHit>
+  std::span<const SubrayRecord>
       subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
 
   /// Echoes of a shot of this batch.
@@ -158,7 +158,7 @@ struct EchoBatch {
   }
 
   /// Subrays of the shot at this index in `shots`.
-  [[nodiscard]] std::span<const SubrayHit> subrays_of(std::size_t shot) const noexcept {
+  [[nodiscard]] std::span<const SubrayRecord> subrays_of(std::size_t shot) const noexcept {
     const std::size_t each = subrays.size() / shots.size();
     return {subrays.data() + shot * each, each};
   }

@@ -30,19 +30,19 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 template <class G>
-concept FlatConstant = requires {
-  requires std::same_as<decltype(G::flat), const bool>;
-  typename std::bool_constant<G::flat>;
+concept UniformConstant = requires {
+  requires std::same_as<decltype(G::uniform_surface), const bool>;
+  typename std::bool_constant<G::uniform_surface>;
 };
 template <class G>
-concept KeylessConstant = requires {
-  requires std::same_as<decltype(G::keyless), const bool>;
-  typename std::bool_constant<G::keyless>;
+concept DeterministicConstant = requires {
+  requires std::same_as<decltype(G::deterministic), const bool>;
+  typename std::bool_constant<G::deterministic>;
 };
 template <class G>
-concept TimedConstant = requires {
-  requires std::same_as<decltype(G::timed), const bool>;
-  typename std::bool_constant<G::timed>;
+concept TimeDependentConstant = requires {
+  requires std::same_as<decltype(G::time_dependent), const bool>;
+  typename std::bool_constant<G::time_dependent>;
 };
 template <class F>
 concept RecordedConstant = requires {
@@ -50,14 +50,14 @@ concept RecordedConstant = requires {
   typename std::bool_constant<F::recorded>;
 };
 template <class F>
-concept TurnedConstant = requires {
-  requires std::same_as<decltype(F::turned_by_pulse), const bool>;
-  typename std::bool_constant<F::turned_by_pulse>;
+concept RotatesConstant = requires {
+  requires std::same_as<decltype(F::rotates_per_pulse), const bool>;
+  typename std::bool_constant<F::rotates_per_pulse>;
 };
 template <class D>
-concept ListensConstant = requires {
-  requires std::same_as<decltype(D::listens_always), const bool>;
-  typename std::bool_constant<D::listens_always>;
+concept RunsWithoutReflectionsConstant = requires {
+  requires std::same_as<decltype(D::runs_without_reflections), const bool>;
+  typename std::bool_constant<D::runs_without_reflections>;
 };
 template <class D>
 concept VelocityConstant = requires {
@@ -195,18 +195,18 @@ PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const n
 
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
 template <class G>
-concept FlatGeometry = detail::FlatConstant<G> && G::flat;
-PULSECAST_OPTIONAL_MEMBER(FlatConstant, "static constexpr bool flat = true", flat, , is_flat, planar, is_planar, flat_surface)
+concept UniformGeometry = detail::UniformConstant<G> && G::uniform_surface;
+PULSECAST_OPTIONAL_MEMBER(UniformConstant, "static constexpr bool uniform_surface = true", uniform_surface, , is_flat, planar, is_planar, flat_surface)
 
 /// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at random.
 template <class G>
-concept KeylessGeometry = detail::KeylessConstant<G> && G::keyless;
-PULSECAST_OPTIONAL_MEMBER(KeylessConstant, "static constexpr bool keyless = true", keyless, , is_keyless, without_key, no_key, key_less)
+concept DeterministicGeometry = detail::DeterministicConstant<G> && G::deterministic;
+PULSECAST_OPTIONAL_MEMBER(DeterministicConstant, "static constexpr bool deterministic = true", deterministic, , is_keyless, without_key, no_key, key_less)
 
 /// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
 template <class G>
-concept TimedGeometry = detail::TimedConstant<G> && G::timed;
-PULSECAST_OPTIONAL_MEMBER(TimedConstant, "static constexpr bool timed = true", timed, , is_timed, timed_hits, time_dependent, timeless)
+concept TimeDependentGeometry = detail::TimeDependentConstant<G> && G::time_dependent;
+PULSECAST_OPTIONAL_MEMBER(TimeDependentConstant, "static constexpr bool time_dependent = true", time_dependent, , is_timed, timed_hits, time_dependent, timeless)
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
 template <class F>
@@ -217,8 +217,8 @@ PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = tr
 /// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as `TurnedFootprint`. The beams
 /// are round.
 template <class F>
-concept TurnsFootprint = detail::TurnedConstant<F> && F::turned_by_pulse;
-PULSECAST_OPTIONAL_MEMBER(TurnedConstant, "static constexpr bool turned_by_pulse = true", turned_by_pulse, , turned_per_pulse,
+concept RotatesPerPulse = detail::RotatesConstant<F> && F::rotates_per_pulse;
+PULSECAST_OPTIONAL_MEMBER(RotatesConstant, "static constexpr bool rotates_per_pulse = true", rotates_per_pulse, , turned_per_pulse,
                           turned_each_pulse, turns_by_pulse, turn_by_pulse)
 
 /// Detector that samples waveforms, every so many seconds [s].
@@ -240,8 +240,8 @@ PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepa
 
 /// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
 template <class D>
-concept ListensAlways = detail::ListensConstant<D> && D::listens_always;
-PULSECAST_OPTIONAL_MEMBER(ListensConstant, "static constexpr bool listens_always = true", listens_always, , always_listens, listens,
+concept RunsWithoutReflections = detail::RunsWithoutReflectionsConstant<D> && D::runs_without_reflections;
+PULSECAST_OPTIONAL_MEMBER(RunsWithoutReflectionsConstant, "static constexpr bool runs_without_reflections = true", runs_without_reflections, , always_listens, listens,
                           listen_always, always_on)
 
 /// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.

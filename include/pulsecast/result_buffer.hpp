@@ -45,11 +45,11 @@ struct RunSummary {
 
 /// Results of successive slots, for single requests to a survey.
 struct ResultBuffer {
-  std::vector<Shot> shots{};         ///< as in `EchoBatch`
-  std::vector<Echo> echoes{};        ///< as in `EchoBatch`
-  std::vector<float> samples{};      ///< as in `EchoBatch`
-  std::vector<SubrayHit> subrays{};  ///< as in `EchoBatch`
-  RunSummary counts{};               ///< without rays and seconds
+  std::vector<Shot> shots{};            ///< as in `EchoBatch`
+  std::vector<Echo> echoes{};           ///< as in `EchoBatch`
+  std::vector<float> samples{};         ///< as in `EchoBatch`
+  std::vector<SubrayRecord> subrays{};  ///< as in `EchoBatch`
+  RunSummary counts{};                  ///< without rays and seconds
 
   /// Makes room for slots with an echo each.
   void reserve(PulseIndex slots) {
@@ -86,7 +86,7 @@ struct ResultBuffer {
       std::copy(outcome.waveform.begin(), outcome.waveform.end(),
                 samples.end() - static_cast<std::ptrdiff_t>(outcome.waveform.size()));
     }
-    for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
+    for (const SubrayRecord& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
   }
 

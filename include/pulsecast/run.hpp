@@ -105,7 +105,7 @@ struct ResultChunk : ResultBuffer {
   template <class Count>
   [[nodiscard]] std::size_t bytes_of(const Count& count) const noexcept {
     return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) +
-           count(subrays) * sizeof(SubrayHit);
+           count(subrays) * sizeof(SubrayRecord);
   }
 };
 
@@ -272,11 +272,12 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
 
 /// Reports a pulse with an error.
 [[noreturn]] inline void throw_pulse_error(PulseError error, const Shot& shot) {
-  const std::string pulse = joined({"pulse ", std::to_string(shot.index), " at ", to_text(shot.tick.seconds()), " s"});
+  const std::string pulse =
+      text::joined({"pulse ", std::to_string(shot.index), " at ", text::to_text(shot.tick.seconds()), " s"});
   if (error == PulseError::map)
-    throw std::runtime_error(joined({"the map answered ", pulse, " with NaN: check its ranges and backscatter"}));
+    throw std::runtime_error(text::joined({"the map answered ", pulse, " with NaN: check its ranges and backscatter"}));
   throw std::runtime_error(
-      joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
+      text::joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
 }
 
 }  // namespace detail

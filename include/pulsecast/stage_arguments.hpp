@@ -79,8 +79,8 @@ struct TransportArguments : SurveyArguments<Source, Pattern, Map, Instrument> {
 template <class Pattern, class Instrument>
 struct SurveyMembers {
   static constexpr bool checked =
-      RecordedConstantCheck<Pattern>::passed && TurnedConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
-      ListensConstantCheck<Instrument>::passed && PreparesForLasersCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
+      RecordedConstantCheck<Pattern>::passed && RotatesConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
+      RunsWithoutReflectionsConstantCheck<Instrument>::passed && PreparesForLasersCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
 };
 
 }  // namespace pulsecast::detail

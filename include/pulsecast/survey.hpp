@@ -17,7 +17,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -31,17 +31,17 @@ enum class PulseError : std::uint8_t {
 /// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch
 /// are not set.
 struct Outcome {
-  Shot shot;                             ///< pulse as reported
-  std::span<const Echo> echoes;          ///< echoes, sorted by reported range
-  std::span<const float> waveform;       ///< received power [W]; empty if not kept
-  EnergyLedger energy{};                 ///< energy by the end of its paths; zero if nothing was sent [J]
-  bool spread = false;                   ///< as in `TransportResult`
-  bool unresolved = false;               ///< as in `TransportResult`
-  std::span<const SubrayHit> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
-  PulseError error = PulseError::none;   ///< makes the other members worthless, unless `none`
+  Shot shot;                                ///< pulse as reported
+  std::span<const Echo> echoes;             ///< echoes, sorted by reported range
+  std::span<const float> waveform;          ///< received power [W]; empty if not kept
+  EnergyLedger energy{};                    ///< energy by the end of its paths; zero if nothing was sent [J]
+  bool spread = false;                      ///< as in `TransportResult`
+  bool unresolved = false;                  ///< as in `TransportResult`
+  std::span<const SubrayRecord> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
+  PulseError error = PulseError::none;      ///< makes the other members worthless, unless `none`
 };
 
-/// Receiving half of a device, for the emitters with its index as their `Emitter::receiver`.
+/// ReceiverOverrides half of a device, for the emitters with its index as their `Emitter::receiver`.
 template <Footprint Pattern, Detector Instrument>
 struct ReceiverUnit {
   Pattern footprint;    ///< sampling of the beams
@@ -108,7 +108,7 @@ class Survey {
 
     OfTransport transport;                 ///< workspace of the transport
     SharedBuffer<Reflection> reflections;  ///< reflections of a pulse, with room for all
-    std::vector<SubrayHit> subrays;        ///< all of a pulse, if recorded
+    std::vector<SubrayRecord> subrays;     ///< all of a pulse, if recorded
     std::vector<OfDetector> detectors;     ///< workspace of each receiver's detector
     std::uint16_t emitter = 0;             ///< emitter of the last pulse
     WhiteTarget white_target{};            ///< white target of that emitter
@@ -120,7 +120,7 @@ class Survey {
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
     Workspace w{transport_.workspace(most),
                 room_for(transport_.reflections(most), most),
-                std::vector<SubrayHit>(recorded_subrays()),
+                std::vector<SubrayRecord>(recorded_subrays()),
                 {}};
     for (const Unit& unit : receivers_)
       w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
@@ -197,7 +197,7 @@ class Survey {
       w.white_target = {};
     }
     const TransportResult result = [&] {
-      if constexpr (TurnsFootprint<Pattern>)
+      if constexpr (RotatesPerPulse<Pattern>)
         return trace(turned(*pulse, i), i, constants, w);
       else
         return trace(*pulse, i, constants, w);
@@ -208,21 +208,22 @@ class Survey {
     out.subrays = w.subrays;
     if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
     out.shot.fate = result.dark() ? result.fate : Fate::below_threshold;
-    if constexpr (!ListensAlways<Instrument>)
+    if constexpr (!RunsWithoutReflections<Instrument>)
       if (result.dark()) return out;
 
     const std::span<Reflection> reflections(w.reflections.data(), result.reflections);
-    const Heard heard{emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, result.continuous};
-    const Detection detection = unit.detector.detect(heard, w.detectors[emitter.receiver]);
+    const DetectorInput input{
+        emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, result.continuous};
+    const Detection detection = unit.detector.detect(input, w.detectors[emitter.receiver]);
     const RangeErrors& errors = unit.receiver.range_errors;
     bool all_inside = true;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
       if (constants.errs)
         echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
-      all_inside &= heard.gate.contains(echo.range);
+      all_inside &= input.gate.contains(echo.range);
     }
-    const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(heard.gate, detection.echoes);
+    const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(input.gate, detection.echoes);
     if (constants.errs) detail::sort_by_range(echoes);
     out.echoes = echoes;
     out.waveform = detection.waveform;
@@ -293,7 +294,7 @@ class Survey {
   void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     Unit& unit = receivers_[emitter.receiver];
-    if constexpr (TurnsFootprint<Pattern>)
+    if constexpr (RotatesPerPulse<Pattern>)
       require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
     if constexpr (PreparesForLasers<Instrument>) unit.detector.prepare(emitter.laser);
@@ -320,16 +321,16 @@ class Survey {
   [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
                                       Workspace& w) const noexcept {
     const Unit& unit = receivers_[constants.emitter.receiver];
-    const Illumination light{pulse,
-                             i,
-                             seed_,
-                             constants.emitter,
-                             constants.beam,
-                             unit.footprint.size(),
-                             constants.budget,
-                             w.white_target,
-                             unit.receiver.gate(),
-                             recorded ? std::span(w.subrays) : std::span<SubrayHit>{}};
+    const TransportInput light{pulse,
+                               i,
+                               seed_,
+                               constants.emitter,
+                               constants.beam,
+                               unit.footprint.size(),
+                               constants.budget,
+                               w.white_target,
+                               unit.receiver.gate(),
+                               recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
     if constexpr (ReadsVelocity<Instrument>)
       return transport_.template trace<true>(*map_, light, w.transport, w.reflections);
     else

@@ -14,8 +14,8 @@
 // error: it must be: double sample_interval.. const noexcept
 // error: ValidatesLaserCheck<OtherDetector
 // error: it must be: void validate.const Laser&. const
-// error: ListensConstantCheck<ListeningDetector
-// error: it must be: static constexpr bool listens_always = true
+// error: RunsWithoutReflectionsConstantCheck<ListeningDetector
+// error: it must be: static constexpr bool runs_without_reflections = true
 // error: VelocityConstantCheck<SpeedDetector
 // error: it must be: static constexpr bool reads_velocity = true
 // error: MeasuresBeamCheck<OwnInstrument
@@ -24,7 +24,7 @@
 // error: it must be: double width.const WaveformMoments&. const noexcept
 // error: TruncatedWidthMeasureCheck<OwnWidth
 // error: it must be: double min_share.. const noexcept
-// error: FlatConstantCheck<OwnShape
+// error: UniformConstantCheck<OwnShape
 // error: it must be: static constexpr bool flat = true
 // error: PrefetchesPrimitivesCheck<OwnTest
 // error: it must be: void prefetch.std::span<const PrimitiveIndex>. const noexcept
@@ -86,7 +86,7 @@ struct OtherDetector : LeastDetector {
   void NAME(validate, validate_laser)(const Laser&) const {}
 };
 struct ListeningDetector : LeastDetector {
-  static constexpr bool NAME(listens_always, always_listens) = true;
+  static constexpr bool NAME(runs_without_reflections, always_listens) = true;
 };
 struct SpeedDetector : LeastDetector {
   static constexpr NAME(bool, int) reads_velocity = NAME(false, 1);
@@ -99,7 +99,7 @@ struct OwnInstrument : LeastSource<frame::Instrument> {
 struct OwnWidth {
   double width(std::span<const double>, double) const noexcept { return 1; }
   double width(const WaveformMoments&) const NAME(noexcept, ) { return 1; }
-  double NAME(min_share, least_share)() const noexcept { return 0.5; }
+  double NAME(min_share, share_min)() const noexcept { return 0.5; }
 };
 struct OwnShape : LeastGeometry {
   static constexpr bool NAME(flat, is_flat) = true;

@@ -23,7 +23,7 @@ struct Doppler {
 #endif
   using Workspace = std::array<Echo, 1>;
   Workspace workspace(std::size_t) const { return {}; }
-  Detection detect(const Heard&, Workspace&) const noexcept { return {}; }
+  Detection detect(const DetectorInput&, Workspace&) const noexcept { return {}; }
 };
 
 int main() {

@@ -27,8 +27,8 @@ namespace {
 
 template <Detector Inner>
 struct LastEcho : DetectorAdaptor<Inner> {
-  Detection detect(const Heard& heard, auto& workspace) const noexcept {
-    Detection all = this->inner.detect(heard, workspace);
+  Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
+    Detection all = this->inner.detect(input, workspace);
     if (all.echoes.empty()) return all;
     all.echoes = all.echoes.last(1);
     all.echoes[0].number = 1;
@@ -40,7 +40,7 @@ LastEcho(Inner) -> LastEcho<Inner>;
 
 /// Has every optional member.
 struct Everything : support::LeastDetector {
-  static constexpr bool listens_always = true, reads_velocity = true;
+  static constexpr bool runs_without_reflections = true, reads_velocity = true;
   bool normal = false;
   void validate() const { throw SettingError("Everything", 1, "", "another"); }
   void validate(const Laser&) const { throw SettingError("Everything (laser)", 1, "", "another"); }
@@ -65,10 +65,10 @@ struct TwoPlates {
 }  // namespace
 
 static_assert(Detector<DetectorAdaptor<FirstHit>> && Detector<LastEcho<FullWaveform<MomentWidth>>>);
-static_assert(ListensAlways<LastEcho<Everything>> && ReadsVelocity<LastEcho<Everything>> &&
+static_assert(RunsWithoutReflections<LastEcho<Everything>> && ReadsVelocity<LastEcho<Everything>> &&
               Sampling<LastEcho<Everything>>);
 static_assert(Normalizable<LastEcho<Everything>> && !Normalizable<LastEcho<FirstHit>>);
-static_assert(!ListensAlways<LastEcho<FirstHit>> && !ReadsVelocity<LastEcho<FirstHit>> &&
+static_assert(!RunsWithoutReflections<LastEcho<FirstHit>> && !ReadsVelocity<LastEcho<FirstHit>> &&
               !Sampling<LastEcho<FirstHit>>);
 
 TEST_CASE("the last echo of a noisy detector has noise of its own for each of 9,000 pulses") {

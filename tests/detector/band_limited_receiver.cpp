@@ -277,8 +277,8 @@ TEST_CASE("the steps of a digitiser add a twelfth of their square to the varianc
   double squares = 0, product = 0, variance = 0;
   std::size_t samples = 0;
   for (std::uint64_t k = 0; k < 20; ++k) {
-    const Heard heard{emitter, {0, 700}, {}, {.seed = 5, .pulse = k}};
-    const Detection a = fine.detect(heard, w), b = stepped.detect(heard, v);
+    const DetectorInput input{emitter, {0, 700}, {}, {.seed = 5, .pulse = k}};
+    const Detection a = fine.detect(input, w), b = stepped.detect(input, v);
     REQUIRE(a.waveform.size() == b.waveform.size());
     for (std::size_t i = 0; i < a.waveform.size(); ++i) {
       const double error = static_cast<double>(b.waveform[i]) - static_cast<double>(a.waveform[i]);

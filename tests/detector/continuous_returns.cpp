@@ -88,8 +88,9 @@ std::vector<Echo> echoes_of(D detector, const Flight& flight, const support::Tra
   auto w = detector.workspace(pulse.reflections.size());
   std::vector<Reflection> reflections = pulse.reflections;
   const Emitter emitter{.laser = flight.lamp.laser};
-  const Heard heard{emitter, flight.lamp.receiver.gate(), reflections, {.seed = 3, .pulse = number}, pulse.continuous};
-  const Detection d = detector.detect(heard, w);
+  const DetectorInput input{
+      emitter, flight.lamp.receiver.gate(), reflections, {.seed = 3, .pulse = number}, pulse.continuous};
+  const Detection d = detector.detect(input, w);
   return {d.echoes.begin(), d.echoes.end()};
 }
 
@@ -215,13 +216,13 @@ TEST_CASE("in noise, echoes besides those of haze and ground are as many as Rice
     for (int k = 0; k < pulses; ++k) {
       std::vector<Reflection> reflections = pulse.reflections;
       const Emitter emitter{.laser = laser};
-      const Heard heard{emitter,
-                        flight.lamp.receiver.gate(),
-                        reflections,
-                        {.seed = 3, .pulse = static_cast<PulseIndex>(k)},
-                        pulse.continuous};
+      const DetectorInput input{emitter,
+                                flight.lamp.receiver.gate(),
+                                reflections,
+                                {.seed = 3, .pulse = static_cast<PulseIndex>(k)},
+                                pulse.continuous};
       bool on_ground = false;
-      for (const Echo& echo : detector.detect(heard, w).echoes) {
+      for (const Echo& echo : detector.detect(input, w).echoes) {
         on_ground |= std::fabs(echo.range - flight.height) < 0.5 && echo.object == 7;
         if (std::fabs(echo.range - flight.height) > 3 && echo.range > near + 1.5 && echo.range < 698.5) count += 1;
       }

@@ -27,7 +27,7 @@ namespace {
 struct Loop {
   street::Scene town = street::scene(1);
   std::vector<traffic::Vehicle> cars = traffic::cars(20, street::Dice(1, 7));
-  std::vector<Similarity> placements{};
+  std::vector<Placement> placements{};
   street::Scene moving = traffic::scene_of(cars), unused = moving;
   Layered<street::Scene, street::Scene> world{town, moving};
   traffic::Vehicle robot{.from = {1.9, -50}, .along = {0, 1}, .speed = 8};

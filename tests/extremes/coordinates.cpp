@@ -116,7 +116,7 @@ namespace {
 double worst_of_part(const Vec3& own, double scale, const Vec3& centre, std::uint64_t seed) {
   Generator random(seed);
   const MeshData data = moved(icosphere(1), own);
-  Similarity placement{random.rotation(), scale, {}};
+  Placement placement{random.rotation(), scale, {}};
   placement.translation = centre - placement.point(own);
   const Scene<TriangleMesh<>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<>>(data), .placement = placement}});
@@ -261,11 +261,11 @@ TEST_CASE("what lies farther than can be computed with is refused") {
   refused_as(quantity, "voxels of 8e-7 m at 1e9 m", "VoxelData::edge", [] {
     return VoxelGrid<>({.corner = {0, 0, 1e9}, .edge = 8e-7, .cells = {{0, 0, 0}}});
   });
-  refused_as(quantity, "part at infinity", "Similarity::translation", [&] {
+  refused_as(quantity, "part at infinity", "Placement::translation", [&] {
     return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)),
                                    .placement = {.translation = {0, 0, std::numeric_limits<double>::infinity()}}}});
   });
-  refused_as(quantity, "part of 1e-31 of its size", "Similarity::scale", [&] {
+  refused_as(quantity, "part of 1e-31 of its size", "Placement::scale", [&] {
     return Scene<TriangleMesh<>>(
         {{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)), .placement = {.scale = 1e-31}}});
   });

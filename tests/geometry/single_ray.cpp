@@ -22,9 +22,9 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-static_assert(sizeof(BundleOfOne) == 104);
-static_assert(sizeof(BundleOfOne) + sizeof(ClosestHit) == 128);
-static_assert(sizeof(HitBuffer) <= 600);
+static_assert(sizeof(SingleRayPacket) == 104);
+static_assert(sizeof(SingleRayPacket) + sizeof(ClosestHit) == 128);
+static_assert(sizeof(AllHits) <= 600);
 static_assert(!BundleTarget<TriangleMesh<>> && Geometry<TriangleMesh<>>);  // a shape is no scene
 
 namespace {
@@ -32,8 +32,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Ray 0 of a bundle, by itself.
-BundleOfOne only_ray(const RayBundle& rays) {
-  BundleOfOne ray(Ray{.origin = rays.origin, .direction = rays.direction(0), .near = rays.near});
+SingleRayPacket only_ray(const RayBundle& rays) {
+  SingleRayPacket ray(Ray{.origin = rays.origin, .direction = rays.direction(0), .near = rays.near});
   ray.direction_length = rays.direction_length;
   return ray;
 }
@@ -41,8 +41,8 @@ BundleOfOne only_ray(const RayBundle& rays) {
 std::uint64_t bits(double number) { return std::bit_cast<std::uint64_t>(number); }
 
 /// All hits of a mesh, each triangle asked by itself.
-std::vector<HitBuffer::Entry> every_triangle(const MeshData& data, const BundleOfOne& ray, double far) {
-  std::vector<HitBuffer::Entry> all;
+std::vector<AllHits::Entry> every_triangle(const MeshData& data, const SingleRayPacket& ray, double far) {
+  std::vector<AllHits::Entry> all;
   for (std::size_t i = 0; i < data.triangles.size(); ++i) {
     ClosestHit hit(far);
     intersect(data.triangle(i), static_cast<PrimitiveIndex>(i), ray, hit);
@@ -53,9 +53,9 @@ std::vector<HitBuffer::Entry> every_triangle(const MeshData& data, const BundleO
 }
 
 template <class Mesh>
-std::vector<HitBuffer::Entry> all_hits(const Mesh& mesh, BundleOfOne ray, double far) {
-  std::vector<HitBuffer::Entry> all;
-  HitBuffer buffer(ray.near, far);
+std::vector<AllHits::Entry> all_hits(const Mesh& mesh, SingleRayPacket ray, double far) {
+  std::vector<AllHits::Entry> all;
+  AllHits buffer(ray.near, far);
   for (;;) {
     mesh.closest(ray, buffer);
     all.insert(all.end(), buffer.hits().begin(), buffer.hits().end());
@@ -75,7 +75,7 @@ void compare_single(const MeshData& data, const TriangleMesh<Linear<>>& believed
   Generator random(seed);
   for (int k = 0; k < rays_asked; ++k) {
     const RayBundle rays = bundle(random, data, believed.bounds(), 1);
-    const BundleOfOne ray = only_ray(rays);
+    const SingleRayPacket ray = only_ray(rays);
     ClosestHits expected(rays);
     believed.closest(rays, expected);
     ClosestHit found(rays.far);
@@ -126,14 +126,14 @@ TEST_CASE("a buffer holds the closest hits in order, each once, and continues af
     Generator random(seed);
     const double near = static_cast<double>(random.whole(4)),
                  far = random.coin() ? infinity : static_cast<double>(random.whole(60));
-    std::vector<HitBuffer::Entry> offered, expected, found;
+    std::vector<AllHits::Entry> offered, expected, found;
     for (std::uint64_t n = random.whole(150); offered.size() < n;)
       offered.push_back({static_cast<double>(random.whole(60)), random.whole(4) << 32 | random.whole(3)});
     for (const auto& hit : offered)
       if (hit.range > near && hit.range <= far) expected.push_back(hit);
     std::sort(expected.begin(), expected.end());
     expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
-    HitBuffer buffer(near, far);
+    AllHits buffer(near, far);
     for (;;) {
       for (const auto& hit : offered) {
         buffer.part = hit.id >> 32 << 32;
@@ -152,13 +152,13 @@ TEST_CASE("a buffer holds the closest hits in order, each once, and continues af
 TEST_CASE("a shape whose hits are random is asked from the ray's beginning, also when a full buffer continues") {
   Ray ray;
   ray.near = 2;
-  BundleOfOne asked(ray);
-  HitBuffer buffer(2, 100);
-  for (std::size_t k = 0; k < HitBuffer::capacity; ++k) buffer.offer(0, 3 + static_cast<double>(k), 1);
+  SingleRayPacket asked(ray);
+  AllHits buffer(2, 100);
+  for (std::size_t k = 0; k < AllHits::capacity; ++k) buffer.offer(0, 3 + static_cast<double>(k), 1);
   asked.near = buffer.continue_after();
   REQUIRE(asked.near > 30);
   double from = 0, to = 0;
-  buffer.offer_first(asked, [&](const BundleOfOne& sent, ClosestHit& first) {
+  buffer.offer_first(asked, [&](const SingleRayPacket& sent, ClosestHit& first) {
     from = sent.near;
     to = first.range;
     first.offer(0, 50, 7);
@@ -166,7 +166,7 @@ TEST_CASE("a shape whose hits are random is asked from the ray's beginning, also
   CHECK(from == 2);
   CHECK(to == 100);
   REQUIRE(buffer.hits().size() == 1);
-  CHECK(buffer.hits()[0] == HitBuffer::Entry{50, 7});
+  CHECK(buffer.hits()[0] == AllHits::Entry{50, 7});
 }
 
 TEST_CASE("a search for any hit ends at the first, and counts none beyond its range") {
@@ -181,7 +181,7 @@ TEST_CASE("a search for any hit ends at the first, and counts none beyond its ra
 
 TEST_CASE("a bundle made of a single ray is that ray, and the other way round") {
   const Ray ray{{1, 2, 3}, {0, 0, 1}, 4, 5, {6, 0.5}, 7, 8, 9};
-  const RayBundle rays = bundle_of(BundleOfOne(ray), 5);
+  const RayBundle rays = bundle_of(SingleRayPacket(ray), 5);
   const Ray back = rays.ray(0);
   CHECK(back.origin == ray.origin);
   CHECK(back.direction == ray.direction);

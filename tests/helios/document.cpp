@@ -266,7 +266,7 @@ TEST_CASE("settings that a program makes are written and read") {
       {.source = MeshSource{
            .files = {data / "materials.obj"}, .up = MeshUp::y, .unit = 0.01, .materials = data / "materials.mtl"}}};
   survey.scene.parts[0].attributes = {{"age", 80}, {"leaf or wood", 0.1}};
-  survey.scene.light = {{.passages = 3, .least_share = 0.01, .orders = 2, .paths = 20, .field_of_view = radians(20)}};
+  survey.scene.light = {{.passages = 3, .share_min = 0.01, .orders = 2, .paths = 20, .field_of_view = radians(20)}};
   survey.scene.media = {
       {.absorption = 0.5},
       {.absorption = 0.1, .scattering = 0.2, .backscatter = 0.01, .min = Vec3{0, 1, 2}, .max = Vec3{3, 4, 5}}};

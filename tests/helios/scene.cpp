@@ -87,7 +87,7 @@ TEST_CASE("parts are turned, scaled and moved, and keep their ids and materials"
   CHECK(scene.ground_height({10, 5}) == 0);
   cube.transform.rotations = {{.turns = {{Axis::x, pi / 2}}},
                               {.turns = {{Axis::z, pi / 2}}}};  // up lies down, and then aside
-  const Similarity twice = SceneBuilder(scene_of({cube}), {}).parts()[0].placement;
+  const Placement twice = SceneBuilder(scene_of({cube}), {}).parts()[0].placement;
   CHECK(std::fabs((twice.rotation * axis::up).x) == relative(1, 1e-12));
 }
 
@@ -532,7 +532,7 @@ TEST_CASE("what a file comes to, and cannot be, is told with the file; what a pa
 
   PartSettings cube = files.part("cube.obj", "hut");
   cube.transform.scale = 1e-31;
-  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Similarity::scale is 1e-31"),
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Placement::scale is 1e-31"),
                        SettingError);
   cube.transform.scale = 1e19;
   CHECK_THROWS_WITH_AS((void)built(scene_of({cube})),

@@ -87,7 +87,7 @@ TEST_CASE("every text writer writes compressed what it writes else") {
   std::vector<Shot> shots(1000);
   std::vector<Echo> echoes(shots.size());
   std::vector<float> samples(10 * shots.size(), 1e-9F);
-  std::vector<SubrayHit> subrays(2 * shots.size());
+  std::vector<SubrayRecord> subrays(2 * shots.size());
   for (std::uint32_t i = 0; i < shots.size(); ++i) {
     shots[i].index = i;
     shots[i].origin = random.point(1e6);

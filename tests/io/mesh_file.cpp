@@ -209,7 +209,7 @@ TEST_CASE("instances share a mesh: a thousand trees take the memory of one") {
     gltf.roots.clear();
     for (std::size_t i = 0; i < trees; ++i) {
       const Rotation turn = random.rotation();
-      const auto text = [](double number) { return pulsecast::detail::to_text(number); };
+      const auto text = [](double number) { return text::to_text(number); };
       gltf.node("\"mesh\":0,\"name\":\"tree_" + std::to_string(i) + "\",\"translation\":[" +
                 text(random.uniform(-100, 100)) + ",0," + text(random.uniform(-100, 100)) + "],\"rotation\":[" +
                 text(turn.x) + "," + text(turn.y) + "," + text(turn.z) + "," + text(turn.w) + "],\"scale\":[" +
@@ -239,7 +239,7 @@ TEST_CASE("random nodes place meshes as their matrices do, to single precision")
     const Folder folder;
     const auto list = [](const std::vector<double>& numbers) {
       std::string text;
-      for (const double number : numbers) text += (text.empty() ? "[" : ",") + pulsecast::detail::to_text(number);
+      for (const double number : numbers) text += (text.empty() ? "[" : ",") + text::to_text(number);
       return text + "]";
     };
     std::array<io::detail::Affine, 2> place;

@@ -144,7 +144,7 @@ TEST_CASE("batches with several echoes, waveforms and subrays keep them") {
   support::Generator random(4);
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
-  std::vector<SubrayHit> subrays;
+  std::vector<SubrayRecord> subrays;
   for (PulseIndex i = 0; i < 200; ++i) {
     const auto count = static_cast<std::uint32_t>(random.whole(4));
     shots.push_back({.index = i,

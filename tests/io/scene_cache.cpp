@@ -89,7 +89,7 @@ S some_scene() {
   const MaterialTable materials = some_materials(), others = some_materials();
   std::vector<typename S::Part> parts;
   for (ObjectId i = 0; i < 6; ++i) {
-    const Similarity placement{
+    const Placement placement{
         .rotation = random.rotation(), .scale = random.log_uniform(0.5, 2), .translation = random.point(20)};
     typename S::Part part{.geometry = first,
                           .materials = materials,

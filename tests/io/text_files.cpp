@@ -210,8 +210,8 @@ TEST_CASE("no pulses make an empty file; one without a place or a direction is a
   CHECK(folder.empty());
 }
 
-SubrayHit hit(double range, double power, const Vec3& point) {
-  SubrayHit hit;
+SubrayRecord hit(double range, double power, const Vec3& point) {
+  SubrayRecord hit;
   hit.range = range;
   hit.power = power;
   hit.point = point;
@@ -227,8 +227,8 @@ TEST_CASE("a hit is a line of eleven columns; subrays that met nothing have none
   std::vector<Shot> shots(2);
   shots[0].index = 40;
   shots[1].index = 41;
-  const std::vector<SubrayHit> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayHit{}, SubrayHit{},
-                                       hit(20.00016, 0, {-1, 0, 5e6})};
+  const std::vector<SubrayRecord> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayRecord{}, SubrayRecord{},
+                                          hit(20.00016, 0, {-1, 0, 5e6})};
   SubrayTextWriter writer(folder / "subrays.txt");
   writer(EchoBatch{shots, {}, {}, 0, subrays});
   writer.close();
@@ -245,7 +245,7 @@ TEST_CASE("without recorded subrays, and without pulses, the file is empty; a hi
   writer(EchoBatch{});
   writer.close();
   CHECK(content(folder / "subrays.txt").empty());
-  const std::vector<SubrayHit> subrays(2, hit(1, 1, {0, std::numeric_limits<double>::quiet_NaN(), 0}));
+  const std::vector<SubrayRecord> subrays(2, hit(1, 1, {0, std::numeric_limits<double>::quiet_NaN(), 0}));
   SubrayTextWriter bad(folder / "bad.txt");
   CHECK_THROWS_AS(bad(EchoBatch{shots, {}, {}, 0, subrays}), FileError);
   CHECK_FALSE(std::filesystem::exists(folder / "bad.txt.part"));

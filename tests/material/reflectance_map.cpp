@@ -94,7 +94,7 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
     CHECK(alone[0].backscatter == hits[j].backscatter);
     const auto hit = scene.closest_hit(rays.ray(j));
     REQUIRE(hit);
-    const SurfacePoint point = scene.surface(*hit, rays.ray(j));
+    const SurfaceInteraction point = scene.surface(*hit, rays.ray(j));
     CHECK(point.material->reflectance_at(rays.wavelength, point.texture) ==
           doctest::Approx(j == 0 ? linear_share(188) : 0));
   }

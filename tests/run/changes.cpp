@@ -102,7 +102,7 @@ TEST_CASE("a map that changes between runs is met by all their pulses, as it the
   World moving({{.geometry = floor_mesh()}, {.geometry = wall_mesh()}}), unused = moving;
   const Layered world{ground, moving};
   const auto place = [&](int k) {
-    const std::vector<Similarity> placements{{no_rotation, 1, {0, 0, 1 + std::sin(k)}}, {jump(k).rotation, 1, {}}};
+    const std::vector<Placement> placements{{no_rotation, 1, {0, 0, 1 + std::sin(k)}}, {jump(k).rotation, 1, {}}};
     World next = moving.with_placements(placements, std::move(unused));
     unused = std::exchange(moving, std::move(next));
   };

@@ -25,7 +25,7 @@
 
 using namespace pulsecast;
 
-static_assert(KeylessGeometry<TriangleMesh<>> && !KeylessGeometry<VoxelGrid<TransmissiveVoxels>>);
+static_assert(DeterministicGeometry<TriangleMesh<>> && !DeterministicGeometry<VoxelGrid<TransmissiveVoxels>>);
 static_assert(TracesBundles<Scene<TriangleMesh<>>> && TracesBundles<MovingScene<TriangleMesh<>>>);
 
 namespace {
@@ -63,8 +63,8 @@ struct Counted {
   std::size_t* alone;
   std::size_t* together;
 
-  static constexpr bool timeless = true;
-  [[nodiscard]] bool keyless() const noexcept { return true; }
+  static constexpr bool time_dependent = false;
+  [[nodiscard]] bool deterministic() const noexcept { return true; }
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
     ++*alone;
     return scene->closest_hit(ray);
@@ -123,7 +123,7 @@ TEST_CASE("rays that meet leaves at random keep their own keys") {
   data.densities.assign(4, 0.7F);
   const Scene<VoxelGrid<TransmissiveVoxels>> scene(
       {{.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(data)}});
-  CHECK(!scene.keyless());
+  CHECK(!scene.deterministic());
   std::vector<Ray> rays;
   for (std::uint64_t k = 0; k < 300; ++k)
     rays.push_back({.origin = {-1, 0.5, 0.5}, .direction = axis::right, .seed = 4, .pulse = k});

@@ -31,7 +31,7 @@ namespace {
 using Discs = Scene<LeastGeometry>;
 using Disc = Discs::Part;
 
-Disc disc(const Similarity& placement, ObjectId object, bool ground = false) {
+Disc disc(const Placement& placement, ObjectId object, bool ground = false) {
   static const auto shape = std::make_shared<const LeastGeometry>();
   return {shape, material_table({{.ground = ground}}), placement, object};
 }
@@ -134,7 +134,7 @@ TEST_CASE("a layer assigned anew is met as it then is") {
   const Layered world{still, moving};
   const Ray down{{0, 0, 10}, {0, 0, -1}};
   CHECK(ask(world, down).range == 9);
-  const std::array<Similarity, 1> next{Similarity{.translation = {0, 0, 3}}};
+  const std::array<Placement, 1> next{Placement{.translation = {0, 0, 3}}};
   moving = moving.with_placements(next);
   CHECK(ask(world, down).range == 7);
 }

@@ -46,7 +46,7 @@ std::shared_ptr<const PartMotion> moving(const SteadyMotion& motion) {
   return std::make_shared<const PartMotion>(motion);
 }
 
-Disc disc(const Similarity& placement, ObjectId object, std::shared_ptr<const PartMotion> motion = nullptr) {
+Disc disc(const Placement& placement, ObjectId object, std::shared_ptr<const PartMotion> motion = nullptr) {
   static const auto shape = std::make_shared<const LeastGeometry>();
   return {shape, material_table(), placement, object, {}, std::move(motion)};
 }

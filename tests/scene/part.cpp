@@ -16,30 +16,30 @@ using namespace pulsecast;
 
 namespace {
 
-Similarity any_similarity(support::Generator& any) {
+Placement any_similarity(support::Generator& any) {
   return {any.rotation(), any.log_uniform(1e-3, 1e3), any.point(1e6)};
 }
 
 }  // namespace
 
 TEST_CASE("a similarity turns, then scales, then moves") {
-  const Similarity s{rotation_about(axis::up, pi / 2), 2, {10, 20, 30}};
+  const Placement s{rotation_about(axis::up, pi / 2), 2, {10, 20, 30}};
   CHECK(length(s.point({1, 0, 0}) - Vec3{10, 22, 30}) < 1e-14);
   CHECK(length(s.point({0, 0, 1}) - Vec3{10, 20, 32}) < 1e-14);
 }
 
 TEST_CASE("only a similarity that does nothing is the identity") {
-  CHECK(Similarity{}.identity());
-  CHECK_FALSE(Similarity{.rotation = rotation_about(axis::up, 0.1)}.identity());
-  CHECK_FALSE(Similarity{.scale = 2}.identity());
-  CHECK_FALSE((Similarity{.translation = {0, 0, 1e-9}}.identity()));
+  CHECK(Placement{}.identity());
+  CHECK_FALSE(Placement{.rotation = rotation_about(axis::up, 0.1)}.identity());
+  CHECK_FALSE(Placement{.scale = 2}.identity());
+  CHECK_FALSE((Placement{.translation = {0, 0, 1e-9}}.identity()));
 }
 
 TEST_CASE("the box around a placed box holds all of its points, and is no larger than its corners ask for") {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const Similarity s = any_similarity(any);
+    const Placement s = any_similarity(any);
     const Box box = any.box(10, 0.01, 10);
     const Box placed = s.box(box);
     const double rounding = 1e-14 * (max_norm(placed.min) + max_norm(placed.max));
@@ -62,7 +62,7 @@ TEST_CASE("rays in a part's own frame reach at the same range the point that the
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const Similarity s = any_similarity(any);
+    const Placement s = any_similarity(any);
     RayBundle world = any.cone(s.translation + any.point(100), any.unit(), 0.1, 1 + any.whole(RayBundle::capacity));
     world.near = 0.5;
     world.far = 1234;
@@ -91,13 +91,12 @@ TEST_CASE("rays in a part's own frame reach at the same range the point that the
 
 TEST_CASE("a similarity refuses what is none") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  CHECK_NOTHROW(Similarity{}.validate());
-  for (const double bad : {0.0, -1.0, nan, infinity})
-    CHECK_THROWS_AS(Similarity{.scale = bad}.validate(), SettingError);
-  CHECK_THROWS_AS((Similarity{.rotation = Rotation{1, 1, 0, 0}}.validate()), SettingError);
-  CHECK_THROWS_AS((Similarity{.rotation = Rotation{nan, 0, 0, 0}}.validate()), SettingError);
-  CHECK_THROWS_AS((Similarity{.translation = {0, nan, 0}}.validate()), SettingError);
-  CHECK_THROWS_AS((Similarity{.translation = {0, 0, infinity}}.validate()), SettingError);
+  CHECK_NOTHROW(Placement{}.validate());
+  for (const double bad : {0.0, -1.0, nan, infinity}) CHECK_THROWS_AS(Placement{.scale = bad}.validate(), SettingError);
+  CHECK_THROWS_AS((Placement{.rotation = Rotation{1, 1, 0, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS((Placement{.rotation = Rotation{nan, 0, 0, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS((Placement{.translation = {0, nan, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS((Placement{.translation = {0, 0, infinity}}.validate()), SettingError);
 }
 
 TEST_CASE("a table of materials holds valid ones, and a default one unless told otherwise") {

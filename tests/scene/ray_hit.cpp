@@ -123,8 +123,8 @@ struct Pair {
     const auto leaves = shared(VoxelGrid<TransmissiveVoxels>(cells));
     const auto own = shared(LeastGeometry{});
     for (ObjectId k = 0; k < 12; ++k) {
-      const Similarity placement =
-          k % 4 == 3 ? Similarity{} : Similarity{any.rotation(), any.log_uniform(0.3, 3), any.point(4)};
+      const Placement placement =
+          k % 4 == 3 ? Placement{} : Placement{any.rotation(), any.log_uniform(0.3, 3), any.point(4)};
       const auto motion = any.whole(3) == 0 ? any_motion(any) : nullptr;
       const auto add = [&](const auto& tested, const auto& oracle) {
         parts.push_back({.geometry = tested, .placement = placement, .object = k, .motion = motion});
@@ -178,7 +178,7 @@ TEST_CASE("a hit names part, primitive and range, and its surface says all there
   const auto hit = scene.closest_hit(ray);
   REQUIRE(hit.has_value());
   CHECK(*hit == RayHit{5, 1, 0});
-  const SurfacePoint at = scene.surface(*hit, ray);
+  const SurfaceInteraction at = scene.surface(*hit, ray);
   CHECK(length(at.position - Vec3{11, 20, 31}) < 1e-12);
   CHECK(length(at.normal - Vec3{0, -1, 0}) < 1e-12);
   CHECK(at.front);
@@ -192,7 +192,7 @@ TEST_CASE("a hit names part, primitive and range, and its surface says all there
   CHECK(at.classification == 2);
 
   const Ray from_behind{.origin = {11, 25, 31}, .direction = -axis::forward};
-  const SurfacePoint behind = scene.surface(scene.closest_hit(from_behind).value(), from_behind);
+  const SurfaceInteraction behind = scene.surface(scene.closest_hit(from_behind).value(), from_behind);
   CHECK(length(behind.normal - Vec3{0, 1, 0}) < 1e-12);
   CHECK_FALSE(behind.front);
 
@@ -236,7 +236,7 @@ TEST_CASE("a ray through voxels meets each where it enters, and the last of a ro
   for (std::size_t k = 0; k < hits.size(); ++k) {
     CAPTURE(k);
     CHECK(hits[k].range == ranges[k]);
-    const SurfacePoint at = scene.surface(hits[k], along);
+    const SurfaceInteraction at = scene.surface(hits[k], along);
     CHECK(at.normal == Vec3{-1, 0, 0});
     CHECK(at.front);
     CHECK_FALSE(at.weights.has_value());
@@ -323,7 +323,7 @@ TEST_CASE("queries of every shape, still and moving, agree with closest, with on
       REQUIRE(believed.closest_hit(ray) == hit);
       REQUIRE(scene.occluded(ray, hit->range));
       REQUIRE_FALSE(scene.occluded(ray, std::nextafter(hit->range, 0)));
-      const SurfacePoint at = scene.surface(*hit, ray);
+      const SurfaceInteraction at = scene.surface(*hit, ray);
       REQUIRE(at.object == nearest.object);
       REQUIRE(dot(at.normal, ray.direction) <= 1e-12);
       if (at.normal != Vec3{}) {
@@ -335,7 +335,7 @@ TEST_CASE("queries of every shape, still and moving, agree with closest, with on
   }
   CHECK(met > 1500);
   CHECK(several > 1000);
-  CHECK(most > HitBuffer::capacity);
+  CHECK(most > AllHits::capacity);
 }
 
 TEST_CASE("all hits of voxels are the closest ones from each on") {
@@ -365,14 +365,14 @@ TEST_CASE("the weights of a hit put its point together, and the texture follows 
     add_triangle(data, {any.point(3), any.point(3), any.point(3)});
     data.texture = {{Vec2{0, 0}, {1, 0}, {0, 1}}};
     const Scene<Mesh> scene({{.geometry = shared(Mesh(data)), .placement = {any.rotation(), 2, any.point(5)}}});
-    const Similarity& placement = scene.parts()[0].placement;
+    const Placement& placement = scene.parts()[0].placement;
     const Triangle t = data.triangle(0);
     const double u = any.uniform(), v = any.uniform(0, 1 - u);
     const Vec3 at = placement.point((1 - u - v) * t.a + u * t.b + v * t.c), from = any.point(10);
     const Ray ray{.origin = from, .direction = normalize(at - from)};
     const auto hit = scene.closest_hit(ray);
     REQUIRE(hit.has_value());
-    const SurfacePoint point = scene.surface(*hit, ray);
+    const SurfaceInteraction point = scene.surface(*hit, ray);
     const double slant = std::fabs(dot(point.normal, ray.direction)) + 1e-3;
     CHECK(length(point.weights.value() - Vec3{1 - u - v, u, v}) < 1e-10 / slant);
     CHECK(length(point.texture.value() - Vec2{point.weights->y, point.weights->z}) < 1e-12);

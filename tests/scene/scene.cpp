@@ -35,7 +35,7 @@ static_assert(BundleTarget<Scene<LeastGeometry, TriangleMesh<>>>);
 using Disc = Part<LeastGeometry>;
 
 /// The unit disc, facing up, placed.
-Disc disc(const Similarity& placement = {}, ObjectId object = 0, const Material& material = {}) {
+Disc disc(const Placement& placement = {}, ObjectId object = 0, const Material& material = {}) {
   static const auto shape = std::make_shared<const LeastGeometry>();
   return {shape, material_table({material}), placement, object};
 }
@@ -62,7 +62,7 @@ MeshData some_triangles(support::Generator& any, std::size_t n) {
 /// A floor that counts how often it is asked for its surface.
 template <bool Flat>
 struct Counted {
-  static constexpr bool flat = Flat;
+  static constexpr bool uniform_surface = Flat;
   static inline int asked = 0;
   Box box{{-1, -1, 0}, {1, 1, 0}};
   const Box& bounds() const noexcept { return box; }
@@ -149,7 +149,7 @@ TEST_CASE("an instance of a mesh answers as the same mesh transformed by hand") 
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    const Similarity placement{any.rotation(), any.log_uniform(0.05, 20), any.point(1000)};
+    const Placement placement{any.rotation(), any.log_uniform(0.05, 20), any.point(1000)};
     const MeshData data = some_triangles(any, 200);
     MeshData moved = data;
     for (Vec3& v : moved.vertices) v = placement.point(v);
@@ -368,11 +368,11 @@ TEST_CASE("a scene of other placements meets what a scene made of these parts me
     support::Generator any(seed);
     std::vector<Disc> discs;
     const std::size_t count = 1 + any.whole(150);
-    const auto anywhere = [&] { return Similarity{any.rotation(), any.log_uniform(0.1, 10), any.point(50)}; };
+    const auto anywhere = [&] { return Placement{any.rotation(), any.log_uniform(0.1, 10), any.point(50)}; };
     for (ObjectId k = 0; k < count; ++k) discs.push_back(disc(anywhere(), k));
     Scene<LeastGeometry> now(discs), unused({});
     for (int tick = 0; tick < 6; ++tick) {
-      std::vector<Similarity> placements;
+      std::vector<Placement> placements;
       for (Disc& d : discs) {
         d.placement.translation = d.placement.translation + any.point(1);
         if (tick == 4) d.placement = anywhere();  // the index is made anew
@@ -408,13 +408,13 @@ TEST_CASE("of two scenes placed by turns nothing is allocated after the second t
     discs.push_back(disc({.translation = any.point(50)}, k));
     discs.back().name = "a name too long to be held in place, number " + std::to_string(k);
   }
-  std::vector<Similarity> placements;
+  std::vector<Placement> placements;
   for (const Disc& d : discs) placements.push_back(d.placement);
   Scene<LeastGeometry> now(discs), unused(discs);
   std::size_t before = 0;
   for (int tick = 0; tick < 8; ++tick) {
     if (tick == 2) before = support::allocations;
-    for (Similarity& placement : placements) placement.translation.x += 0.1;
+    for (Placement& placement : placements) placement.translation.x += 0.1;
     Scene<LeastGeometry> next = now.with_placements(placements, std::move(unused));
     unused = std::move(now);
     now = std::move(next);
@@ -424,7 +424,7 @@ TEST_CASE("of two scenes placed by turns nothing is allocated after the second t
 }
 
 TEST_CASE("a scene is placed anew beside a copy that is still used, and into itself") {
-  const std::array<Similarity, 3> lower{}, higher{Similarity{.translation = {0, 0, 1}}, {.translation = {0, 0, 2}}, {}};
+  const std::array<Placement, 3> lower{}, higher{Placement{.translation = {0, 0, 1}}, {.translation = {0, 0, 2}}, {}};
   Scene<LeastGeometry> now({disc({}, 1), disc({}, 2), disc({}, 3)});
   const Ray down{{0, 0, 10}, {0, 0, -1}};
   now = now.with_placements(lower);
@@ -436,7 +436,7 @@ TEST_CASE("a scene is placed anew beside a copy that is still used, and into its
 }
 
 TEST_CASE("a scene placed in the memory of another one has nothing of the other's parts") {
-  const std::array<Similarity, 2> apart{Similarity{}, {.translation = {10, 0, 0}}};
+  const std::array<Placement, 2> apart{Placement{}, {.translation = {10, 0, 0}}};
   const Scene<LeastGeometry> scene({disc({}, 1), disc({}, 2)});
   const std::vector<std::vector<Disc>> others{{}, {disc({}, 7)}, {disc({}, 8), disc({}, 9)}, {disc(), disc(), disc()}};
   for (const std::vector<Disc>& other : others) {
@@ -452,9 +452,9 @@ TEST_CASE("placements of another number or out of range are refused") {
   const Scene<LeastGeometry> scene({disc()});
   CHECK_THROWS_WITH_AS(static_cast<void>(scene.with_placements({})),
                        "Scene::with_placements (number) is 0, but must be from 1 to 1", SettingError);
-  const std::array<Similarity, 1> flat{Similarity{.scale = 0}};
+  const std::array<Placement, 1> flat{Placement{.scale = 0}};
   CHECK_THROWS_AS(static_cast<void>(scene.with_placements(flat)), SettingError);
-  const std::array<Similarity, 1> coarse{Similarity{.rotation = Rotation{1.0005, 0, 0, 0}}};
+  const std::array<Placement, 1> coarse{Placement{.rotation = Rotation{1.0005, 0, 0, 0}}};
   CHECK(length(scene.with_placements(coarse).parts()[0].placement.rotation) == doctest::Approx(1).epsilon(1e-12));
 }
 
@@ -478,7 +478,7 @@ TEST_CASE("the user's threads build the index of a scene, which is the same on a
   support::CountingExecutor executor;
   support::Generator any(11);
   std::vector<Disc> discs;
-  std::vector<Similarity> placements;
+  std::vector<Placement> placements;
   for (ObjectId k = 0; k < 10'000; ++k) {
     discs.push_back(disc({.translation = any.point(200)}, k));
     placements.push_back({.translation = any.point(200)});
@@ -512,7 +512,7 @@ TEST_CASE("no ray meets anything of a cone that is said to meet nothing, and of 
     CAPTURE(seed);
     support::Generator any(seed);
     const auto mesh = std::make_shared<const Mesh>(support::soup(any, 60, 3));
-    const Similarity placed{any.rotation(), any.log_uniform(0.3, 3), any.point(5)};
+    const Placement placed{any.rotation(), any.log_uniform(0.3, 3), any.point(5)};
     const Scene<Mesh> alone({{.geometry = mesh}}), turned({{.geometry = mesh, .placement = placed}});
     std::vector<Part<Mesh, LeastGeometry>> parts{{.geometry = mesh, .placement = placed}};
     for (int k = 0; k < 20; ++k)

@@ -50,7 +50,7 @@ TEST_CASE("with recorded subrays, an echo beside the axis finds its surface, too
   const SurfaceQuery surfaces = surfaces_of(scene);
   const std::vector<Shot> shots{{.direction = normalize(Vec3{1, 5, 0})}};  // passes the wall by
   const Echo echo{.range = 30, .object = 1, .classification = 6};
-  std::vector<SubrayHit> subrays(2);
+  std::vector<SubrayRecord> subrays(2);
   subrays[1].range = 30;
   subrays[1].object = 1;
   subrays[1].classification = 6;

@@ -173,7 +173,7 @@ TEST_CASE("vertices of another number, or out of range, are refused, and the mes
   for (const double bad : {nan, std::numeric_limits<double>::infinity(), 2e18}) {
     vertices = {{0, 0, 0}, {1, bad, 0}, {0, 1, 0}, {9, 9, 9}};
     CHECK_THROWS_WITH_AS(mesh.refit(vertices),
-                         doctest::Contains(("DeformingMesh::vertices is " + detail::to_text(bad) +
+                         doctest::Contains(("DeformingMesh::vertices is " + text::to_text(bad) +
                                             " m, but must be finite and within 1e18 m of the origin; see vertex 1")
                                                .c_str()),
                          SettingError);

@@ -23,9 +23,9 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-static_assert(std::copyable<WaterSurface> && !FlatGeometry<WaterSurface> && KeylessGeometry<WaterSurface>);
-static_assert(!Scene<WaterSurface>::timeless && !Scene<TriangleMesh<>, WaterSurface>::timeless &&
-              Scene<TriangleMesh<>>::timeless);
+static_assert(std::copyable<WaterSurface> && !UniformGeometry<WaterSurface> && DeterministicGeometry<WaterSurface>);
+static_assert(Scene<WaterSurface>::time_dependent && Scene<TriangleMesh<>, WaterSurface>::time_dependent &&
+              !Scene<TriangleMesh<>>::time_dependent);
 
 namespace {
 
@@ -54,9 +54,9 @@ Vec3 normal_of(const WaterSurface& surface, const Ray& ray) {
   return found.normal;
 }
 
-std::vector<HitBuffer::Entry> hits_of(const WaterSurface& surface, const Ray& ray) {
-  HitBuffer hits(ray.near, ray.far);
-  surface.closest(BundleOfOne(ray), hits);
+std::vector<AllHits::Entry> hits_of(const WaterSurface& surface, const Ray& ray) {
+  AllHits hits(ray.near, ray.far);
+  surface.closest(SingleRayPacket(ray), hits);
   return {hits.hits().begin(), hits.hits().end()};
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("a level ray through the crests of a wave meets each of its flanks") {
     for (std::size_t n = 0; n < found.size(); ++n) {
       CHECK(std::fabs(found[n].range - expected[n]) < 1e-9);
       const double slope = 0.5 * 2 * pi / 8 * std::cos(2 * pi * expected[n] / 8 - frequency * seconds);
-      const Vec3 normal = surface.surface(static_cast<PrimitiveIndex>(found[n].id), BundleOfOne(ray), 0).normal;
+      const Vec3 normal = surface.surface(static_cast<PrimitiveIndex>(found[n].id), SingleRayPacket(ray), 0).normal;
       CHECK(length(normal - normalize(Vec3{-slope, 0, 1})) < 1e-6);
     }
     CHECK(range_of(surface, ray) == found[0].range);
@@ -272,12 +272,12 @@ TEST_CASE("bundles, single rays and searches for any hit agree to the last bit")
     ClosestHits nearest(rays);
     surface.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) {
-      const BundleOfOne one(rays.ray(j));
+      const SingleRayPacket one(rays.ray(j));
       ClosestHit hit(rays.far);
       surface.closest(one, hit);
       AnyHit any(rays.far);
       surface.closest(one, any);
-      HitBuffer all(rays.near, rays.far);
+      AllHits all(rays.near, rays.far);
       surface.closest(one, all);
       REQUIRE(hit.range == nearest.range[j]);
       REQUIRE(hit.id == nearest.id[j]);
@@ -286,7 +286,7 @@ TEST_CASE("bundles, single rays and searches for any hit agree to the last bit")
       if (!hit.met(0)) continue;
       REQUIRE(hit.range > rays.near);
       REQUIRE(hit.range <= rays.far);
-      REQUIRE(all.hits()[0] == HitBuffer::Entry{hit.range, hit.id});
+      REQUIRE(all.hits()[0] == AllHits::Entry{hit.range, hit.id});
       const Vec3 normal = surface.surface(hit.primitive_of(0), one, 0).normal;
       REQUIRE(normal == surface.surface(nearest.primitive_of(j), rays, j).normal);
       REQUIRE(length(normal) == relative(1, 1e-14));

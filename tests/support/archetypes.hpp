@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 /// The least model of each concept: what a user has to write, and nothing more.
 namespace pulsecast::support {
@@ -114,8 +114,8 @@ struct LeastTransport {
   std::size_t reflections(std::size_t) const noexcept { return 0; }
   Workspace workspace(std::size_t) const { return {}; }
   template <class Map>
-  TransportResult trace(const Map&, const Illumination& light, Workspace&, std::span<Reflection>) const noexcept {
-    for (SubrayHit& subray : light.record) subray = {};
+  TransportResult trace(const Map&, const TransportInput& light, Workspace&, std::span<Reflection>) const noexcept {
+    for (SubrayRecord& subray : light.record) subray = {};
     return {.energy = {.sent = light.energy(), .missed = light.energy()}};
   }
 };
@@ -124,9 +124,9 @@ struct LeastTransport {
 struct LeastDetector {
   using Workspace = std::array<Echo, 1>;
   Workspace workspace(std::size_t) const { return {}; }
-  Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
+  Detection detect(const DetectorInput& input, Workspace& workspace) const noexcept {
     const Reflection* nearest = nullptr;
-    for (const Reflection& r : heard.reflections)
+    for (const Reflection& r : input.reflections)
       if (!nearest || r.range < nearest->range) nearest = &r;
     if (!nearest) return {};
     workspace[0] = Echo{};

@@ -14,7 +14,7 @@ template <class D, class Workspace>
 [[nodiscard]] Detection detect(const D& detector, const Laser& laser, std::span<Reflection> reflections,
                                Workspace& workspace, const RandomKey& key = {}) {
   const Emitter emitter{.laser = laser};
-  return detector.detect(Heard{emitter, {}, reflections, key}, workspace);
+  return detector.detect(DetectorInput{emitter, {}, reflections, key}, workspace);
 }
 
 /// Steps of a quadrature by `mean_distance`.

@@ -23,7 +23,7 @@
 #include <pulsecast/base/thread_pool.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 #include "support/checksum.hpp"
 #include "support/detect.hpp"
@@ -310,16 +310,16 @@ template <class T, class Map>
   for (std::size_t k = 0; k < poses.size(); ++k) {
     Pulse<frame::World> pulse;
     pulse.pose = poses[k];
-    const auto trace = [&](auto& workspace, std::vector<Reflection>& found, std::span<SubrayHit> record) {
+    const auto trace = [&](auto& workspace, std::vector<Reflection>& found, std::span<SubrayRecord> record) {
       WhiteTarget white;
       found.assign(most + 1, Reflection{.power = -1});
-      const Illumination light{pulse, k, 7, emitter, beam, subrays, budget, white, receiver.gate(), record};
+      const TransportInput light{pulse, k, 7, emitter, beam, subrays, budget, white, receiver.gate(), record};
       return transport.trace(map, light, workspace, std::span(found).first(most));
     };
     auto fresh = transport.workspace(subrays);
-    SubrayHit unset;
+    SubrayRecord unset;
     unset.power = -1;
-    std::vector<SubrayHit> record(subrays, unset);
+    std::vector<SubrayRecord> record(subrays, unset);
     const TransportResult r = trace(fresh, reflections, record);
     const EnergyLedger& e = r.energy;
     const double sent = emitter.laser.energy();
@@ -347,7 +347,7 @@ template <class T, class Map>
       return detail::sentence("pulse ", k, ": the reflections are ", received, " J");
     if (r.dark() && r.fate != Fate::missed && r.fate != Fate::out_of_range && r.fate != Fate::absorbed)
       return detail::sentence("pulse ", k, ": a fate that asks for reflections");
-    for (const SubrayHit& subray : record)
+    for (const SubrayRecord& subray : record)
       if (!(subray.power >= 0)) return detail::sentence("pulse ", k, ": a subray is not recorded");
     const TransportResult again = trace(used, others, {});
     const auto equal = [](const Reflection& a, const Reflection& b) {
@@ -423,11 +423,12 @@ template <class D>
       if (e > 0 && !(answer.echoes[e - 1].range < echo.range))
         return detail::sentence("case ", k, ": echoes are not sorted by range");
       if (echo.number != e + 1) return detail::sentence("case ", k, ": echo ", e, " has number ", int{echo.number});
-      if (!ListensAlways<D> && !(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
+      if (!RunsWithoutReflections<D> &&
+          !(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
         return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W came out of ", power, " W");
       if (!(echo.amplitude >= 0)) return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W");
     }
-    if (!ListensAlways<D> && cases[k].empty() && !answer.echoes.empty())
+    if (!RunsWithoutReflections<D> && cases[k].empty() && !answer.echoes.empty())
       return detail::sentence("case ", k, ": an echo of nothing");
     for (int time = 0; time < 2; ++time) {
       const Answer again = detect(cases[k], used);

@@ -17,7 +17,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 /// Pulses through a transport alone, without a detector.
 namespace pulsecast::support {
@@ -102,8 +102,8 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   WhiteTarget white;
   Traced all;
   all.reflections.resize(transport.reflections(footprint.size()));
-  const Illumination light{pulse,  lamp.index, lamp.seed,           emitter, beam, footprint.size(),
-                           budget, white,      lamp.receiver.gate()};
+  const TransportInput light{pulse,  lamp.index, lamp.seed,           emitter, beam, footprint.size(),
+                             budget, white,      lamp.receiver.gate()};
   if constexpr (with_velocity)
     all.result = transport.template trace<true>(map, light, w, all.reflections);
   else

@@ -51,8 +51,9 @@ TEST_CASE("the overlap of two apertures is that by quadrature within 1e-4") {
     const double beam = 0.5 * std::hypot(laser.waist_diameter, laser.divergence.across * range);
     const double widening = range * std::tan(g.field_of_view / 2), view = receiver.diameter / 2 + widening;
     const double shadow = std::fmin(std::fmax(g.obstruction / 2 - widening, 0), view);
-    const double apart = std::fabs(g.separation - range * std::tan(g.inclination));
-    CHECK(std::fabs(aperture_overlap(g, receiver, laser, range) - by_rings(beam, shadow, view, apart)) < 1e-4);
+    const double surface_epsilon = std::fabs(g.separation - range * std::tan(g.inclination));
+    CHECK(std::fabs(aperture_overlap(g, receiver, laser, range) - by_rings(beam, shadow, view, surface_epsilon)) <
+          1e-4);
   }
 }
 

@@ -64,7 +64,7 @@ struct Foil {
   std::size_t reflections(std::size_t subrays) const noexcept { return 2 * subrays; }
   Workspace workspace(std::size_t subrays) const { return behind.workspace(subrays); }
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+  TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                         std::span<Reflection> reflections) const noexcept {
     TransportResult r = behind.trace(map, light, w, reflections);
     r.energy = r.energy.times(passed);
@@ -89,9 +89,9 @@ auto towards(const Rotation& turn, PulseIndex pulses = 1, double rate = 1) {
 /// Reports the velocity of its only reflection as the echo's width.
 struct Doppler : support::LeastDetector {
   static constexpr bool reads_velocity = true;
-  Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const Detection d = support::LeastDetector::detect(heard, w);
-    if (!d.echoes.empty()) d.echoes[0].width = heard.reflections[0].velocity;
+  Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const Detection d = support::LeastDetector::detect(input, w);
+    if (!d.echoes.empty()) d.echoes[0].width = input.reflections[0].velocity;
     return d;
   }
 };
@@ -132,7 +132,7 @@ TEST_CASE("each term of the ledger is that of its own subrays") {
     auto w = s.workspace();
     const Outcome o = s(0, w);
     double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
-    for (const SubrayHit& subray : o.subrays) {
+    for (const SubrayRecord& subray : o.subrays) {
       double& term = !subray.met()             ? missed
                      : subray.range > 100      ? out_of_range
                      : subray.backscatter == 0 ? absorbed
@@ -225,8 +225,8 @@ TEST_CASE("each subray of a spinning plate has the velocity of its place") {
   const MovingScene<Mesh> scene({{.geometry = plate(30), .motion = spin}}, {.to = 1});
   struct AllVelocities : Doppler {
     std::vector<Reflection>* seen = nullptr;
-    Detection detect(const Heard& heard, Workspace&) const noexcept {
-      seen->assign(heard.reflections.begin(), heard.reflections.end());
+    Detection detect(const DetectorInput& input, Workspace&) const noexcept {
+      seen->assign(input.reflections.begin(), input.reflections.end());
       return {};
     }
   };
@@ -241,7 +241,7 @@ TEST_CASE("each subray of a spinning plate has the velocity of its place") {
     const Outcome o = survey(0, w);
     REQUIRE(seen.size() == RingFootprint{4}.size());
     for (std::size_t j = 0; j < seen.size(); ++j) {
-      const SubrayHit& subray = o.subrays[j];
+      const SubrayRecord& subray = o.subrays[j];
       const Vec3 exit = subray_exit(RingFootprint{4}.offset(j), laser),
                  direction = (subray.point - exit) / subray.range;
       const double expected = dot(cross(rate * axis::up, subray.point - Vec3{0, 30, 0}), direction);

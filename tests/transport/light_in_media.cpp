@@ -84,7 +84,7 @@ TEST_CASE("fog without an end takes all of the light") {
 
 TEST_CASE("what fog sends back is left out from where the least share of it is left, as that of walls there") {
   for (const double least : {1e-1, 1e-2, 1e-3, 1e-4}) {
-    const LightPaths light{.least_share = least, .air = Media({{.medium = mist}})};
+    const LightPaths light{.share_min = least, .air = Media({{.medium = mist}})};
     const auto seen =
         traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
     CHECK(seen.continuous.back().end == doctest::Approx(-std::log(least) / mist.extinction()).epsilon(1e-9));
@@ -177,7 +177,7 @@ TEST_CASE("a kept workspace returns what a fresh one does, of air and of water")
                               Material{.reflectance = 0, .smooth = {.kind = InterfaceKind::water, .inside = inside}}),
                     rectangle({0, 0, -4}, 500.0 * axis::right, 500.0 * axis::forward, Material{.reflectance = 0.1}),
                     rectangle({40, 0, 30}, 20.0 * axis::right, 20.0 * axis::forward, Material{.reflectance = 0.1})});
-  const LightPaths light{.least_share = 0.05, .air = Media({{.medium = {.scattering = 1e-3, .backscatter = 1e-4}}})};
+  const LightPaths light{.share_min = 0.05, .air = Media({{.medium = {.scattering = 1e-3, .backscatter = 1e-4}}})};
   support::Lamp lamp;
   lamp.laser.divergence = 1e-3;
   lamp.receiver.range_min = 20.5;  // the air up to there is not heard

@@ -301,11 +301,11 @@ TEST_CASE("between mirrors light goes on until its number of passages or its sha
   };
   const auto pose = from_to({0, 0, 0}, {0.5, 10, 0});
   for (std::size_t passages = 0; passages < 10; ++passages) {
-    const auto seen = traced(LightPaths{.passages = passages, .least_share = 0}, room(0.9), pose, SingleRay{});
+    const auto seen = traced(LightPaths{.passages = passages, .share_min = 0}, room(0.9), pose, SingleRay{});
     CHECK(seen.result.energy.cut / seen.result.energy.sent == doctest::Approx(std::pow(0.9, passages + 1)));
     CHECK(std::fabs(seen.imbalance()) < 1e-12);
   }
-  const auto dim = traced(LightPaths{.passages = 32, .least_share = 0.01}, room(0.5), pose, SingleRay{});
+  const auto dim = traced(LightPaths{.passages = 32, .share_min = 0.01}, room(0.5), pose, SingleRay{});
   CHECK(dim.result.energy.cut / dim.result.energy.sent == doctest::Approx(std::pow(0.5, 7)));
   CHECK(dim.reflections.empty());
   CHECK(dim.result.fate == Fate::absorbed);
@@ -366,8 +366,8 @@ TEST_CASE("an aperture catches no more of a narrow retroreflector's light than t
           traced(LightPaths{}, World(std::move(parts)), from_to({0, 0, 0}, axis::forward), SingleRay{}).reflections);
     };
     const double x = 2 * std::pow(0.075 / (2e-3 * y), 2),
-                 caught = (1 - std::exp(-x)) / x;  // of a Gaussian lobe, by its middle
-    CHECK(power({target(sign)}) == doctest::Approx(caught * power({target(wide)})).epsilon(1e-12));
+                 aperture_fraction = (1 - std::exp(-x)) / x;  // of a Gaussian lobe, by its middle
+    CHECK(power({target(sign)}) == doctest::Approx(aperture_fraction * power({target(wide)})).epsilon(1e-12));
     CHECK(power({face(5), face(6), target(sign)}) == doctest::Approx(power({target(sign)})).epsilon(1e-9));
   }
 }
@@ -405,7 +405,7 @@ TEST_CASE("light paths keep the laws of transports") {
     for (int k = 0; k < 40; ++k) poses.push_back({any.rotation(), any.point(3)});
     const World scene(std::move(parts));
     for (const LightPaths& light :
-         {LightPaths{}, LightPaths{.passages = 2}, LightPaths{.passages = 0}, LightPaths{.least_share = 0.1}}) {
+         {LightPaths{}, LightPaths{.passages = 2}, LightPaths{.passages = 0}, LightPaths{.share_min = 0.1}}) {
       CHECK(support::transport_laws(light, scene, poses) == "");
       CHECK(support::transport_laws(light, scene, poses, {.range_min = 5, .range_max = 40}) == "");
     }
@@ -468,7 +468,7 @@ TEST_CASE("glass that grows towards the target delays its light, and so does wat
 TEST_CASE("settings out of range are refused") {
   CHECK_THROWS_WITH_AS(LightPaths{.passages = 33}.validate(), "LightPaths::passages is 33, but must be from 0 to 32",
                        SettingError);
-  CHECK_THROWS_AS(LightPaths{.least_share = -0.1}.validate(), SettingError);
+  CHECK_THROWS_AS(LightPaths{.share_min = -0.1}.validate(), SettingError);
   CHECK_THROWS_AS((void)material_table({{.reflectance = 0.5, .smooth = SmoothInterface::mirror(0.6)}}), SettingError);
   CHECK_THROWS_AS((void)material_table({{.smooth = SmoothInterface::pane(-1)}}), SettingError);
   SmoothInterface thin = SmoothInterface::glass();

@@ -106,7 +106,7 @@ Seen seen(const Survey& survey, double top, double thickness) {
   for (PulseIndex i = 0; i < survey.size(); ++i) {
     const Outcome o = survey(i, workspace);
     all.met += 1 - o.energy.share(&EnergyLedger::missed);
-    for (const SubrayHit& hit : o.subrays) {
+    for (const SubrayRecord& hit : o.subrays) {
       if (!hit.met()) continue;
       const double back = hit.power / full * 4 * hit.range * hit.range / (vacuum.diameter * vacuum.diameter);
       const double quarter = std::clamp(4 * (top - hit.point.z) / thickness, 0.0, 3.5);  // leaves stick out a little

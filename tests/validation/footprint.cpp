@@ -93,7 +93,7 @@ TEST_CASE("radius of a focused beam") {
       gaussian_beam({.diameter = 2 * w0, .focus = focus, .quality = quality}, Laser{.wavelength = wavelength});
   for (const double at : {2.0, 10.0, 40.0, 100.0, 1000.0}) {
     double sum = 0;
-    for (const SubrayHit& hit : one_pulse(Wall{at}, sunflower, focused).subrays)
+    for (const SubrayRecord& hit : one_pulse(Wall{at}, sunflower, focused).subrays)
       sum += (hit.point.x * hit.point.x + hit.point.z * hit.point.z) / 2001;
     // the mean square of the radius is w^2 / 2. Source: Carlsson et al. 2001 for w
     const double closed = w0 * std::hypot(1 - at / focus, quality * wavelength * at / (pi * w0 * w0));

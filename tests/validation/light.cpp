@@ -163,7 +163,7 @@ TEST_CASE("refraction by waves") {
                      .direction = -axis::up,
                      .tick = Tick::of_seconds(any.uniform(0, 60))};
       ClosestHit hit(infinity);
-      const BundleOfOne ray(down);
+      const SingleRayPacket ray(down);
       sea.closest(ray, hit);
       const Vec3 normal = sea.surface(hit.primitive_of(0), ray, 0).normal;
       const Vec3 below = refracted(down.direction, normal, 1.34, fresnel_split(normal.z, 1.34));

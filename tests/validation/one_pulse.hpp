@@ -21,7 +21,7 @@ namespace pulsecast::validation {
 struct Result {
   EnergyLedger energy;
   double power = 0;  ///< of all subrays together [W]
-  std::vector<SubrayHit> subrays;
+  std::vector<SubrayRecord> subrays;
   std::vector<Echo> echoes;
   std::vector<float> waveform;  ///< received power, if the detector keeps it [W]
   double waveform_start = 0;    ///< two-way travel time of its first sample [s]
@@ -43,7 +43,7 @@ template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
                 {o.echoes.begin(), o.echoes.end()},
                 {o.waveform.begin(), o.waveform.end()},
                 o.shot.waveform_start};
-  for (const SubrayHit& hit : o.subrays) result.power += hit.power;
+  for (const SubrayRecord& hit : o.subrays) result.power += hit.power;
   return result;
 }
 

@@ -179,7 +179,7 @@ double spread(const std::vector<Lit>& lit) {
 
 std::vector<Lit> lit_by(const Result& result) {
   std::vector<Lit> lit;
-  for (const SubrayHit& hit : result.subrays)
+  for (const SubrayRecord& hit : result.subrays)
     if (hit.met()) lit.push_back({hit.range, hit.power});
   return lit;
 }

@@ -40,7 +40,7 @@ enum class Kind : std::uint8_t {
 /// tolerance; by a power of ten if there would be too many digits before or behind the point, or none but zeros.
 [[nodiscard]] inline std::string to_a_tenth(double value, double tolerance) {
   const auto exponent = [](double size) { return static_cast<int>(std::floor(std::log10(size) + 1e-9)); };
-  if (tolerance == 0 || !std::isfinite(value)) return pulsecast::detail::to_text(value);
+  if (tolerance == 0 || !std::isfinite(value)) return text::to_text(value);
   const int last = exponent(tolerance) - 1;  // of the last digit
   if (value != 0 && std::fabs(value) < 0.5 * std::pow(10.0, last)) return to_two_digits(value);
   const bool plain = last >= -16 && std::fabs(value) < 1e15;

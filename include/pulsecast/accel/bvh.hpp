@@ -84,7 +84,7 @@ class Bvh {
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
   /// meet.
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>

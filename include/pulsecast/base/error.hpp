@@ -16,7 +16,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
+namespace text {
 /// Shortest decimal text of a number that reads back the same.
 inline std::string to_text(double value) {
   std::array<char, 32> digits;
@@ -29,7 +29,7 @@ inline std::string to_text(double value) {
   for (const std::string_view text : texts) all.append(text);
   return all;
 }
-}  // namespace detail
+}  // namespace text
 
 /// Setting outside its allowed range. Thrown when the stage that holds it is made, never later.
 class SettingError : public std::invalid_argument {
@@ -45,13 +45,11 @@ class SettingError : public std::invalid_argument {
   /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no number by itself is at
   /// fault.
   SettingError(std::string field, std::string problem)
-      : std::invalid_argument(detail::joined({field, problem})),
-        field_(std::move(field)),
-        problem_(std::move(problem)) {}
+      : std::invalid_argument(text::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
 
   /// Copy of this error whose field is prefixed by a name, as in `leg 3: Scanner::pulse_rate`.
   [[nodiscard]] SettingError of(const std::string& name) const {
-    std::string field = detail::joined({name, ": ", field_});
+    std::string field = text::joined({name, ": ", field_});
     return problem_.empty() ? SettingError(std::move(field), value_, unit_, allowed_)
                             : SettingError(std::move(field), problem_);
   }
@@ -66,8 +64,8 @@ class SettingError : public std::invalid_argument {
  private:
   static std::string message(const std::string& field, double value, const std::string& unit,
                              const std::string& allowed) {
-    return detail::joined(
-        {field, " is ", detail::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
+    return text::joined(
+        {field, " is ", text::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
   }
 
   std::string field_, unit_, allowed_, problem_;
@@ -90,7 +88,7 @@ class FileError : public std::runtime_error {
  public:
   /// `place` in the file, as in "line 12" or "byte 375"; empty if the error concerns the whole file.
   FileError(std::string path, std::string place, std::string problem)
-      : std::runtime_error(detail::joined({path, place.empty() ? "" : ", ", place, ": ", problem})),
+      : std::runtime_error(text::joined({path, place.empty() ? "" : ", ", place, ": ", problem})),
         path_(std::move(path)),
         place_(std::move(place)),
         problem_(std::move(problem)) {}

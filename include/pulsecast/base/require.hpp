@@ -27,9 +27,9 @@ inline constexpr double max_angle = 6.2831854;
   const bool degrees = unit == "rad" && std::isfinite(value) && std::fabs(value) > max_angle;
   const bool period = unit == "Hz" && value > 0 && value < 1;
   throw SettingError(std::string(field), value, std::string(unit),
-                     detail::joined({allowed, degrees  ? ": given in degrees?"
-                                              : period ? ": a period?"
-                                                       : ""}));
+                     text::joined({allowed, degrees  ? ": given in degrees?"
+                                            : period ? ": a period?"
+                                                     : ""}));
 }
 
 /// Throws a `SettingError` unless the value is finite and greater than zero.
@@ -57,7 +57,7 @@ namespace detail {
 [[noreturn]] inline void refuse_outside(std::string_view field, double value, double low, double high,
                                         std::string_view unit) {
   throw_setting_error(field, value, unit,
-                      std::string("from ").append(to_text(low)).append(" to ").append(to_text(high)));
+                      std::string("from ").append(text::to_text(low)).append(" to ").append(text::to_text(high)));
 }
 }  // namespace detail
 

@@ -60,7 +60,7 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
   std::string out(text.substr(0, longest));
   std::replace_if(
       out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return detail::joined({"'", out, text.size() > longest ? "...'" : "'"});
+  return text::joined({"'", out, text.size() > longest ? "...'" : "'"});
 }
 
 /// Removes the first word from a text, and the separators behind it. Returns the word; it is empty if a separator comes

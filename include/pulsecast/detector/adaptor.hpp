@@ -22,7 +22,7 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
 ///
 ///     template <Detector Inner>
 ///     struct LastEcho : DetectorAdaptor<Inner> {
-///       Detection detect(const Heard& heard, auto& workspace) const noexcept { ... this->inner.detect(heard,
+///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept { ... this->inner.detect(input,
 ///       workspace) ... }
 ///     };
 ///     template <Detector Inner>
@@ -31,8 +31,8 @@ template <Detector Inner>
 struct DetectorAdaptor {
   Inner inner;  ///< detector inside
 
-  static constexpr bool listens_always = ListensAlways<Inner>;  ///< as of the detector inside
-  static constexpr bool reads_velocity = ReadsVelocity<Inner>;  ///< as of the detector inside
+  static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< as of the detector inside
+  static constexpr bool reads_velocity = ReadsVelocity<Inner>;                     ///< as of the detector inside
 
   /// Validates the detector inside. @throws SettingError
   void validate() const {
@@ -57,8 +57,8 @@ struct DetectorAdaptor {
 
   /// Echoes of the detector inside.
   template <class Workspace>
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
-    return inner.detect(heard, workspace);
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& workspace) const noexcept {
+    return inner.detect(input, workspace);
   }
 };
 

@@ -100,14 +100,14 @@ class AnalyticWaveform {
   }
 
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const Laser& laser = heard.emitter.laser;
-    const std::span<Reflection> all = heard.reflections;
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const Laser& laser = input.emitter.laser;
+    const std::span<Reflection> all = input.reflections;
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
-    if (!by_samples && s_.record_length == 0 && heard.continuous.empty()) {
+    if (!by_samples && s_.record_length == 0 && input.continuous.empty()) {
       const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
       if (group.one()) {
         detect(group, shape, w.echoes);
@@ -115,7 +115,7 @@ class AnalyticWaveform {
       }
     }
     const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
-    const std::span<const ContinuousReturn> continuous = heard.continuous;
+    const std::span<const ContinuousReturn> continuous = input.continuous;
     if (reflections.empty() && continuous.empty()) return {};
     Finder finder{*this, shape, s_.min_separation(laser.pulse_length), w.peaks};
     if (continuous.empty())
@@ -130,7 +130,7 @@ class AnalyticWaveform {
                   w.echoes);
     }
     number_echoes(w.echoes);
-    if (!continuous.empty()) return {w.echoes, w.record, record(heard, reflections, w.record)};
+    if (!continuous.empty()) return {w.echoes, w.record, record(input, reflections, w.record)};
     const double start = SampledSum::first_sample(reflections.front(), shape, s_.sample_interval);
     SampledSum sum(reflections, shape, s_.sample_interval, 0, start);
     while (w.record.size() < w.record.capacity() &&
@@ -300,9 +300,9 @@ class AnalyticWaveform {
   };
 
   /// Keeps the record of a pulse with continuous returns. Returns the time of its first sample [s].
-  double record(const Heard& heard, std::span<const Reflection> reflections,
+  double record(const DetectorInput& input, std::span<const Reflection> reflections,
                 std::vector<float>& record) const noexcept {
-    IdealSamples samples(0, 0, s_, heard, reflections, 0);
+    IdealSamples samples(0, 0, s_, input, reflections, 0);
     while (record.size() < record.capacity() && samples.begin_section())
       for (bool more = true; more && record.size() < record.capacity();) {
         record.resize(std::min(record.capacity(), static_cast<std::size_t>(samples.number() - samples.start()) + 1));

@@ -46,7 +46,7 @@ class BandLimitedReceiver {
   /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
-  static constexpr bool listens_always = true;  ///< true: noise is heard without light
+  static constexpr bool runs_without_reflections = true;  ///< true: noise is heard without light
   /// Scratch memory of one worker.
   using Workspace = BandLimitedSamples::Workspace;
 
@@ -99,12 +99,12 @@ class BandLimitedReceiver {
   /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections
   /// that are none or too far apart, or where continuous returns may rise, and for receivers whose samples are more
   /// than the sum of the pulses. `reach` is that of `timing_reach`.
-  [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard,
+  [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const DetectorInput& input,
                                                   double reach) const noexcept {
-    if (!is_linear() || heard.reflections.empty()) return {};
-    const ReceivedPulse& pulse = (*known_.find(heard.emitter.laser))->pulse;
+    if (!is_linear() || input.reflections.empty()) return {};
+    const ReceivedPulse& pulse = (*known_.find(input.emitter.laser))->pulse;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
-    for (const Reflection& r : heard.reflections) {
+    for (const Reflection& r : input.reflections) {
       if (!can_count(r, s.sample_interval)) return {};
       nearest = std::min(nearest, arrival(r));
       farthest = std::max(farthest, arrival(r));
@@ -116,7 +116,7 @@ class BandLimitedReceiver {
     if (!(farthest - nearest <= pulse.concave() && to - from < most)) return {};
     const auto count = static_cast<std::size_t>(to - from) + 1;
     std::array<double, most + simd::lane_count> y{};
-    for (const Reflection& r : heard.reflections) {
+    for (const Reflection& r : input.reflections) {
       const ReceivedPulse::Phase phase = pulse.phase(arrival(r));
       const double before = from - pulse.first_sample(arrival(r));
       if (!(before >= 0 &&
@@ -130,8 +130,8 @@ class BandLimitedReceiver {
         simd::store(simd::Doubles(simd::load<simd::Doubles>(y[k]) + r.power * sum), y[k]);
       }
     }
-    if (!heard.continuous.empty()) {
-      detail::ContinuousRises<const ReceivedPulse&> continuous(heard.continuous, pulse);
+    if (!input.continuous.empty()) {
+      detail::ContinuousRises<const ReceivedPulse&> continuous(input.continuous, pulse);
       continuous.pass((from + static_cast<double>(count)) * s.sample_interval);
       if (!(continuous.until() <= from * s.sample_interval - pulse.end() &&
             continuous.next() >= to * s.sample_interval + pulse.end()))
@@ -141,14 +141,14 @@ class BandLimitedReceiver {
     }
     const auto top = static_cast<std::size_t>(
         std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
-    if (!heard.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1]))
+    if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1]))
       return {};  // on the flank of continuous returns
     const Vertex between = vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
     const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);
     OnlyPeak only{(from + mark) * s.sample_interval - pulse.peak(), between.height};
     double strongest = 0;
-    for (const Reflection& r : heard.reflections)
+    for (const Reflection& r : input.reflections)
       if (const double power = r.power * pulse(time - arrival(r)); power > strongest) {
         strongest = power;
         only.strongest = &r;
@@ -157,12 +157,12 @@ class BandLimitedReceiver {
   }
 
   /// As the concept WaveformReceiver requires; for pulses that were prepared.
-  [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const Heard& heard,
+  [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const DetectorInput& input,
                                            std::span<const Reflection> reflections, double width_tail,
                                            Workspace& w) const noexcept {
-    const auto* pulses = known_.find(heard.emitter.laser);
+    const auto* pulses = known_.find(input.emitter.laser);
     PULSECAST_ASSERT(pulses != nullptr);
-    return {chain_, **pulses, s, heard, reflections, width_tail == 0, w};
+    return {chain_, **pulses, s, input, reflections, width_tail == 0, w};
   }
 
  private:

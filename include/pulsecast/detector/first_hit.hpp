@@ -23,9 +23,9 @@ struct FirstHit {
 
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& workspace) const noexcept {
     const Reflection* first = nullptr;
-    for (const Reflection& r : heard.reflections)
+    for (const Reflection& r : input.reflections)
       if (r.power >= threshold && (!first || r.range < first->range)) first = &r;
     if (!first) return {};
     workspace.echo = Echo{.range = first->range,

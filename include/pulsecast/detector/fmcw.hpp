@@ -99,19 +99,19 @@ class Fmcw {
     return w;
   }
 
-  /// Echoes of all reflections. Noise and phases are drawn from the seed and pulse of `heard.key`.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const double wavelength = heard.emitter.laser.wavelength, metres = s_.resolution(),
+  /// Echoes of all reflections. Noise and phases are drawn from the seed and pulse of `input.key`.
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const double wavelength = input.emitter.laser.wavelength, metres = s_.resolution(),
                  speed = s_.velocity_resolution(wavelength);
     for (const std::size_t sweep : {std::size_t{0}, std::size_t{1}}) {
-      set_lines(heard, sweep == 0 ? 1 / speed : -1 / speed, w);
-      find_peaks(heard, w.lines, noise_of(heard, sweep), w.peaks[sweep]);
+      set_lines(input, sweep == 0 ? 1 / speed : -1 / speed, w);
+      find_peaks(input, w.lines, noise_of(input, sweep), w.peaks[sweep]);
     }
     const auto& [up, down] = w.peaks;
     const std::size_t pairs = std::min(up.size(), down.size());
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < pairs; first = last) {
-      const bool sure = pair_next(first, last, noise_of(heard, 0).deviation, w.peaks);
+      const bool sure = pair_next(first, last, noise_of(input, 0).deviation, w.peaks);
       for (std::size_t e = first; e < last; ++e) {
         Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres,
                               0.5 * (up[e].power + down[e].power));
@@ -151,11 +151,11 @@ class Fmcw {
     }
   };
 
-  [[nodiscard]] Noise noise_of(const Heard& heard, std::size_t sweep) const noexcept {
-    RandomKey key = heard.key;
+  [[nodiscard]] Noise noise_of(const DetectorInput& input, std::size_t sweep) const noexcept {
+    RandomKey key = input.key;
     key.purpose = Purpose::receiver_noise;
     key.subray = static_cast<std::uint32_t>(2 * sweep);
-    const double photon = planck_constant * speed_of_light / heard.emitter.laser.wavelength;
+    const double photon = planck_constant * speed_of_light / input.emitter.laser.wavelength;
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 
@@ -199,16 +199,16 @@ class Fmcw {
   static bool by_power(const Peak& a, const Peak& b) noexcept { return a.power > b.power; }
 
   /// Sets the lines of a sweep, for periods by radial velocity [s/m].
-  void set_lines(const Heard& heard, double per_velocity, Workspace& w) const noexcept {
+  void set_lines(const DetectorInput& input, double per_velocity, Workspace& w) const noexcept {
     w.lines.clear();
-    for (std::size_t i = 0; i < heard.reflections.size(); ++i) {
-      const Reflection& r = heard.reflections[i];
+    for (std::size_t i = 0; i < input.reflections.size(); ++i) {
+      const Reflection& r = input.reflections[i];
       if (!(r.power > 0)) continue;
       Line line{.beat = r.range / s_.resolution() + r.velocity * per_velocity, .power = r.power, .from = &r};
       if (!(std::fabs(line.beat) < 0x1p40)) continue;  // else it could not be counted
       if (s_.speckle) {
         const double turns =
-            uniform({heard.key.seed, heard.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
+            uniform({input.key.seed, input.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
         const auto phase = simd::sincos(2 * pi * turns);
         line.cos = phase.cos;
         line.sin = phase.sin;
@@ -244,13 +244,13 @@ class Fmcw {
   };
 
   /// Continuous returns within 9 periods of some frequencies.
-  [[nodiscard]] Haze haze_of(const Heard& heard, double first, double last) const noexcept {
-    std::size_t begin = 0, end = heard.continuous.size();
-    while (begin < end && heard.continuous[begin].end < (first - 9) * s_.resolution()) ++begin;
-    while (end > begin && heard.continuous[end - 1].begin > (last + 9) * s_.resolution()) --end;
-    RandomKey key = heard.key;
+  [[nodiscard]] Haze haze_of(const DetectorInput& input, double first, double last) const noexcept {
+    std::size_t begin = 0, end = input.continuous.size();
+    while (begin < end && input.continuous[begin].end < (first - 9) * s_.resolution()) ++begin;
+    while (end > begin && input.continuous[end - 1].begin > (last + 9) * s_.resolution()) --end;
+    RandomKey key = input.key;
     key.purpose = Purpose::speckle;
-    return {heard.continuous.subspan(begin, end - begin), s_.resolution(), key};
+    return {input.continuous.subspan(begin, end - begin), s_.resolution(), key};
   }
 
   /// Power of the spectrum of a sweep at a frequency [W]. Only lines within 8 periods matter.
@@ -289,14 +289,14 @@ class Fmcw {
 
   /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near
   /// lines.
-  void find_peaks(const Heard& heard, std::span<const Line> lines, const Noise& noise,
+  void find_peaks(const DetectorInput& input, std::span<const Line> lines, const Noise& noise,
                   std::vector<Peak>& peaks) const noexcept {
     peaks.clear();
     for (std::size_t first = 0, last = 0; first < lines.size(); first = last) {
       for (last = first + 1; last < lines.size() && lines[last].beat - lines[last - 1].beat < 2 * reach;) ++last;
       const double begin = std::floor((lines[first].beat - reach) / grid),
                    end = std::ceil((lines[last - 1].beat + reach) / grid);
-      const Haze haze = haze_of(heard, lines[first].beat - reach, lines[last - 1].beat + reach);
+      const Haze haze = haze_of(input, lines[first].beat - reach, lines[last - 1].beat + reach);
       std::array<double, 5> y{};  // the last five powers, about the one that may be a peak
       for (double g = begin; g <= end; ++g) {
         std::shift_left(y.begin(), y.end(), 1);

@@ -37,18 +37,18 @@ namespace PULSECAST_NAMESPACE {
 /// for those next to it.
 template <class R>
 concept WaveformReceiver = std::copyable<R> &&
-    requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard,
+    requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const DetectorInput& input,
              std::span<const Reflection> reflections, double width_tail, typename R::Workspace& w, bool& more) {
   any.prepare(laser, s);
   any.silence();
   { r.workspace() } -> std::same_as<typename R::Workspace>;
-  { r.samples(s, heard, reflections, width_tail, w).begin_section() }
+  { r.samples(s, input, reflections, width_tail, w).begin_section() }
   noexcept->std::same_as<bool>;
-  { r.samples(s, heard, reflections, width_tail, w).power(more) }
+  { r.samples(s, input, reflections, width_tail, w).power(more) }
   noexcept->std::same_as<double>;
   { r.timing_reach(laser) }
   noexcept->std::same_as<double>;
-  { R::listens_always } -> std::convertible_to<bool>;
+  { R::runs_without_reflections } -> std::convertible_to<bool>;
 };
 
 /// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks. Their heights and times
@@ -71,7 +71,7 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
-  static constexpr bool listens_always = Receiver::listens_always;  ///< as of the receiver
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as of the receiver
 
   /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
@@ -137,34 +137,34 @@ class FullWaveform {
   }
 
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
-  /// Noise is drawn from the seed and pulse of `heard.key`.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const Laser& laser = heard.emitter.laser;
+  /// Noise is drawn from the seed and pulse of `input.key`.
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const Laser& laser = input.emitter.laser;
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();
     std::optional<OnlyPeak> only;
     if constexpr (ideal) {
       if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak &&
-          is_apart(heard)) {
+          is_apart(input)) {
         const PulseShape shape(laser.pulse_length, s_.shape_divisor);
-        const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
-        if (group.one() && !heard.continuous.empty())
-          only = only_peak(group, shape, heard.continuous);
+        const SinglePeakGroup group(input.reflections, shape, s_.sample_interval, w.group);
+        if (group.one() && !input.continuous.empty())
+          only = only_peak(group, shape, input.continuous);
         else if (group.one() && detect(group, shape, w.echoes))
           return {w.echoes, {}, 0};
       }
     } else if constexpr (std::same_as<Width, NoWidth>) {
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && is_apart(heard))
-        only = receiver_.only_peak(s_, heard, reach_of(laser));
-      if (only && heard.continuous.empty()) {
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && is_apart(input))
+        only = receiver_.only_peak(s_, input, reach_of(laser));
+      if (only && input.continuous.empty()) {
         keep_only(only, laser, w.echoes);
         return {w.echoes, {}, 0};
       }
     }
     const std::span<const Reflection> reflections =
-        only ? std::span<Reflection>{} : in_order_of_range(heard.reflections, s_.sample_interval);
-    auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
+        only ? std::span<Reflection>{} : in_order_of_range(input.reflections, s_.sample_interval);
+    auto samples = receiver_.samples(s_, input, reflections, tail(), w.receiver);
     const typename SampleWindow<Width>::Search search{s_,
                                                       width_,
                                                       s_.min_separation(laser.pulse_length),
@@ -181,8 +181,8 @@ class FullWaveform {
     }
     if (const Correction* correction = corrections_.find(laser))
       for (Peak& peak : w.peaks) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-    if constexpr (listens_always)  // the samples before and after the gate complete the pulses at its ends
-      std::erase_if(w.peaks, [&](const Peak& peak) { return !heard.gate.contains(0.5 * speed_of_light * peak.mark); });
+    if constexpr (runs_without_reflections)  // the samples before and after the gate complete the pulses at its ends
+      std::erase_if(w.peaks, [&](const Peak& peak) { return !input.gate.contains(0.5 * speed_of_light * peak.mark); });
     keep_echoes(s_, w.peaks);
     const EchoTiming timing =
         samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
@@ -260,9 +260,9 @@ class FullWaveform {
 
   /// True if a maximum of reflections that is farther from those of continuous returns than a pulse is an echo whatever
   /// these are.
-  [[nodiscard]] bool is_apart(const Heard& heard) const noexcept {
-    return heard.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
-                                        std::fmax(s_.window, s_.separation) <= heard.emitter.laser.pulse_length);
+  [[nodiscard]] bool is_apart(const DetectorInput& input) const noexcept {
+    return input.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
+                                        std::fmax(s_.window, s_.separation) <= input.emitter.laser.pulse_length);
   }
 
   /// Samples near the peak of a group, from two before it on.

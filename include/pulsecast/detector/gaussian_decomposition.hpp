@@ -55,9 +55,9 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   }
 
   /// Echoes of the detector inside, by the decomposition of its waveform.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    Detection d = this->inner.detect(heard, w.inner);
-    const auto* wave = waves_.find(heard.emitter.laser);
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    Detection d = this->inner.detect(input, w.inner);
+    const auto* wave = waves_.find(input.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
     const double apart =
         0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
@@ -69,7 +69,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       const std::size_t room = w.echoes.capacity() - w.echoes.size() - (d.echoes.size() - first);
       const Section most{first > 0 ? time_of(d.echoes[first - 1]) + (*wave)->fall() : d.waveform_start,
                          last < d.echoes.size() ? time_of(d.echoes[last]) + (*wave)->rise() : infinity};
-      if (!decompose(d, heard, group, most, **wave, room > 0, w.echoes))
+      if (!decompose(d, input, group, most, **wave, room > 0, w.echoes))
         w.echoes.insert(w.echoes.end(), group.begin(), group.end());
     }
     std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
@@ -114,7 +114,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   };
 
   /// Appends the parts of overlapping echoes, from samples of a section at most; false if there is no fit.
-  bool decompose(const Detection& d, const Heard& heard, std::span<const Echo> group, const Section& most,
+  bool decompose(const Detection& d, const DetectorInput& input, std::span<const Echo> group, const Section& most,
                  const detail::SystemWaveform& wave, bool may_part, std::vector<Echo>& echoes) const noexcept {
     if (group.size() > Sum::most) return false;
     const double interval = this->inner.sample_interval();
@@ -142,7 +142,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     for (std::size_t k = 0; k < sum.count; ++k) {
       const Sum::Part& p = sum.parts[k];
       Echo echo = k < group.size() ? group[k] : Echo{};
-      if (sum.count > group.size()) set_labels(echo, heard, wave, p.arrival);
+      if (sum.count > group.size()) set_labels(echo, input, wave, p.arrival);
       echo.range = 0.5 * speed_of_light * p.arrival;
       echo.amplitude = p.power;
       echo.width = std::sqrt(wave.variance() + p.spread);
@@ -181,10 +181,11 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   }
 
   /// Gives an echo the labels of the reflection that is strongest at a time [s].
-  static void set_labels(Echo& echo, const Heard& heard, const detail::SystemWaveform& wave, double time) noexcept {
+  static void set_labels(Echo& echo, const DetectorInput& input, const detail::SystemWaveform& wave,
+                         double time) noexcept {
     double strongest = 0;
     const auto flat = wave.blend(0);
-    for (const Reflection& r : heard.reflections) {
+    for (const Reflection& r : input.reflections) {
       const double power = r.power * wave.at(time - arrival(r), flat).value;
       if (!(power > strongest)) continue;
       strongest = power;

@@ -68,32 +68,32 @@ class PhaseShift {
   /// Scratch memory for any number of reflections.
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
-  /// The echo of all reflections. Noise is drawn from the seed and pulse of `heard.key`.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+  /// The echo of all reflections. Noise is drawn from the seed and pulse of `input.key`.
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const Reflection* strongest = nullptr;
-    for (const Reflection& r : heard.reflections)
+    for (const Reflection& r : input.reflections)
       if (r.power > 0 && (!strongest || r.power > strongest->power)) strongest = &r;
     const ContinuousReturn* air = nullptr;
     double of_air = 0, solid = 0;
-    for (const ContinuousReturn& r : heard.continuous) {
+    for (const ContinuousReturn& r : input.continuous) {
       of_air += r.power();
       if (!air || r.power() > air->power()) air = &r;
     }
-    for (const Reflection& r : heard.reflections) solid += r.power > 0 ? r.power : 0;
+    for (const Reflection& r : input.reflections) solid += r.power > 0 ? r.power : 0;
     if (!strongest && !air) return {};
-    RandomKey key = heard.key;
+    RandomKey key = input.key;
     key.purpose = Purpose::receiver_noise;
     double range = 0, amplitude = 0;
     for (std::size_t k = 0; k < s_.frequencies.size(); ++k) {
       const double period = 0.5 * speed_of_light / s_.frequencies[k];  // [m]
       double in_phase = 0, quadrature = 0;
-      for (const Reflection& r : heard.reflections) {
+      for (const Reflection& r : input.reflections) {
         const double turns = r.range / period;
         const auto phase = simd::sincos(2 * pi * (turns - std::floor(turns)));
         in_phase += r.power * phase.cos;
         quadrature += r.power * phase.sin;
       }
-      for (const ContinuousReturn& r : heard.continuous) {
+      for (const ContinuousReturn& r : input.continuous) {
         const Phasor phasor = phasor_of(r, period);
         in_phase += phasor.in_phase;
         quadrature += phasor.quadrature;

@@ -78,7 +78,7 @@ class PhotonCounting {
   /// Settings, as validated.
   [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
 
-  static constexpr bool listens_always = true;  ///< true: sunlight and dark counts need no reflection
+  static constexpr bool runs_without_reflections = true;  ///< true: sunlight and dark counts need no reflection
 
   /// Computes the distribution of photons over a laser's pulse, before the first of them.
   void prepare(const Laser& laser) {
@@ -107,21 +107,21 @@ class PhotonCounting {
     return w;
   }
 
-  /// Echoes of the pulses of a laser that was prepared. Photons are drawn from the seed and pulse of `heard.key`.
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const std::vector<double>* quantiles = quantiles_.find(heard.emitter.laser);
+  /// Echoes of the pulses of a laser that was prepared. Photons are drawn from the seed and pulse of `input.key`.
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const std::vector<double>* quantiles = quantiles_.find(input.emitter.laser);
     PULSECAST_ASSERT(quantiles != nullptr);
     w.counts.clear();
     w.echoes.clear();
-    Draws draws{heard.key};
+    Draws draws{input.key};
     for (std::size_t shot = 0; shot < s_.shots; ++shot) {
       w.shot.clear();
-      draw_photoelectrons(heard, *quantiles, draws, w.shot);
-      keep_detections(heard.gate, draws, w);
+      draw_photoelectrons(input, *quantiles, draws, w.shot);
+      keep_detections(input.gate, draws, w);
     }
     const auto earlier = [](const Count& a, const Count& b) { return a.time < b.time; };
     std::sort(w.counts.begin(), w.counts.end(), earlier);
-    find_echoes(heard, w);
+    find_echoes(input, w);
     number_echoes(w.echoes);
     return {w.echoes, {}, 0};
   }
@@ -170,9 +170,9 @@ class PhotonCounting {
   }
 
   /// Draws the photoelectrons of a shot, in order of time.
-  void draw_photoelectrons(const Heard& heard, const std::vector<double>& quantiles, Draws& draws,
+  void draw_photoelectrons(const DetectorInput& input, const std::vector<double>& quantiles, Draws& draws,
                            std::vector<Count>& shot) const noexcept {
-    const Laser& laser = heard.emitter.laser;
+    const Laser& laser = input.emitter.laser;
     const double per_watt = laser.pulse_length / energy_per_count(laser);  // of a reflection's power
     double last = 0;
     const auto enter = [&](double time, std::size_t label) {
@@ -184,8 +184,8 @@ class PhotonCounting {
       const auto q = std::min(static_cast<std::size_t>(place), quantile_count - 1);
       return quantiles[q] + (place - static_cast<double>(q)) * (quantiles[q + 1] - quantiles[q]);
     };
-    for (std::size_t r = 0; r < heard.reflections.size(); ++r) {
-      const double mean = heard.reflections[r].power * per_watt, at = arrival(heard.reflections[r]);
+    for (std::size_t r = 0; r < input.reflections.size(); ++r) {
+      const double mean = input.reflections[r].power * per_watt, at = arrival(input.reflections[r]);
       last = std::max(last, at + quantiles.back());
       for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential()) {
         enter(at + spread(), r);
@@ -196,9 +196,9 @@ class PhotonCounting {
       enter(at + spread(), label);
       return shot.size() < counts_max;
     };
-    draw_continuous(heard, per_watt, enter_continuous, draws);
+    draw_continuous(input, per_watt, enter_continuous, draws);
     const double rate = s_.dark_rate + s_.background / energy_per_count(laser);
-    const double begin = 2 * heard.gate.near / speed_of_light, end = 2 * heard.gate.far / speed_of_light;
+    const double begin = 2 * input.gate.near / speed_of_light, end = 2 * input.gate.far / speed_of_light;
     if (rate > 0)
       for (double t = begin + draws.exponential() / rate;
            t < (std::isfinite(end) ? end : last) && shot.size() < counts_max; t += draws.exponential() / rate)
@@ -209,15 +209,15 @@ class PhotonCounting {
   /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back:
   /// one Poisson process along all of them, whose place in a return is that of the quantile of its density.
   template <class Enter>
-  static void draw_continuous(const Heard& heard, double per_watt, const Enter& enter, Draws& draws) noexcept {
-    if (heard.continuous.empty()) return;
+  static void draw_continuous(const DetectorInput& input, double per_watt, const Enter& enter, Draws& draws) noexcept {
+    if (input.continuous.empty()) return;
     double next = draws.exponential();
-    for (std::size_t k = 0; k < heard.continuous.size(); ++k) {
-      const ContinuousReturn& r = heard.continuous[k];
+    for (std::size_t k = 0; k < input.continuous.size(); ++k) {
+      const ContinuousReturn& r = input.continuous[k];
       const double mean = r.power() * per_watt, a = r.at_begin, b = r.at_end;
       for (; next < mean; next += draws.exponential()) {
         const double share = next / mean, place = share * (a + b) / (a + std::sqrt(a * a + share * (b * b - a * a)));
-        if (!enter(2 / speed_of_light * (r.begin + place * (r.end - r.begin)), heard.reflections.size() + k)) return;
+        if (!enter(2 / speed_of_light * (r.begin + place * (r.end - r.begin)), input.reflections.size() + k)) return;
       }
       next -= mean;
     }
@@ -246,9 +246,9 @@ class PhotonCounting {
 
   /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least as many as the
   /// one behind.
-  void find_echoes(const Heard& heard, Workspace& w) const noexcept {
+  void find_echoes(const DetectorInput& input, Workspace& w) const noexcept {
     const double watts =
-        energy_per_count(heard.emitter.laser) / (heard.emitter.laser.pulse_length * static_cast<double>(s_.shots));
+        energy_per_count(input.emitter.laser) / (input.emitter.laser.pulse_length * static_cast<double>(s_.shots));
     struct Bin {
       double number = -1e300;
       std::size_t begin = 0, end = 0;
@@ -261,7 +261,7 @@ class PhotonCounting {
     const auto finish = [&](const Bin& behind) {
       const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
       if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right) return;
-      keep_return(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts),
+      keep_return(echo_of(input, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts),
                   s_.returns_kept, s_.returns_max, w.echoes);
     };
     for (std::size_t i = 0; i <= w.counts.size(); ++i) {
@@ -283,24 +283,24 @@ class PhotonCounting {
 
   /// Echo of some detections: their mean time, and the labels of the first reflection among them, or of the first
   /// continuous return, if more of them are of such.
-  [[nodiscard]] static Echo echo_of(const Heard& heard, std::span<const Count> counts, double watts) noexcept {
+  [[nodiscard]] static Echo echo_of(const DetectorInput& input, std::span<const Count> counts, double watts) noexcept {
     double beyond = 0;
     std::ptrdiff_t continuous = 0;  // more detections of continuous returns than of reflections
     const Count *solid = nullptr, *air = nullptr;
     for (const Count& count : counts) {
       beyond += count.time - counts.front().time;
       if (count.label == none) continue;
-      const bool of_air = count.label >= heard.reflections.size();
+      const bool of_air = count.label >= input.reflections.size();
       continuous += of_air ? 1 : -1;
       const Count*& first = of_air ? air : solid;
       if (!first) first = &count;
     }
     Reflection source;
     if (continuous > 0) {
-      const ContinuousReturn& r = heard.continuous[air->label - heard.reflections.size()];
+      const ContinuousReturn& r = input.continuous[air->label - input.reflections.size()];
       source = {.object = r.object, .classification = r.classification, .kind = r.kind};
     } else if (solid) {
-      source = heard.reflections[solid->label];
+      source = input.reflections[solid->label];
     }
     const double number = static_cast<double>(counts.size());
     return echo_from(source, 0.5 * speed_of_light * (counts.front().time + beyond / number), number * watts);

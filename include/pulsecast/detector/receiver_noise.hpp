@@ -39,7 +39,7 @@ struct ReceiverNoise {
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
   }
 
-  static constexpr bool listens_always = false;  ///< false: it is asked for pulses with reflections only
+  static constexpr bool runs_without_reflections = false;  ///< false: it is asked for pulses with reflections only
   /// Scratch memory: none.
   struct Workspace {};
   [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
@@ -51,11 +51,11 @@ struct ReceiverNoise {
   /// As the concept WaveformReceiver requires: a maximum is that of the samples about it.
   [[nodiscard]] double timing_reach(const Laser&) const noexcept { return 0; }
   /// As the concept WaveformReceiver requires.
-  [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const Heard& heard,
+  [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const DetectorInput& input,
                                      std::span<const Reflection> reflections, double width_tail,
                                      Workspace&) const noexcept {
-    const double of_sample = none() ? 0 : deviation_of_sample(heard.emitter.laser.wavelength, s.sample_interval);
-    return {of_sample, background, s, heard, reflections, width_tail};
+    const double of_sample = none() ? 0 : deviation_of_sample(input.emitter.laser.wavelength, s.sample_interval);
+    return {of_sample, background, s, input, reflections, width_tail};
   }
 };
 

@@ -40,8 +40,8 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
 
   /// Selected echoes of the detector inside.
   template <class Workspace>
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    Detection d = this->inner.detect(heard, w);
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    Detection d = this->inner.detect(input, w);
     const std::size_t n = d.echoes.size();
     if (n < 2) return d;
     switch (mode_) {
@@ -125,8 +125,8 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
 
   /// Echoes of the detector inside, without those in blind zones.
   template <class Workspace>
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    Detection d = this->inner.detect(heard, w);
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    Detection d = this->inner.detect(input, w);
     const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(),
                                      [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
     d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));

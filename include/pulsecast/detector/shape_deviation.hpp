@@ -39,11 +39,11 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
 
   /// Echoes of the detector inside, with deviations.
   template <class Workspace>
-  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const Detection d = this->inner.detect(heard, w);
-    if (const std::vector<double>* shape = shapes_.find(heard.emitter.laser))
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const Detection d = this->inner.detect(input, w);
+    if (const std::vector<double>* shape = shapes_.find(input.emitter.laser))
       for (Echo& echo : d.echoes)
-        echo.shape_deviation = static_cast<float>(deviation(d, echo, heard.emitter.laser.pulse_length, *shape));
+        echo.shape_deviation = static_cast<float>(deviation(d, echo, input.emitter.laser.pulse_length, *shape));
     return d;
   }
 

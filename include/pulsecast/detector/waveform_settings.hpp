@@ -63,9 +63,9 @@ struct WaveformSettings {
   /// `most`. @throws SettingError
   void require_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
-    throw SettingError("WaveformSettings::sample_interval", sample_interval, "s",
-                       "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) +
-                           " for this pulse length");
+    throw SettingError(
+        "WaveformSettings::sample_interval", sample_interval, "s",
+        "from " + text::to_text(pulse_length / most) + " to " + text::to_text(pulse_length) + " for this pulse length");
   }
 
   /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length. A

@@ -73,8 +73,8 @@ struct RayBundle : BundleOrigin {
   }
   /// Range that ray j has to be beyond to count [m].
   [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
-  [[nodiscard]] double least_along(int k) const noexcept { return least[k]; }  ///< component k of `least`
-  [[nodiscard]] double most_along(int k) const noexcept { return most[k]; }    ///< component k of `most`
+  [[nodiscard]] double direction_min(int k) const noexcept { return least[k]; }  ///< component k of `least`
+  [[nodiscard]] double direction_max(int k) const noexcept { return most[k]; }   ///< component k of `most`
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {

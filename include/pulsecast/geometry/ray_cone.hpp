@@ -21,10 +21,10 @@ struct RayCone {
   Tick tick{};                     ///< time, for parts that move
 
   static constexpr double near = 0;  ///< as in `BundleOrigin` [m]
-  [[nodiscard]] double least_along(int k) const noexcept {
+  [[nodiscard]] double direction_min(int k) const noexcept {
     return direction[k] - spread;
   }  ///< minimum of component k of the directions
-  [[nodiscard]] double most_along(int k) const noexcept {
+  [[nodiscard]] double direction_max(int k) const noexcept {
     return direction[k] + spread;
   }  ///< maximum of component k of the directions
 

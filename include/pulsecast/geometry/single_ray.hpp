@@ -21,7 +21,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the far end; there is no
 /// wavelength.
-struct BundleOfOne {
+struct SingleRayPacket {
   static constexpr std::size_t capacity = 1, size = 1;  ///< as in `RayBundle`
 
   Vec3 origin{};                   ///< origin [m]
@@ -33,9 +33,9 @@ struct BundleOfOne {
   PulseIndex pulse = 0;            ///< as in `BundleOrigin`
   std::uint32_t first_subray = 0;  ///< as in `BundleOrigin`
 
-  BundleOfOne() = default;
+  SingleRayPacket() = default;
   /// A ray of the world, of a unit direction.
-  explicit BundleOfOne(const Ray& ray) noexcept
+  explicit SingleRayPacket(const Ray& ray) noexcept
       : origin(ray.origin),
         toward(ray.direction),
         near(ray.near),
@@ -48,16 +48,16 @@ struct BundleOfOne {
 
   [[nodiscard]] const Vec3& direction(std::size_t) const noexcept { return toward; }  ///< direction of the ray
   /// Component k of the direction; infinite for NaN, as in `RayBundle`.
-  [[nodiscard]] double least_along(int k) const noexcept { return std::isnan(toward[k]) ? infinity : toward[k]; }
+  [[nodiscard]] double direction_min(int k) const noexcept { return std::isnan(toward[k]) ? infinity : toward[k]; }
   /// Component k of the direction; minus infinity for NaN, as in `RayBundle`.
-  [[nodiscard]] double most_along(int k) const noexcept { return std::isnan(toward[k]) ? -infinity : toward[k]; }
+  [[nodiscard]] double direction_max(int k) const noexcept { return std::isnan(toward[k]) ? -infinity : toward[k]; }
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
 /// Bundle of a single ray up to a range [m], for shapes that take nothing else.
-[[nodiscard]] inline RayBundle bundle_of(const BundleOfOne& ray, double far) noexcept {
+[[nodiscard]] inline RayBundle bundle_of(const SingleRayPacket& ray, double far) noexcept {
   RayBundle rays =
       bundle_of(Ray{ray.origin, ray.toward, ray.near, far, ray.tick, ray.seed, ray.pulse, ray.first_subray});
   rays.direction_length = ray.direction_length;
@@ -92,7 +92,7 @@ struct ClosestHit {
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return range; }  ///< as in `ClosestHits`
   /// Largest range at which the ray can still find a closer hit [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return range > -infinity ? range : -infinity;
   }
@@ -116,7 +116,7 @@ struct AnyHit {
   }
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }  ///< as in `ClosestHits`
   /// Largest range at which a hit still counts [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return far > -infinity ? far : -infinity;
   }
@@ -124,7 +124,7 @@ struct AnyHit {
 
 /// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts
 /// once. Once it is full, `continue_after` makes room for those that come next. In 600 bytes; allocates nothing.
-class HitBuffer {
+class AllHits {
  public:
   static constexpr std::size_t capacity = 32;  ///< greatest number of hits held
 
@@ -143,7 +143,7 @@ class HitBuffer {
   std::uint64_t part = 0;  ///< part under test, in the upper half
 
   /// No hits so far between two ranges [m].
-  HitBuffer(double near, double far) noexcept : near_(near), limit_(far), far_(far), last_{near, ClosestHits::none} {}
+  AllHits(double near, double far) noexcept : near_(near), limit_(far), far_(far), last_{near, ClosestHits::none} {}
 
   /// Hits so far, in order.
   [[nodiscard]] std::span<const Entry> hits() const noexcept { return {hits_.data(), size_}; }
@@ -175,7 +175,7 @@ class HitBuffer {
 
   /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
   template <class Closest>
-  void offer_chain(BundleOfOne ray, const Closest& closest) noexcept {
+  void offer_chain(SingleRayPacket ray, const Closest& closest) noexcept {
     for (;;) {
       ClosestHit next(limit_);
       next.part = part;
@@ -188,7 +188,7 @@ class HitBuffer {
 
   /// Offers the closest hit alone, of a shape whose hits are drawn at random from the ray's beginning on.
   template <class Closest>
-  void offer_first(BundleOfOne ray, const Closest& closest) noexcept {
+  void offer_first(SingleRayPacket ray, const Closest& closest) noexcept {
     ray.near = near_;
     ClosestHit first(limit_);
     first.part = part;
@@ -198,7 +198,7 @@ class HitBuffer {
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
   /// Largest range at which a hit is still held [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return limit_ > -infinity ? limit_ : -infinity;
   }

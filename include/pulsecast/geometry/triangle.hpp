@@ -90,8 +90,8 @@ struct SolidEverywhere {
   bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
 };
 
-/// Intersects the triangles of these primitives with every ray of a bundle, or with a `BundleOfOne`: the deciding test,
-/// always in double precision.
+/// Intersects the triangles of these primitives with every ray of a bundle, or with a `SingleRayPacket`: the deciding
+/// test, always in double precision.
 ///
 /// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on
 /// the bundle alone, so a ray costs three dot products, and none where the whole bundle passes a plane on one side. If
@@ -138,14 +138,14 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
   // more
   simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
-    return simd::max(p.x * rays.least_along(0), p.x * rays.most_along(0)) +
-           simd::max(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
-           simd::max(p.z * rays.least_along(2), p.z * rays.most_along(2));
+    return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
+           simd::max(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
+           simd::max(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
   };
   const auto least = [&](const Planes& p) noexcept {
-    return simd::min(p.x * rays.least_along(0), p.x * rays.most_along(0)) +
-           simd::min(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
-           simd::min(p.z * rays.least_along(2), p.z * rays.most_along(2));
+    return simd::min(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
+           simd::min(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
+           simd::min(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
   };
   [[maybe_unused]] simd::Mask between_edges;  // of the only ray
   if constexpr (single) {

@@ -49,8 +49,8 @@ struct SceneBuildOptions {
 
 /// Raster of heights in the world.
 struct PlacedRaster {
-  Raster raster;           ///< heights, in the frame of the part
-  Similarity placement{};  ///< from there to the world
+  Raster raster;          ///< heights, in the frame of the part
+  Placement placement{};  ///< from there to the world
 };
 
 /// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the
@@ -81,7 +81,7 @@ class SceneBuilder {
   struct Loaded {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
-    Similarity placement{};
+    Placement placement{};
     std::string name{};  ///< of the node
   };
   /// Raster of a file, and its colour table, if any.
@@ -115,7 +115,7 @@ class SceneBuilder {
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
            std::vector<SurveyPart>& all);
-  static Similarity placement_of(const PartSettings& part, const TransformSettings& transform);
+  static Placement placement_of(const PartSettings& part, const TransformSettings& transform);
   void tell_shared_objects(const std::vector<SurveyPart>& all);
   static Box box_of(const SurveyPart& part);
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);

@@ -29,12 +29,12 @@
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Receiver settings that trade accuracy for speed, for all channels. Default: those of the survey.
-struct Receiving {
+struct ReceiverOverrides {
   std::optional<int> rings{};        ///< rings of subrays: `beamSampleQuality`
   std::optional<double> bin_size{};  ///< `binSize_ns` [s]
   bool ideal = false;                ///< no noise, no echo widths, no waveforms
 
-  bool operator==(const Receiving&) const = default;
+  bool operator==(const ReceiverOverrides&) const = default;
 };
 
 /// Consecutive slots of a sample. Slots before `from` are simulated to warm the caches, but do not count.
@@ -152,7 +152,7 @@ class Simulation {
   virtual RunSummary run(const RunOptions& options, const Sink& sink) const = 0;
 
   /// Replaces the receivers. Scene and legs remain.
-  virtual void receive(const Receiving& how) = 0;
+  virtual void receive(const ReceiverOverrides& how) = 0;
   /// Simulates blocks, in any order. Equal blocks give equal samples, except for the time, on any number of threads.
   [[nodiscard]] virtual std::vector<Sample> sample(std::span<const SampleBlock> blocks, unsigned threads) const = 0;
   /// Counts the echoes of single slots.

@@ -105,8 +105,8 @@ class GeoJsonWriter {
       : settings_(validated(settings)), file_(std::move(path)) {
     file_.write(std::string_view("{\"type\":\"FeatureCollection\","));
     if (settings_.epsg != 0)
-      file_.write(pulsecast::detail::joined({R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)",
-                                             std::to_string(settings_.epsg), "\"}},"}));
+      file_.write(text::joined({R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)",
+                                std::to_string(settings_.epsg), "\"}},"}));
     file_.write(std::string_view("\"features\":["));
   }
 
@@ -175,7 +175,7 @@ class GeoJsonWriter {
     for (const double value : millimetres) row.add(value / per_metre, 3);
     std::string_view text = row.end();
     text.remove_suffix(1);  // the line end
-    return pulsecast::detail::joined({"[", text, "]"});
+    return text::joined({"[", text, "]"});
   }
 
   void follow(const Shot& shot, double time) {
@@ -215,11 +215,10 @@ class GeoJsonWriter {
       ring += position({corners[i].x, corners[i].y}) + ",";
     }
     if (!std::isfinite(twice)) return;
-    const std::string area = pulsecast::detail::to_text(twice / (2 * per_metre * per_metre));
-    feature("footprint", done.time,
-            pulsecast::detail::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
-            pulsecast::detail::joined(
-                {R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
+    const std::string area = text::to_text(twice / (2 * per_metre * per_metre));
+    feature(
+        "footprint", done.time, text::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
+        text::joined({R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
   }
 
   void end_leg() {
@@ -227,24 +226,21 @@ class GeoJsonWriter {
     end_footprint();
     if (leg_->last) leg_->add(*leg_->last);
     const bool moves = leg_->line_points > 1;
-    const std::string geometry =
-        pulsecast::detail::joined({R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)",
-                                   moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
+    const std::string geometry = text::joined({R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)",
+                                               moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
     if (leg_->last)
-      feature("trajectory", leg_->time,
-              pulsecast::detail::joined(
-                  {R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
-              geometry);
+      feature(
+          "trajectory", leg_->time,
+          text::joined({R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
+          geometry);
     leg_.reset();
   }
 
   /// Writes a feature of the present leg.
   void feature(std::string_view kind, const Times& time, std::string_view counts, std::string_view geometry) {
-    using pulsecast::detail::to_text;
-    file_.write(pulsecast::detail::joined(
-        {std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind, R"(","leg":)",
-         std::to_string(leg_->number), R"(,"start":)", to_text(time.start), R"(,"end":)", to_text(time.end), ",",
-         counts, R"(},"geometry":)", geometry, "}"}));
+    file_.write(text::joined({std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind,
+                              R"(","leg":)", std::to_string(leg_->number), R"(,"start":)", text::to_text(time.start),
+                              R"(,"end":)", text::to_text(time.end), ",", counts, R"(},"geometry":)", geometry, "}"}));
   }
 
   GeoJsonSettings settings_;

@@ -88,7 +88,7 @@ class InputFile {
     ++line_;
     line_is_open_ = taken.back() != '\n';
     if (line_is_open_ && taken.size() == block_size)
-      fail_at_line(pulsecast::detail::joined({"is longer than ", std::to_string(block_size), " bytes"}));
+      fail_at_line(text::joined({"is longer than ", std::to_string(block_size), " bytes"}));
     return line_ == 1 ? text::without_byte_order_mark(line) : line;
   }
 
@@ -108,9 +108,8 @@ class InputFile {
   }
   /// `column` is counted from 0 here, from 1 in the message.
   [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {
-    throw FileError(
-        path_, pulsecast::detail::joined({"line ", std::to_string(line_), ", column ", std::to_string(column + 1)}),
-        problem);
+    throw FileError(path_, text::joined({"line ", std::to_string(line_), ", column ", std::to_string(column + 1)}),
+                    problem);
   }
   /// Throws a `FileError` about a byte, from 0.
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {

@@ -99,9 +99,8 @@ class StoredZip {
     if (error_) std::rethrow_exception(error_);
     const char* const reason = archive_error_string(archive_.get());
     file_.discard();
-    throw FileError(
-        file_.path().string(), "",
-        pulsecast::detail::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
+    throw FileError(file_.path().string(), "",
+                    text::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
   }
 
   OutputFile& file_;
@@ -114,9 +113,8 @@ class StoredZip {
 /// bytes in all.
 [[nodiscard]] inline std::string npy_header(FieldType type, std::uint64_t count) {
   constexpr std::array<std::string_view, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
-  std::string text =
-      pulsecast::detail::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
-                                 "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
+  std::string text = text::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
+                                   "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
   constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
   text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
   text.back() = '\n';

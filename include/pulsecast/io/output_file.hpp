@@ -173,7 +173,7 @@ class OutputFile {
     }
     if (failed)
       fail("cannot be completed", failed.value(),
-           pulsecast::detail::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
+           text::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
     file_.close();  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
@@ -238,15 +238,13 @@ class OutputFile {
       }
       file_.close();  // without its name, which is not ours
       if (!is_alone)
-        throw FileError(path_.string(), "",
-                        pulsecast::detail::joined({"is already being written: ", name, " is locked"}));
+        throw FileError(path_.string(), "", text::joined({"is already being written: ", name, " is locked"}));
     }
-    fail("cannot be created", EEXIST, pulsecast::detail::joined({"no other file ", name}));
+    fail("cannot be created", EEXIST, text::joined({"no other file ", name}));
   }
 
   [[nodiscard]] FileError error(std::string_view what, int number, std::string_view expected) const {
-    return {path_.string(), "",
-            pulsecast::detail::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
+    return {path_.string(), "", text::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
   }
   [[noreturn]] void fail(std::string_view what, int number, std::string_view expected) {
     discard();
@@ -267,7 +265,7 @@ class OutputFile {
     if (written < 0 && errno == EINTR) return 0;
     if (written <= 0)
       fail("cannot be written", written < 0 ? errno : 0,
-           pulsecast::detail::joined({"room for ", std::to_string(bytes.size()), " more bytes"}));
+           text::joined({"room for ", std::to_string(bytes.size()), " more bytes"}));
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     return static_cast<std::size_t>(written);
   }

@@ -165,10 +165,10 @@ class PcdWriter {
       counts.append(" 1");
     }
     const detail::CountText points(count_);
-    return pulsecast::detail::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks,
-                                      "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT",
-                                      counts, "\nWIDTH ", points.digits, "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ",
-                                      points.digits, "\nDATA ", encodings[static_cast<std::size_t>(encoding_)], "\n"});
+    return text::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks,
+                         "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT", counts,
+                         "\nWIDTH ", points.digits, "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ", points.digits,
+                         "\nDATA ", encodings[static_cast<std::size_t>(encoding_)], "\n"});
   }
 
   detail::PackedPoints points_;

@@ -215,8 +215,8 @@ class ImageWriter {
 
   /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`: some million places, between
   /// pixels too; none beside a pixel of shade 0. Without points it frames the picture.
-  /// @throws SettingError as `Raster::validate` and `Similarity::validate`, or for another number of shades
-  void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Similarity& placement = {}) {
+  /// @throws SettingError as `Raster::validate` and `Placement::validate`, or for another number of shades
+  void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Placement& placement = {}) {
     raster.validate();
     placement.validate();
     const auto pixels = static_cast<double>(raster.pixels());
@@ -263,7 +263,7 @@ class ImageWriter {
   /// Adds a place of a raster, in columns and rows from its first pixel.
   template <class Heights>
   void add_ground(const pulsecast::detail::RasterGrid& grid, const Heights& heights,
-                  std::span<const std::uint8_t> shades, const Similarity& placement, double column, double row) {
+                  std::span<const std::uint8_t> shades, const Placement& placement, double column, double row) {
     const auto c = std::min(static_cast<std::uint32_t>(column), grid.columns - 2),
                r = std::min(static_cast<std::uint32_t>(row), grid.rows - 2);
     double height = 0, shade = 0;

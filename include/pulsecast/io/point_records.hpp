@@ -232,7 +232,7 @@ class PointEncoder {
     value(values, elevation) = std::atan2(at.z, std::hypot(at.x, at.y));
   }
 
-  void set_surface(const std::optional<SurfacePoint>& surface, const Pose<frame::World, frame::Instrument>& frame,
+  void set_surface(const std::optional<SurfaceInteraction>& surface, const Pose<frame::World, frame::Instrument>& frame,
                    detail::PointValues& values) const noexcept {
     using enum PointQuantity;
     const double unknown = std::numeric_limits<double>::infinity();

@@ -30,23 +30,21 @@ namespace PULSECAST_NAMESPACE::io {
 /// `vert_offset_correction` is the manual's height. Source: ros-drivers/velodyne, velodyne_pointcloud, params/. @throws
 /// SettingError for another sensor @throws FileError
 inline void write_velodyne_calibration(const std::filesystem::path& path, const SpinningSensor& sensor) {
-  using pulsecast::detail::joined;
-  using pulsecast::detail::to_text;
   sensor.validate();
   detail::VelodyneFormat::validate(sensor);
   OutputFile file(path);
   file.write("lasers:\n");
   for (std::size_t k = 0; k < sensor.lasers.size(); ++k) {
     const SensorLaser& laser = sensor.lasers[k];
-    file.write(joined(
+    file.write(text::joined(
         {"- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0, focal_slope: "
          "0.0,"
          " horiz_offset_correction: 0.0, laser_id: ",
-         std::to_string(k), ", rot_correction: ", to_text(0 - laser.azimuth),
-         ", vert_correction: ", to_text(laser.elevation), ", vert_offset_correction: ", to_text(laser.height), "}\n"}));
+         std::to_string(k), ", rot_correction: ", text::to_text(0 - laser.azimuth), ", vert_correction: ",
+         text::to_text(laser.elevation), ", vert_offset_correction: ", text::to_text(laser.height), "}\n"}));
   }
-  file.write(joined({"num_lasers: ", std::to_string(sensor.lasers.size()),
-                     "\ndistance_resolution: ", to_text(detail::VelodyneFormat::distance_resolution(sensor)), "\n"}));
+  file.write(text::joined({"num_lasers: ", std::to_string(sensor.lasers.size()), "\ndistance_resolution: ",
+                           text::to_text(detail::VelodyneFormat::distance_resolution(sensor)), "\n"}));
   file.commit();
 }
 
@@ -91,7 +89,7 @@ namespace detail {
 [[nodiscard]] inline std::string json_list(const std::vector<double>& values) {
   std::string list;
   for (const double value : values)
-    list += (list.empty() ? "[" : ", ") + pulsecast::detail::to_text(std::nearbyint(value * 1e9) / 1e9);
+    list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
   return list + "]";
 }
 
@@ -116,7 +114,6 @@ namespace detail {
 /// @throws FileError
 inline void write_ouster_metadata(const std::filesystem::path& path, const SpinningSensor& sensor,
                                   const PacketSettings& settings = {}) {
-  using pulsecast::detail::joined;
   sensor.validate();
   detail::OusterFormat::validate(sensor);
   const std::size_t columns = detail::OusterFormat::frame_columns(sensor);
@@ -131,21 +128,20 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const std::string width = std::to_string(columns);
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
-  file.write(joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
-                     pulsecast::detail::to_text(sensor.turns_per_second),
-                     "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
-  file.write(joined(
+  file.write(text::joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
+                           text::to_text(sensor.turns_per_second),
+                           "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
+  file.write(text::joined(
       {"  \"beam_altitude_angles\": ", detail::json_list(altitudes),
        ",\n  \"beam_azimuth_angles\": ", detail::json_list(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ",
-       pulsecast::detail::to_text(std::nearbyint(1e12 * sensor.exit_radius) / 1e9),
-       ",\n  \"lidar_to_sensor_transform\": ",
+       text::to_text(std::nearbyint(1e12 * sensor.exit_radius) / 1e9), ",\n  \"lidar_to_sensor_transform\": ",
        detail::json_list({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * sensor.lasers.front().height, 0, 0, 0, 1}), ",\n"}));
-  file.write(joined({"  \"data_format\": {\n    \"columns_per_frame\": ", width,
-                     ",\n    \"columns_per_packet\": ", std::to_string(detail::OusterFormat::packet_columns),
-                     ",\n    \"pixels_per_column\": ", std::to_string(detail::OusterFormat::lasers),
-                     ",\n    \"column_window\": [0, ", std::to_string(columns - 1),
-                     "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts), ",\n    \"udp_profile_lidar\": \"",
-                     is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"}));
+  file.write(text::joined(
+      {"  \"data_format\": {\n    \"columns_per_frame\": ", width,
+       ",\n    \"columns_per_packet\": ", std::to_string(detail::OusterFormat::packet_columns),
+       ",\n    \"pixels_per_column\": ", std::to_string(detail::OusterFormat::lasers), ",\n    \"column_window\": [0, ",
+       std::to_string(columns - 1), "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts),
+       ",\n    \"udp_profile_lidar\": \"", is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"}));
   file.commit();
 }
 

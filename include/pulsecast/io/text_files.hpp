@@ -141,7 +141,7 @@ class SubrayTextWriter {
   void operator()(const EchoBatch& batch) {
     for (std::size_t i = 0; i < batch.shots.size(); ++i) {
       std::size_t subray = 0;
-      for (const SubrayHit& hit : batch.subrays_of(i)) {
+      for (const SubrayRecord& hit : batch.subrays_of(i)) {
         if (hit.met()) write(batch.shots[i], subray, hit);
         ++subray;
       }
@@ -152,7 +152,7 @@ class SubrayTextWriter {
   void close() { text_.close(); }
 
  private:
-  void write(const Shot& shot, std::size_t subray, const SubrayHit& hit) {
+  void write(const Shot& shot, std::size_t subray, const SubrayRecord& hit) {
     constexpr double nano = 1e9;  // per unit
     text_.wholes(shot.index, subray)
         .vector("the position of a hit", hit.point, 4)

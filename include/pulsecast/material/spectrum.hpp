@@ -34,7 +34,7 @@ class Spectrum {
       require_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
       if (i > 0 && !(samples[i].wavelength > samples[i - 1].wavelength))
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
-                           "greater than that of the previous sample, " + detail::to_text(samples[i - 1].wavelength));
+                           "greater than that of the previous sample, " + text::to_text(samples[i - 1].wavelength));
     }
     const SharedBuffer<SpectralSample> copy(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) copy[i] = samples[i];

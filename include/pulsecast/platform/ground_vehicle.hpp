@@ -229,7 +229,7 @@ class FootingFinder {
   static constexpr double tilt_max = 1.7;
 
   /// Lengths for messages, rounded to the centimetre.
-  [[nodiscard]] static std::string brief(double x) { return to_text(std::round(x * 100) / 100); }
+  [[nodiscard]] static std::string brief(double x) { return text::to_text(std::round(x * 100) / 100); }
 
   [[nodiscard]] std::optional<double> height(const Vec2& place, double near) const {
     std::optional<double> h;
@@ -249,7 +249,7 @@ class FootingFinder {
     const std::optional<double> rolled = roll(place, {std::sin(heading), std::cos(heading)}, near, below);
     if (!rolled && !s_.height_without_ground)
       throw SettingError("plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], x", place.x, "m",
-                         "over ground; there is none at y = " + to_text(place.y) + " m");
+                         "over ground; there is none at y = " + text::to_text(place.y) + " m");
     return rolled ? *rolled : *s_.height_without_ground;
   }
 

@@ -45,7 +45,7 @@ class Waypoints {
       require_within(field + ".time", p.time, -1e15, 1e15, "s");  // limit of a `Tick`
       if (i > 0 && p.time < points_[i - 1].time)
         throw SettingError(field + ".time", p.time, "s",
-                           "at least that of the previous waypoint, " + detail::to_text(points_[i - 1].time));
+                           "at least that of the previous waypoint, " + text::to_text(points_[i - 1].time));
       require_finite(field + ".position (length)", length(p.position), "m");
       require_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);

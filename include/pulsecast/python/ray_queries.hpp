@@ -39,15 +39,15 @@ namespace PULSECAST_NAMESPACE::python {
 /// Hit of a ray as a row of a NumPy array. A miss has an infinite range, and -1 as part and primitive.
 struct HitRow {
   double range = std::numeric_limits<double>::infinity();          ///< as in `RayHit` [m]
-  double normal[3] = {};                                           ///< as in `SurfacePoint`; zero for a miss
-  double weights[3] = {not_a_number, not_a_number, not_a_number};  ///< as in `SurfacePoint`; NaN without
-  double texture[2] = {not_a_number, not_a_number};                ///< as in `SurfacePoint`; NaN without
-  double velocity[3] = {};                                         ///< as in `SurfacePoint` [m/s]
+  double normal[3] = {};                                           ///< as in `SurfaceInteraction`; zero for a miss
+  double weights[3] = {not_a_number, not_a_number, not_a_number};  ///< as in `SurfaceInteraction`; NaN without
+  double texture[2] = {not_a_number, not_a_number};                ///< as in `SurfaceInteraction`; NaN without
+  double velocity[3] = {};                                         ///< as in `SurfaceInteraction` [m/s]
   std::int64_t ray = 0;                                            ///< number of the ray, from 0
   std::int64_t primitive = -1;                                     ///< as in `RayHit`
   std::int32_t part = -1;                                          ///< as in `RayHit`
-  std::uint32_t object = 0;                                        ///< as in `SurfacePoint`
-  std::uint16_t classification = 0;                                ///< as in `SurfacePoint`
+  std::uint32_t object = 0;                                        ///< as in `SurfaceInteraction`
+  std::uint16_t classification = 0;                                ///< as in `SurfaceInteraction`
   std::uint8_t front = 0;      ///< 1 if the shape's own normal is towards the ray's origin
   std::uint8_t spare[5] = {};  ///< zeros outside the array
 
@@ -122,7 +122,7 @@ class RayTable {
 /// Row of a hit, with its surface.
 template <class World>
 [[nodiscard]] HitRow hit_row(const World& scene, const RayHit& hit, const Ray& ray) {
-  const SurfacePoint at = scene.surface(hit, ray);
+  const SurfaceInteraction at = scene.surface(hit, ray);
   HitRow row;
   row.range = hit.range;
   for (int k = 0; k < 3; ++k) {

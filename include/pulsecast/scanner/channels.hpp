@@ -107,7 +107,7 @@ class Channels {
       if (!p) return;
       if (last && p->tick < *last)
         throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(),
-                           "s", "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
+                           "s", "at least that of the previous channel, " + text::to_text(last->seconds()) + " s");
       last = p->tick;
       if (!fired[i % n]) --waiting;
       fired[i % n] = true;

@@ -149,7 +149,7 @@ class LatticeFootprint {
   /// Throws a `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
-    part_axes();
+    decorrelate_axes();
     detail::match_moments(offsets_);
   }
 
@@ -167,7 +167,7 @@ class LatticeFootprint {
   /// Exchanges the rows of the two subrays, and then of others, whose exchange brings across and up nearest to
   /// independence, so that columns and rows stay nearly upright and level. For few subrays: many are independent
   /// enough.
-  void part_axes() noexcept {
+  void decorrelate_axes() noexcept {
     const std::size_t n = offsets_.size();
     double mixed = 0;
     for (const Vec2& offset : offsets_) mixed += offset.x * offset.y;
@@ -231,7 +231,7 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 /// errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
-  static constexpr bool turned_by_pulse = true;  ///< as the concept TurnsFootprint describes
+  static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
   /// Takes a valid footprint.
   explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
 };

@@ -28,7 +28,7 @@ struct Scanner {
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
       throw SettingError("Scanner::delay", delay, "s",
-                         detail::joined({"at least 0 and less than ", detail::to_text(1 / pulse_rate)}));
+                         text::joined({"at least 0 and less than ", text::to_text(1 / pulse_rate)}));
     emitter().validate();
   }
 

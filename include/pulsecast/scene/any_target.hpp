@@ -34,7 +34,7 @@ concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, dou
   { t.all_hits(ray, visitor) }
   noexcept->std::same_as<std::size_t>;
   { t.surface(hit, ray) }
-  noexcept->std::same_as<SurfacePoint>;
+  noexcept->std::same_as<SurfaceInteraction>;
 };
 
 /// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>,
@@ -81,7 +81,7 @@ class AnyTarget {
     return std::visit([&](const auto& target) { return target.all_hits(ray, visitor); }, target_);
   }
   /// Surface at a hit of the same ray, in the world.
-  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept
+  [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept
       requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
     return std::visit([&](const auto& target) noexcept { return target.surface(hit, ray); }, target_);
   }

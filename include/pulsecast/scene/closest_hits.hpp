@@ -32,14 +32,14 @@ concept GivesRanges = requires(const W world, const Ray& ray) {
 template <GivesRanges World>
 using ClosestHitOf = decltype(std::declval<const World&>().closest_hit(std::declval<const Ray&>()));
 
-/// World that also finds the closest hits of a bundle, equal to those of its rays alone. `keyless()` is true if they do not depend on the
-/// rays' key, `timeless` if they do not on the tick.
+/// World that also finds the closest hits of a bundle, equal to those of its rays alone. `deterministic()` is true if they do not depend on the
+/// rays' key, `time_dependent` if they do on the tick.
 template <class W>
 concept TracesBundles = GivesRanges<W> && std::same_as<ClosestHitOf<W>, std::optional<RayHit>> &&
     requires(const W world, const RayBundle& rays, ClosestHits& hits) {
   { world.closest(rays, hits) } noexcept;
-  { world.keyless() } noexcept -> std::same_as<bool>;
-  typename std::bool_constant<W::timeless>;
+  { world.deterministic() } noexcept -> std::same_as<bool>;
+  typename std::bool_constant<W::time_dependent>;
 };
 // clang-format on
 
@@ -82,13 +82,13 @@ void closest_hits(const World& world, std::span<const Ray> rays, std::span<Close
   if constexpr (TracesBundles<World>) {
     constexpr std::size_t least = 4, most = 32;  // rays of a bundle; two or three cost less alone
     std::array<std::uint64_t, 512> order;        // cell and number
-    while (world.keyless() && first < rays.size()) {
+    while (world.deterministic() && first < rays.size()) {
       const Ray& one = rays[first];
       std::size_t count = 0;
       for (; count < order.size() && first + count < rays.size(); ++count) {
         const Ray& ray = rays[first + count];
         const bool together = ray.origin == one.origin && ray.near == one.near && ray.far == one.far &&
-                              (World::timeless || ray.tick == one.tick);
+                              (!World::time_dependent || ray.tick == one.tick);
         if (!together || !(std::fabs(dot(ray.direction, ray.direction) - 1) < 1e-6)) break;
         order[count] = std::uint64_t{detail::direction_cell(ray.direction)} << 16U | count;
       }

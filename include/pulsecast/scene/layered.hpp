@@ -95,9 +95,9 @@ class Layered {
   }
 
   /// Surface at a hit of the same ray, in the world. Its `part` is that of the target met.
-  [[nodiscard]] SurfacePoint surface(const LayerHit<First, Others...>& hit, const Ray& ray) const noexcept
+  [[nodiscard]] SurfaceInteraction surface(const LayerHit<First, Others...>& hit, const Ray& ray) const noexcept
       requires(optical) {
-    SurfacePoint point;
+    SurfaceInteraction point;
     each([&]<std::size_t i>(const auto& map) noexcept {
       if (const auto* of = std::get_if<i>(&hit.hit)) point = map.surface(*of, ray);
     });

@@ -127,7 +127,7 @@ class PartMotion {
       require_within(field + ".time", poses[i].time, 0, 1e15, "s");
       if (i > 0 && !(poses[i].time > poses[i - 1].time))
         throw SettingError(field + ".time", poses[i].time, "s",
-                           "greater than that of the previous pose, " + detail::to_text(poses[i - 1].time));
+                           "greater than that of the previous pose, " + text::to_text(poses[i - 1].time));
       require_finite(field + ".position (length)", length(poses[i].position), "m");
       require_rotation(field + ".rotation", poses[i].rotation);
     }
@@ -173,8 +173,7 @@ class PartMotion {
   /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its
   /// centre there as the body's own. Tight for small rotations and few changes of motion in this time, loose otherwise.
   /// Empty for an empty box.
-  [[nodiscard]] Box swept(const Box& box, const Similarity& placement, const Tick& from,
-                          const Tick& to) const noexcept {
+  [[nodiscard]] Box swept(const Box& box, const Placement& placement, const Tick& from, const Tick& to) const noexcept {
     if (box.empty()) return {};
     const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;
     const detail::SweptBody body{centre - reference_, middle - centre, placement.rotation,

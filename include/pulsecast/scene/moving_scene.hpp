@@ -24,7 +24,7 @@ namespace PULSECAST_NAMESPACE {
 template <Geometry... Shapes>
 class MovingScene {
  public:
-  static constexpr bool timeless = false;  ///< hits depend on the tick of a ray
+  static constexpr bool time_dependent = true;  ///< hits depend on the tick of a ray
 
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
@@ -47,8 +47,8 @@ class MovingScene {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
-  /// As `Scene::keyless`.
-  [[nodiscard]] bool keyless() const noexcept { return scene_.keyless(); }
+  /// As `Scene::deterministic`.
+  [[nodiscard]] bool deterministic() const noexcept { return scene_.deterministic(); }
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
@@ -61,7 +61,7 @@ class MovingScene {
   }
 
   /// Placement of a part at a time.
-  [[nodiscard]] Similarity placement(std::size_t part, const Tick& tick) const noexcept {
+  [[nodiscard]] Placement placement(std::size_t part, const Tick& tick) const noexcept {
     const Part& moving = parts()[part];
     if (!moving.motion) return moving.placement;
     return moved(mover_of(part), tick);
@@ -103,11 +103,11 @@ class MovingScene {
   }
 
   /// Surface at a hit of the same ray at its tick, in the world, with its velocity.
-  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept {
     const Part& part = parts()[hit.part];
     if (!part.motion) return detail::surface_at(hit, ray, part, part.placement);
     const Mover& mover = mover_of(hit.part);
-    SurfacePoint point = detail::surface_at(hit, ray, part, moved(mover, ray.tick));
+    SurfaceInteraction point = detail::surface_at(hit, ray, part, moved(mover, ray.tick));
     point.velocity = part.motion->velocity(ray.tick, mover.centre, point.position);
     return point;
   }
@@ -146,7 +146,7 @@ class MovingScene {
     index_.closest(rays, test, hits);
   }
   auto searcher() const noexcept {
-    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
+    return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
 
   static Box bounds_of(const Part& part) noexcept {
@@ -171,7 +171,7 @@ class MovingScene {
     return max_norm(detail::placed_box(part.placement, bounds_of(part)).size());
   }
 
-  Similarity moved(const Mover& mover, const Tick& tick) const noexcept {
+  Placement moved(const Mover& mover, const Tick& tick) const noexcept {
     const Part& part = parts()[mover.part];
     const Displacement now = part.motion->at(tick, mover.centre);
     return {now.rotation * part.placement.rotation, part.placement.scale, now.point(part.placement.translation)};

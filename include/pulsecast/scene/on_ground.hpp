@@ -35,7 +35,7 @@ concept MadeOfTriangles = requires(const Shape& shape) {
 
 /// Calls `visit(p)` for the points of a part, in the world [m].
 template <Geometry Shape, class Visit>
-void visit_points(const Shape& shape, const Similarity& placement, const Visit& visit) {
+void visit_points(const Shape& shape, const Placement& placement, const Visit& visit) {
   if constexpr (MadeOfTriangles<Shape>) {
     for (std::size_t i = 0; i < shape.size(); ++i) {
       const Triangle t = shape.triangle(static_cast<PrimitiveIndex>(i));
@@ -52,7 +52,7 @@ void visit_points(const Shape& shape, const Similarity& placement, const Visit& 
 /// above or below. Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying
 /// parts.
 template <Geometry Shape>
-[[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement,
+[[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Placement& placement,
                                                      const Ground auto& ground,
                                                      GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   std::optional<double> lift;

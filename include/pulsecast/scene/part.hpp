@@ -56,17 +56,16 @@ class SharedMemorySum {
 }  // namespace detail
 
 /// Placement of a part in the world: rotation, uniform scale and translation, in this order.
-struct Similarity {
+struct Placement {
   Rotation rotation = no_rotation;  ///< unit quaternion, within a thousandth
   double scale = 1;                 ///< scale factor, from 1e-30 to 1e30
   Vec3 translation{};               ///< origin of the part's frame, in the world [m]
 
   void validate() const {
-    require_rotation("Similarity::rotation", rotation);
-    require_within("Similarity::scale", scale, 1e-30, 1e30,
+    require_rotation("Placement::rotation", rotation);
+    require_within("Placement::scale", scale, 1e-30, 1e30,
                    "");  // keeps squared lengths finite in the part's own frame
-    if (!finite(translation))
-      throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
+    if (!finite(translation)) throw SettingError("Placement::translation (length)", length(translation), "m", "finite");
   }
   void normalize() noexcept { rotation = unit(rotation); }
 
@@ -99,8 +98,8 @@ struct Similarity {
     return local;
   }
   /// Ray of the world in the part's own frame, as above.
-  [[nodiscard]] BundleOfOne to_local(const BundleOfOne& ray) const noexcept {
-    BundleOfOne local = ray;
+  [[nodiscard]] SingleRayPacket to_local(const SingleRayPacket& ray) const noexcept {
+    SingleRayPacket local = ray;
     const double per_metre = 1 / scale;
     const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
     local.origin = back * (ray.origin - translation);
@@ -139,9 +138,9 @@ namespace detail {
   return {reach(0), reach(1), reach(2)};
 }
 
-/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty
+/// Box around a placed box [m], from its centre and half sides; as `Placement::box` up to rounding. Empty for an empty
 /// box.
-[[nodiscard]] inline Box placed_box(const Similarity& placement, const Box& box) noexcept {
+[[nodiscard]] inline Box placed_box(const Placement& placement, const Box& box) noexcept {
   if (box.empty()) return {};
   const Matrix3 turn = matrix_of(placement.rotation);
   const Vec3 middle = turn * (placement.scale * box.centre()) + placement.translation;
@@ -219,7 +218,7 @@ template <Geometry... Shapes>
 struct Part {
   typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
   MaterialTable materials = material_table();      ///< materials by the shape's material index
-  Similarity placement{};                          ///< placement in the world
+  Placement placement{};                           ///< placement in the world
   ObjectId object = 0;                             ///< object id of its points
   std::string name{};                              ///< user's name for it
   std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`

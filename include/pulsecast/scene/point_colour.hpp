@@ -32,7 +32,7 @@ using PointColours = std::function<std::optional<PointColour>(const EchoBatch&, 
 inline constexpr double near_infrared_wavelength = 842e-9;
 
 /// Colour of a surface: that of its material, times its picture.
-[[nodiscard]] inline PointColour colour_of(const SurfacePoint& surface) noexcept {
+[[nodiscard]] inline PointColour colour_of(const SurfaceInteraction& surface) noexcept {
   const Material& material = *surface.material;
   const Vec3 picture = material.picture && surface.texture ? material.picture->colour(*surface.texture) : Vec3(1);
   const auto sixteen_bits = [](double share) noexcept {
@@ -47,7 +47,7 @@ inline constexpr double near_infrared_wavelength = 842e-9;
 template <TellsSurfaces World>
 [[nodiscard]] PointColours colours_of(const World& world, double tolerance = 0.2) {
   return [surfaces = surfaces_of(world, tolerance)](const EchoBatch& batch, const Shot& shot, const Echo& echo) {
-    const std::optional<SurfacePoint> surface = surfaces(batch, shot, echo);
+    const std::optional<SurfaceInteraction> surface = surfaces(batch, shot, echo);
     return surface ? std::optional(colour_of(*surface)) : std::nullopt;
   };
 }

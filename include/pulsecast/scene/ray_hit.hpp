@@ -39,7 +39,7 @@ struct RayHit {
 };
 
 /// Surface of a scene at the hit of a ray, in the world.
-struct SurfacePoint {
+struct SurfaceInteraction {
   Vec3 position{};  ///< point of the hit [m]
   Vec3 normal{};    ///< unit, towards the side of the ray's origin; zero for a surface without direction, as of leaves
   bool front = true;  ///< true if the shape's own normal is towards that side, too, as for corners seen anticlockwise
@@ -60,7 +60,7 @@ struct SurfacePoint {
 template <class World>
 concept TellsSurfaces = requires(const World& world, const Ray& ray) {
   { world.surface(*world.closest_hit(ray), ray) }
-  noexcept->std::same_as<SurfacePoint>;
+  noexcept->std::same_as<SurfaceInteraction>;
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -34,12 +34,13 @@ namespace PULSECAST_NAMESPACE {
 /// between repetitions of a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) &&
-                (detail::KeylessConstantCheck<Shapes>::passed && ...) &&
-                (detail::TimedConstantCheck<Shapes>::passed && ...));
+  static_assert((detail::UniformConstantCheck<Shapes>::passed && ...) &&
+                (detail::DeterministicConstantCheck<Shapes>::passed && ...) &&
+                (detail::TimeDependentConstantCheck<Shapes>::passed && ...));
 
  public:
-  static constexpr bool timeless = !(TimedGeometry<Shapes> || ...);  ///< true if no hit depends on the tick of a ray
+  static constexpr bool time_dependent =
+      (TimeDependentGeometry<Shapes> || ...);  ///< true if hits depend on the tick of a ray
 
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
@@ -53,12 +54,12 @@ class Scene {
   /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is
   /// refitted, and made anew where it would be too slow; hits are those of a scene made of these parts. @throws
   /// SettingError for another number of placements, or one out of range
-  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, const Workers& workers = {}) const {
+  [[nodiscard]] Scene with_placements(std::span<const Placement> placements, const Workers& workers = {}) const {
     return with_placements(placements, Scene(std::vector<Part>()), workers);
   }
   /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its
   /// second tick.
-  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused,
+  [[nodiscard]] Scene with_placements(std::span<const Placement> placements, Scene&& unused,
                                       const Workers& workers = {}) const {
     const auto count = static_cast<double>(parts_.size());
     require_within("Scene::with_placements (number)", static_cast<double>(placements.size()), count, count, "");
@@ -93,8 +94,8 @@ class Scene {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
-  /// True if no hit depends on the key of a ray, as of parts that are a `KeylessGeometry`.
-  [[nodiscard]] bool keyless() const noexcept { return keyless_; }
+  /// True if no hit depends on the key of a ray, as of parts that are a `DeterministicGeometry`.
+  [[nodiscard]] bool deterministic() const noexcept { return deterministic_; }
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
@@ -131,7 +132,7 @@ class Scene {
 
   /// True only if no ray of a cone meets anything, as of a target that `MissesCones`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
-    if (!alone_) return index_.misses_cone(cone);
+    if (!single_part_) return index_.misses_cone(cone);
     if (cone.passes(bounds())) return true;
     const auto upper_levels = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept {
       static_assert(detail::MissesConesCheck<Shape>::passed);
@@ -163,7 +164,7 @@ class Scene {
   }
 
   /// Surface at a hit of the same ray, in the world.
-  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept {
     return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
   }
 
@@ -197,13 +198,13 @@ class Scene {
   }
 
   void note_parts() noexcept {
-    alone_ = parts_.size() == 1 && !parts_[0].motion;
-    in_place_ = alone_ && parts_[0].placement.identity();
-    const auto keyless = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept {
-      return KeylessGeometry<Shape>;
+    single_part_ = parts_.size() == 1 && !parts_[0].motion;
+    single_untransformed_part_ = single_part_ && parts_[0].placement.identity();
+    const auto deterministic = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept {
+      return DeterministicGeometry<Shape>;
     };
-    keyless_ = std::all_of(parts_.begin(), parts_.end(),
-                           [&](const Part& part) { return visit_shape(keyless, part.geometry); });
+    deterministic_ = std::all_of(parts_.begin(), parts_.end(),
+                                 [&](const Part& part) { return visit_shape(deterministic, part.geometry); });
   }
 
   static std::vector<Part> placed(std::vector<Part> parts) {
@@ -231,7 +232,7 @@ class Scene {
 
   /// Placement of a part by its index.
   auto placements() const noexcept {
-    return [this](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; };
+    return [this](std::size_t part) noexcept -> const Placement& { return parts_[part].placement; };
   }
 
   template <class Rays>
@@ -242,27 +243,27 @@ class Scene {
   }
 
   auto searcher() const noexcept {
-    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
+    return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
   /// Offers the hits of a bundle, or of a single ray, to `hits`.
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
-    if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, BundleOfOne, ClosestHit> && ...))
+    if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...))
       if (rays.size == 1)
         return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
-    if (in_place_)
+    if (single_untransformed_part_)
       closest_in(0, rays, hits);
-    else if (alone_)
+    else if (single_part_)
       closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
       index_.closest(rays, test, hits);
   }
 
   template <class Rays, class Hits>
-  void closest_in(std::size_t part, const Similarity& placement, const Rays& rays, Hits& nearest) const noexcept {
+  void closest_in(std::size_t part, const Placement& placement, const Rays& rays, Hits& nearest) const noexcept {
     placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, placement.to_local(rays), nearest);
   }
   /// `local` are rays in the frame of the part.
@@ -289,7 +290,7 @@ class Scene {
       SurfaceSample sample{.normal = surface.normal / local.direction_length,
                            .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
                            .material = &(*part.materials)[surface.material],
-                           .flat = FlatGeometry<Shape>,
+                           .flat = UniformGeometry<Shape>,
                            .foliage = surface.foliage};
       if constexpr (Textured<Shape>)
         if (sample.material->reflectance_map) [[unlikely]] {
@@ -319,7 +320,7 @@ class Scene {
       }
       if (at != nearest.part_of(first)) {
         at = nearest.part_of(first);
-        const Similarity& placement = placement_of(at);
+        const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
       const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
@@ -347,9 +348,9 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;     ///< true for a single part, static
-  bool in_place_ = false;  ///< true for such a part without a placement
-  bool keyless_ = false;
+  bool single_part_ = false;                ///< true for a single part, static
+  bool single_untransformed_part_ = false;  ///< true for such a part without a placement
+  bool deterministic_ = false;
   std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
   BvhRefit<float> refit_;
 };

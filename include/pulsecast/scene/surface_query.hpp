@@ -17,7 +17,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Surface that an echo of a batch came from: what a sink asks for normal, part, material and velocity of a point.
 /// Empty if unknown.
-using SurfaceQuery = std::function<std::optional<SurfacePoint>(const EchoBatch&, const Shot&, const Echo&)>;
+using SurfaceQuery = std::function<std::optional<SurfaceInteraction>(const EchoBatch&, const Shot&, const Echo&)>;
 
 /// Query of the surfaces of a world, which must outlive it, by one more ray per echo. The ray follows the pulse's axis,
 /// or, if the footprint is `WithSubrayRecord`, the subray whose hit has the echo's labels and is nearest to it in
@@ -28,32 +28,31 @@ using SurfaceQuery = std::function<std::optional<SurfacePoint>(const EchoBatch&,
 template <TellsSurfaces World>
 [[nodiscard]] SurfaceQuery surfaces_of(const World& world, double tolerance = 0.2) {
   require_positive("surfaces_of (tolerance)", tolerance, "m");
-  return
-      [&world, tolerance](const EchoBatch& batch, const Shot& shot, const Echo& echo) -> std::optional<SurfacePoint> {
-        Ray ray{.origin = shot.origin, .direction = shot.direction, .tick = shot.tick, .pulse = shot.index};
-        double range = echo.range, least = std::numeric_limits<double>::infinity();
-        if (!batch.subrays.empty())
-          for (const SubrayHit& subray : batch.subrays_of(static_cast<std::size_t>(&shot - batch.shots.data()))) {
-            const double off = std::fabs(subray.range - echo.range);
-            if (subray.object != echo.object || subray.classification != echo.classification || !(off < least))
-              continue;
-            const Vec3 way = subray.point - shot.origin;
-            least = off;
-            range = length(way);
-            ray.direction = range > 0 ? way / range : shot.direction;
-          }
-        ray.near = std::max(0.0, range - tolerance);
-        ray.far = range + tolerance;
-        constexpr int max_surfaces = 16;  // of other objects in the window, one behind another
-        for (int n = 0; n < max_surfaces; ++n) {
-          const auto hit = world.closest_hit(ray);
-          if (!hit) break;
-          const SurfacePoint surface = world.surface(*hit, ray);
-          if (surface.object == echo.object && surface.classification == echo.classification) return surface;
-          ray.near = std::nextafter(hit->range, std::numeric_limits<double>::infinity());
-        }
-        return std::nullopt;
-      };
+  return [&world, tolerance](const EchoBatch& batch, const Shot& shot,
+                             const Echo& echo) -> std::optional<SurfaceInteraction> {
+    Ray ray{.origin = shot.origin, .direction = shot.direction, .tick = shot.tick, .pulse = shot.index};
+    double range = echo.range, least = std::numeric_limits<double>::infinity();
+    if (!batch.subrays.empty())
+      for (const SubrayRecord& subray : batch.subrays_of(static_cast<std::size_t>(&shot - batch.shots.data()))) {
+        const double off = std::fabs(subray.range - echo.range);
+        if (subray.object != echo.object || subray.classification != echo.classification || !(off < least)) continue;
+        const Vec3 way = subray.point - shot.origin;
+        least = off;
+        range = length(way);
+        ray.direction = range > 0 ? way / range : shot.direction;
+      }
+    ray.near = std::max(0.0, range - tolerance);
+    ray.far = range + tolerance;
+    constexpr int max_surfaces = 16;  // of other objects in the window, one behind another
+    for (int n = 0; n < max_surfaces; ++n) {
+      const auto hit = world.closest_hit(ray);
+      if (!hit) break;
+      const SurfaceInteraction surface = world.surface(*hit, ray);
+      if (surface.object == echo.object && surface.classification == echo.classification) return surface;
+      ray.near = std::nextafter(hit->range, std::numeric_limits<double>::infinity());
+    }
+    return std::nullopt;
+  };
 }
 
 }  // namespace PULSECAST_NAMESPACE

@@ -35,8 +35,8 @@ namespace PULSECAST_NAMESPACE {
 /// (bundles by interval arithmetic).
 class HeightField {
  public:
-  static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
-  static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
+  static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
+  static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
   /// `workers`: threads of the build. @throws SettingError as `Raster::validate`
   explicit HeightField(Raster raster, const Workers& workers = {}) {
@@ -90,7 +90,7 @@ class HeightField {
     return corners(cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
-  /// For a bundle or a `BundleOfOne`.
+  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;
@@ -160,8 +160,8 @@ class HeightField {
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
       for (int k = 0; k < 2; ++k) {
         const double per_metre = field.per_metre_[k];
-        least[k] = (k == 0 ? r.least_along(k) : r.most_along(k)) * per_metre;
-        greatest[k] = (k == 0 ? r.most_along(k) : r.least_along(k)) * per_metre;
+        least[k] = (k == 0 ? r.direction_min(k) : r.direction_max(k)) * per_metre;
+        greatest[k] = (k == 0 ? r.direction_max(k) : r.direction_min(k)) * per_metre;
         from[k] = (r.origin[k] - field.grid_.first[k]) * per_metre;
         slack[k] = rounding * std::fabs(per_metre);
         pad[k] = static_cast<float>(field.pad_[k] + rounding);

@@ -48,8 +48,8 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
-  static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
-  static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
+  static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
+  static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
   /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
@@ -59,7 +59,7 @@ class TriangleMesh {
     if (material_count_ > 256)
       materials_ = numbers<std::uint32_t>(data.materials);
     else if (material_count_ > 1)
-      few_materials_ = numbers<std::uint8_t>(data.materials);
+      materials8_ = numbers<std::uint8_t>(data.materials);
     if (!data.texture.empty()) texture_ = texture_of(data);
     masks_ = MaskTable(data.masks);
   }
@@ -67,7 +67,7 @@ class TriangleMesh {
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, masks_, index_,
+    a(corners_, first_corners_, triangles_, places_, materials8_, materials_, texture_, masks_, index_,
       material_count_);
   }
   [[nodiscard]] bool is_consistent() const {
@@ -86,7 +86,7 @@ class TriangleMesh {
     };
     if (!texture_.empty() && texture_.size() != size()) return false;
     if (!masks_.empty() && texture_.empty()) return false;
-    if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
+    if (material_count_ == 0 || !in_table(materials8_) || !in_table(materials_)) return false;
     static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
     if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
     return true;
@@ -101,10 +101,10 @@ class TriangleMesh {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
     return index_.memory() + corners_.memory() + first_corners_.memory() + triangles_.memory() + places_.memory() +
-           few_materials_.memory() + materials_.memory() + texture_.memory() + masks_.memory();
+           materials8_.memory() + materials_.memory() + texture_.memory() + masks_.memory();
   }
 
-  /// For a bundle or a `BundleOfOne`, which an accelerator that takes bundles only gets as one.
+  /// For a bundle or a `SingleRayPacket`, which an accelerator that takes bundles only gets as one.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Test<Rays, Hits> test(*this, rays, nearest);
@@ -152,7 +152,7 @@ class TriangleMesh {
   friend class DeformingMesh;
 
   [[nodiscard]] std::uint32_t material(PrimitiveIndex i) const noexcept {
-    return !few_materials_.empty() ? few_materials_[i] : !materials_.empty() ? materials_[i] : 0;
+    return !materials8_.empty() ? materials8_[i] : !materials_.empty() ? materials_[i] : 0;
   }
   /// True if ray j meets a triangle outside the holes of its material.
   template <class Rays>
@@ -194,7 +194,7 @@ class TriangleMesh {
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
       const std::size_t place = place_of(primitives), room = alone() ? simd::lane_count : primitives.size();
       if (primitives.size() - 1 >= std::min(room, detail::chunk_size - place % detail::chunk_size)) [[unlikely]]
-        return in_pieces(primitives, room);  // or none
+        return in_blocks(primitives, room);  // or none
       const Vec3* const corners = mesh.block_corners(place);
       const Corners* const triangles = mesh.triangles_.data() + place;
       const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
@@ -212,7 +212,7 @@ class TriangleMesh {
       if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
     }
     /// Tests up to `room` primitives of one block at a time.
-    [[gnu::noinline]] void in_pieces(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
+    [[gnu::noinline]] void in_blocks(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
       while (!primitives.empty()) {
         const std::size_t count =
             std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
@@ -318,8 +318,7 @@ class TriangleMesh {
   SharedArray<std::uint64_t> first_corners_;  ///< first corner of each block
   SharedArray<Corners> triangles_;            ///< corners of the triangles, in the order of the index
   SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
-  SharedArray<std::uint8_t>
-      few_materials_;                     ///< material of each triangle; empty if all are 0, or if an index exceeds 255
+  SharedArray<std::uint8_t> materials8_;  ///< material of each triangle; empty if all are 0, or if an index exceeds 255
   SharedArray<std::uint32_t> materials_;  ///< material of each triangle if an index exceeds 255, else empty
   SharedArray<TextureCorners> texture_;   ///< texture coordinates of each triangle's corners; empty without
   MaskTable masks_;                       ///< holes by material

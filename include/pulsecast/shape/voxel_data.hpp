@@ -43,7 +43,7 @@ struct VoxelData {
     require_positive("VoxelData::edge", edge, "m");
     if (!(edge >= min_edge(corner)))
       throw SettingError("VoxelData::edge", edge, "m",
-                         "at least " + detail::to_text(min_edge(corner)) + " at this distance from the origin");
+                         "at least " + text::to_text(min_edge(corner)) + " at this distance from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
     if (cells.size() > 4294967294)
       throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");

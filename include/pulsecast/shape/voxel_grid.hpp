@@ -158,7 +158,7 @@ template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
   static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;  ///< true if its surfaces are foliage
-  static constexpr bool keyless = !of_leaves;  ///< as the concept KeylessGeometry describes
+  static constexpr bool deterministic = !of_leaves;  ///< as the concept DeterministicGeometry describes
 
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
@@ -181,7 +181,7 @@ class VoxelGrid {
     return {low, low + Vec3(index_.edge())};
   }
 
-  /// For a bundle or a `BundleOfOne`.
+  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
@@ -198,11 +198,11 @@ class VoxelGrid {
   }
 
   /// All hits of a ray with solid voxels: the closest one from each on. Light through leaves ends at its first leaf.
-  void closest(const BundleOfOne& ray, HitBuffer& hits) const noexcept {
+  void closest(const SingleRayPacket& ray, AllHits& hits) const noexcept {
     if constexpr (of_leaves)
-      hits.offer_first(ray, [this](const BundleOfOne& from, ClosestHit& first) noexcept { closest(from, first); });
+      hits.offer_first(ray, [this](const SingleRayPacket& from, ClosestHit& first) noexcept { closest(from, first); });
     else
-      hits.offer_chain(ray, [this](const BundleOfOne& from, ClosestHit& next) noexcept { closest(from, next); });
+      hits.offer_chain(ray, [this](const SingleRayPacket& from, ClosestHit& next) noexcept { closest(from, next); });
   }
 
   template <class Rays>

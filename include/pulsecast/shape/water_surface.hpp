@@ -42,8 +42,8 @@ struct WaterArea {
 /// first derivative).
 class WaterSurface {
  public:
-  static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
-  static constexpr bool timed = true;    ///< as the concept TimedGeometry describes
+  static constexpr bool deterministic = true;   ///< as the concept DeterministicGeometry describes
+  static constexpr bool time_dependent = true;  ///< as the concept TimeDependentGeometry describes
 
   /// @throws SettingError as `WaterArea::validate`
   explicit WaterSurface(const WaterArea& area, WaveField waves = {}) : waves_(std::move(waves)), level_(area.level) {
@@ -57,7 +57,7 @@ class WaterSurface {
   [[nodiscard]] std::size_t memory() const noexcept { return waves_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
 
-  /// For a bundle or a `BundleOfOne`.
+  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     bool prepared = false;
@@ -70,7 +70,7 @@ class WaterSurface {
       const auto offer = [&](double at) noexcept {
         if (!(at > rays.near)) return true;
         nearest.offer(j, at, span.share_of(at));
-        return std::is_same_v<Hits, HitBuffer> && at <= nearest.limit_of(j);
+        return std::is_same_v<Hits, AllHits> && at <= nearest.limit_of(j);
       };
       if (waves_.empty()) {
         offer(span.begin);
@@ -192,7 +192,7 @@ class WaterSurface {
   Box bounds_;
 };
 
-static_assert(Geometry<WaterSurface> && TimedGeometry<WaterSurface>);
+static_assert(Geometry<WaterSurface> && TimeDependentGeometry<WaterSurface>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -12,8 +12,8 @@
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
-#include <pulsecast/transport/illumination.hpp>
 #include <pulsecast/transport/plane_spread.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -43,7 +43,7 @@ struct DirectLight {
   // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140
   // instructions a pulse
   template <bool with_velocity = false, Target Map>
-  [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+  [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
     const bool may_spread =
@@ -65,9 +65,9 @@ struct DirectLight {
   [[nodiscard]] bool spreads(std::size_t subrays) const noexcept { return spread_planes && subrays > 2; }
 
   template <Target Map>
-  [[gnu::noinline]] static void spread(const Map& map, const Illumination& light, double span, Workspace& w,
+  [[gnu::noinline]] static void spread(const Map& map, const TransportInput& light, double span, Workspace& w,
                                        std::span<Reflection> reflections, TransportResult& result) noexcept {
-    spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
+    spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
       TransportResult other;
       for (Reflection& r : reflections.first(again.subrays)) r.velocity = 0;
       trace_subrays<false>(map, again, w, reflections, other);
@@ -76,7 +76,7 @@ struct DirectLight {
   }
 
   template <bool with_velocity, Target Map>
-  [[gnu::always_inline]] static void trace_subrays(const Map& map, const Illumination& light, Workspace& w,
+  [[gnu::always_inline]] static void trace_subrays(const Map& map, const TransportInput& light, Workspace& w,
                                                    std::span<Reflection> reflections,
                                                    TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
@@ -137,7 +137,7 @@ struct DirectLight {
 
   /// True only if no subray of a beam from a point meets anything.
   template <Target Map>
-  [[nodiscard]] static bool misses(const Map& map, const Illumination& light) noexcept {
+  [[nodiscard]] static bool misses(const Map& map, const TransportInput& light) noexcept {
     constexpr double not_quite_unit = 1.01;  // factor for rotations that are unit within a thousandth
     const Pose<frame::Beam, frame::World>& pose = light.pulse.pose;
     const Vec3 direction = matrix_of(pose.rotation)[1];

@@ -12,8 +12,8 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
-#include <pulsecast/transport/illumination.hpp>
 #include <pulsecast/transport/plane_spread.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -28,7 +28,7 @@ namespace PULSECAST_NAMESPACE {
 /// plane that each ray meets. Left out: polarisation from one surface to the next, interference, diffraction.
 struct LightPaths {
   std::size_t passages = 8;         ///< greatest number of surfaces that pass light on, from 0 to 32
-  double least_share = 1e-4;        ///< least share of a subray's light that is followed, one way, in [0, 1]
+  double share_min = 1e-4;          ///< least share of a subray's light that is followed, one way, in [0, 1]
   bool spread_planes = true;        ///< as in `DirectLight`
   MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
@@ -38,7 +38,7 @@ struct LightPaths {
 
   void validate() const {
     require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
-    require_within("LightPaths::least_share", least_share, 0, 1, "");
+    require_within("LightPaths::share_min", share_min, 0, 1, "");
     scattering.validate();
     require_within("LightPaths::volume_cells", static_cast<double>(volume_cells), 4, 1e6, "");
   }
@@ -59,16 +59,16 @@ struct LightPaths {
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.
   template <bool with_velocity = false, OpticalTarget Map>
-  [[nodiscard]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+  [[nodiscard]] TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
-    const detail::PathSettings settings{passages, least_share, air, scattering};
+    const detail::PathSettings settings{passages, share_min, air, scattering};
     TransportResult result;
     detail::PathTracer<with_velocity, Map> tracer(map, light, settings, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
       if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections)));
           span > 1)
-        spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
+        spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
           TransportResult other;
           detail::PathTracer<with_velocity, Map>(map, again, settings, w, reflections, other).trace();
           return other;

@@ -14,7 +14,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -108,7 +108,7 @@ struct Slope {
 };
 
 /// Plane that all subrays met, within a tenth of the pulse's deviation.
-[[nodiscard, gnu::noinline]] inline Slope met_plane(const Illumination& light,
+[[nodiscard, gnu::noinline]] inline Slope met_plane(const TransportInput& light,
                                                     std::span<const Reflection> met) noexcept {
   if (met.size() != light.subrays) return {};
   const MetPlane plane(light.beam, met);
@@ -123,7 +123,7 @@ struct Slope {
 /// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that
 /// one plane of that incidence would spread their light by more than the pulse's time constant, successive ones met it
 /// alike: a tenth of all subrays or more.
-[[nodiscard, gnu::noinline]] inline Slope met_facets(const Illumination& light,
+[[nodiscard, gnu::noinline]] inline Slope met_facets(const TransportInput& light,
                                                      std::span<const Reflection> met) noexcept {
   const double tau = pulse_constant(light.emitter.laser);
   std::size_t pairs = 0;
@@ -146,7 +146,7 @@ struct Slope {
 
 /// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the
 /// light.
-[[nodiscard, gnu::noinline]] inline bool alike(const Illumination& light, std::span<const Reflection> met) noexcept {
+[[nodiscard, gnu::noinline]] inline bool alike(const TransportInput& light, std::span<const Reflection> met) noexcept {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t j = 0; j < met.size(); ++j) {
     if (met[j].object != met[0].object || met[j].classification != met[0].classification) return false;
@@ -218,7 +218,7 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 }  // namespace detail
 
 /// Span of the ranges of reflections from surfaces that subrays met directly, in deviations of the pulse.
-[[nodiscard]] inline double span_of_ranges(const Illumination& light,
+[[nodiscard]] inline double span_of_ranges(const TransportInput& light,
                                            std::span<const Reflection> reflections) noexcept {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (const Reflection& r : reflections) {
@@ -242,7 +242,7 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 /// longer, as the paint across the slope is then a sum over neighbours. Its errors were measured: docs/physics.md.
 /// Beyond its room, false echoes are left, and the pulse is unresolved.
 template <class Trace>
-void spread_over_plane(const Illumination& light, double span, std::span<const Reflection> reflections,
+void spread_over_plane(const TransportInput& light, double span, std::span<const Reflection> reflections,
                        SubrayDirections& row, TransportResult& result, const Trace& trace) noexcept {
   const double tau = detail::pulse_constant(light.emitter.laser);
   // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
@@ -256,16 +256,16 @@ void spread_over_plane(const Illumination& light, double span, std::span<const R
   const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
   if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
   const auto trace_row = [&](std::size_t size) noexcept {
-    result = trace(Illumination{light.pulse,
-                                light.index,
-                                light.seed,
-                                light.emitter,
-                                row,
-                                size,
-                                light.budget,
-                                light.white_target,
-                                light.gate,
-                                {}});
+    result = trace(TransportInput{light.pulse,
+                                  light.index,
+                                  light.seed,
+                                  light.emitter,
+                                  row,
+                                  size,
+                                  light.budget,
+                                  light.white_target,
+                                  light.gate,
+                                  {}});
     result.spread = true;
   };
   if (plane && part) {

@@ -33,8 +33,8 @@ TEST_CASE("samples are the sum of the pulse shapes, in sections about the echoes
   const WaveformSettings settings;
   std::vector<Reflection> reflections{
       {.range = 100, .power = 3}, {.range = 100.4, .power = 2}, {.range = 300, .power = 1}};
-  const Heard heard{emitter, {}, reflections};
-  const IdealSamples samples(0, 0, settings, heard, reflections, 20);
+  const DetectorInput input{emitter, {}, reflections};
+  const IdealSamples samples(0, 0, settings, input, reflections, 20);
   CHECK(!samples.independent_noise());
   CHECK(samples.delay() == 0);
   const Sections s = all(samples);
@@ -52,8 +52,8 @@ TEST_CASE("samples are the sum of the pulse shapes, in sections about the echoes
 TEST_CASE("noise has the deviation asked for, and goes on for the length of the record") {
   const WaveformSettings settings{.record_length = 1e-6};
   std::vector<Reflection> reflections{{.range = 100, .power = 1e-30}};
-  const Heard heard{emitter, {}, reflections, {.seed = 3}};
-  const IdealSamples samples(0.5, 0.25, settings, heard, reflections, 0);
+  const DetectorInput input{emitter, {}, reflections, {.seed = 3}};
+  const IdealSamples samples(0.5, 0.25, settings, input, reflections, 0);
   CHECK(samples.independent_noise());
   CHECK(samples.background() == 0.25);
   const Sections s = all(samples);
@@ -66,7 +66,7 @@ TEST_CASE("noise has the deviation asked for, and goes on for the length of the 
 
 TEST_CASE("nothing heard gives no section") {
   const WaveformSettings settings;
-  const Heard heard{emitter};
-  CHECK(all(IdealSamples(0, 0, settings, heard, {}, 0)).count == 0);
-  CHECK(all(IdealSamples(1, 0, settings, heard, {}, 0)).count == 0);
+  const DetectorInput input{emitter};
+  CHECK(all(IdealSamples(0, 0, settings, input, {}, 0)).count == 0);
+  CHECK(all(IdealSamples(1, 0, settings, input, {}, 0)).count == 0);
 }

@@ -28,14 +28,14 @@ struct Listener final : MpiOutput {
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(); }
   void put(MpiPiece&, const MpiPlace&) override {}
   [[nodiscard]] MpiPlace place(const MpiExtent&, int) override { return {}; }
-  void receive(int, MpiMessage message) override { heard += message.next<int>(); }
+  void receive(int, MpiMessage message) override { input += message.next<int>(); }
   void close() override {
-    work_until([&] { return heard == expected; });
+    work_until([&] { return input == expected; });
   }
   void say(int number) {
     for (int to = 0; to < group().size(); ++to) send(to, std::move(MpiMessage().add(number)));
   }
-  int heard = 0, expected = 0;
+  int input = 0, expected = 0;
 };
 
 TEST_CASE("what an output says is heard by the same output everywhere") {
@@ -46,8 +46,8 @@ TEST_CASE("what an output says is heard by the same output everywhere") {
   one.say(5);
   one.close();
   other.close();
-  CHECK(one.heard == one.expected);
-  CHECK(other.heard == other.expected);
+  CHECK(one.input == one.expected);
+  CHECK(other.input == other.expected);
   mpi_group().channel().barrier([] {});
 }
 
@@ -64,10 +64,10 @@ TEST_CASE("pieces are used again") {
 
 TEST_CASE("what comes too early is kept for the next run") {
   struct Run {
-    std::vector<int> heard;
+    std::vector<int> input;
   };
   const auto hear = [](void* run, int, int kind, MpiMessage message) {
-    static_cast<Run*>(run)->heard.push_back(kind * 100 + message.next<int>());
+    static_cast<Run*>(run)->input.push_back(kind * 100 + message.next<int>());
   };
   Run one, two;
   mpi_group().begin(&one, hear);
@@ -77,14 +77,14 @@ TEST_CASE("what comes too early is kept for the next run") {
   mpi_group().begin(&two, hear);
   mpi_group().send(0, 3, std::move(MpiMessage().add(mpi_group().rank())));
   const std::size_t expected = mpi_group().first() ? static_cast<std::size_t>(mpi_group().size()) : 0;
-  while (two.heard.size() < expected) mpi_group().serve();
+  while (two.input.size() < expected) mpi_group().serve();
   mpi_group().end();
-  CHECK(one.heard.empty());
-  for (const int number : two.heard) CHECK(number / 100 == 3);
+  CHECK(one.input.empty());
+  for (const int number : two.input) CHECK(number / 100 == 3);
   Run three;  // takes what was for one, as none else of its kind has come
   mpi_group().begin(&three, hear);
   mpi_group().serve();
-  CHECK(three.heard.size() == expected);
+  CHECK(three.input.size() == expected);
   mpi_group().end();
   mpi_group().channel().barrier([] {});
 }

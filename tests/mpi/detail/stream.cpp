@@ -41,7 +41,7 @@ TEST_CASE("batches come out as they went in") {
   const std::vector<Shot> shots{{.index = 7, .echoes = 2}, {.index = 9, .samples = 3}};
   const std::vector<Echo> echoes{{.range = 3}, {.range = 4, .object = 5}};
   const std::vector<float> samples{1, 2, 3};
-  const std::vector<SubrayHit> subrays(2);
+  const std::vector<SubrayRecord> subrays(2);
   std::vector<std::byte> bytes;
   MpiBatchWriter writer(io::OutputFile("piece", bytes));
   writer({shots, echoes, samples, 0.5, subrays});

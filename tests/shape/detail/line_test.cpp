@@ -18,11 +18,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool may_meet(const Triangle& triangle, const BundleOfOne& ray, const Box& bounds) {
+bool may_meet(const Triangle& triangle, const SingleRayPacket& ray, const Box& bounds) {
   return LineTest(ray, bounds).may_meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; })) != 0;
 }
 
-bool meets(const Triangle& triangle, const BundleOfOne& ray) {
+bool meets(const Triangle& triangle, const SingleRayPacket& ray) {
   ClosestHit hit(infinity);
   intersect(triangle, 0, ray, hit);
   return hit.met(0);
@@ -55,19 +55,19 @@ Vec3 any_aim(Generator& random, const Triangle& t, double scale) {
 TEST_CASE("a line may meet what is ahead of a ray or behind it, and no triangle beside it") {
   const Triangle t{{-1, 5, -1}, {1, 5, -1}, {0, 5, 1}};
   const Box bounds = t.bounds();
-  CHECK(may_meet(t, BundleOfOne(Ray{}), bounds));
-  CHECK(may_meet(t, BundleOfOne(Ray{.direction = -axis::forward}), bounds));
-  CHECK(may_meet({t.b, t.a, t.c}, BundleOfOne(Ray{}), bounds));
-  CHECK(may_meet(t, BundleOfOne(Ray{.origin = {0, 0, 1}}), bounds));  // through a corner
+  CHECK(may_meet(t, SingleRayPacket(Ray{}), bounds));
+  CHECK(may_meet(t, SingleRayPacket(Ray{.direction = -axis::forward}), bounds));
+  CHECK(may_meet({t.b, t.a, t.c}, SingleRayPacket(Ray{}), bounds));
+  CHECK(may_meet(t, SingleRayPacket(Ray{.origin = {0, 0, 1}}), bounds));  // through a corner
   for (const Vec3& aside : {Vec3{2, 0, 0}, {-2, 0, 0}, {0, 0, 2}, {0, 0, -2}, {0.6, 0, 0.5}, {1e-9, 0, 1}})
-    CHECK_FALSE(may_meet(t, BundleOfOne(Ray{.origin = aside}), bounds));
+    CHECK_FALSE(may_meet(t, SingleRayPacket(Ray{.origin = aside}), bounds));
 }
 
 TEST_CASE("each lane of a packet has its own bit, and idle lanes have that of the last triangle") {
   const Triangle ahead{{-1, 5, -1}, {1, 5, -1}, {0, 5, 1}}, beside{{9, 5, -1}, {11, 5, -1}, {10, 5, 1}};
   Box bounds = ahead.bounds();
   bounds.extend(beside.bounds());
-  const LineTest line(BundleOfOne(Ray{}), bounds);
+  const LineTest line(SingleRayPacket(Ray{}), bounds);
   for (std::size_t met = 0; met < simd::lane_count; ++met) {
     const TrianglePacket packet(simd::lane_count, [&](std::size_t n) noexcept { return n == met ? ahead : beside; });
     CHECK(line.may_meet(packet) == 1U << met);
@@ -89,7 +89,7 @@ TEST_CASE("no triangle that a ray meets is passed over, at any scale, far from t
         random.coin() ? random.point(scale) : aim + random.unit() * (scale * random.log_uniform(1e-9, 1e3));
     const auto moved = [&](const Vec3& p) { return p + place; };
     t = {moved(t.a), moved(t.b), moved(t.c)};
-    BundleOfOne ray(Ray{.origin = moved(origin), .direction = normalize(aim - origin)});
+    SingleRayPacket ray(Ray{.origin = moved(origin), .direction = normalize(aim - origin)});
     if (random.whole(3) == 0) {
       ray.direction_length = random.log_uniform(1e-30, 1e30);
       ray.toward = ray.toward * ray.direction_length;
@@ -110,7 +110,7 @@ TEST_CASE("what overflows or underflows passes") {
   for (const double scale : {1e-170, 1e-150, 1e150, 1e300}) {
     CAPTURE(scale);
     const Triangle t{{-scale, 5 * scale, -scale}, {scale, 5 * scale, -scale}, {0, 5 * scale, scale}};
-    CHECK(may_meet(t, BundleOfOne(Ray{}), t.bounds()));
-    CHECK(may_meet(t, BundleOfOne(Ray{.origin = {3 * scale, 0, 0}}), t.bounds()));
+    CHECK(may_meet(t, SingleRayPacket(Ray{}), t.bounds()));
+    CHECK(may_meet(t, SingleRayPacket(Ray{.origin = {3 * scale, 0, 0}}), t.bounds()));
   }
 }

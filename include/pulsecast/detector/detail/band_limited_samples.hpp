@@ -53,16 +53,16 @@ class BandLimitedSamples {
 
   /// For reflections sorted by range. `peaks_only`: no width is taken.
   BandLimitedSamples(const ReceiverChain& chain, const detail::ReceivedPulses& pulses, const WaveformSettings& s,
-                     const Heard& heard, std::span<const Reflection> reflections, bool peaks_only,
+                     const DetectorInput& input, std::span<const Reflection> reflections, bool peaks_only,
                      Workspace& w) noexcept
       : chain_(chain),
         pulses_(pulses),
         reflections_(reflections),
-        continuous_(heard.continuous, pulses.pulse),
+        continuous_(input.continuous, pulses.pulse),
         w_(w),
         interval_(s.sample_interval),
-        wavelength_(heard.emitter.laser.wavelength),
-        noise_(pulses.filter, noise_key(heard.key)),
+        wavelength_(input.emitter.laser.wavelength),
+        noise_(pulses.filter, noise_key(input.key)),
         noisy_(chain.noisy()),
         peaks_only_(peaks_only && !noisy_ && pulses.taps.empty() && s.record_length == 0 &&
                     s.timing == EchoTiming::peak) {
@@ -70,7 +70,7 @@ class BandLimitedSamples {
     if (chain_.noise_power > 0 || chain_.shot_noise) deviation_ = deviation(0);
     held_decay_ = chain_.recovery > 0 ? std::exp(-interval_ / chain_.recovery) : 0;
     if (noisy_) {
-      const double near = 2 * heard.gate.near / speed_of_light, far = 2 * heard.gate.far / speed_of_light;
+      const double near = 2 * input.gate.near / speed_of_light, far = 2 * input.gate.far / speed_of_light;
       number_ = std::ceil((near + pulses_.pulse.begin()) / interval_) - margin;
       const double end = std::isfinite(far) ? far + pulses_.pulse.end() : continuous_.end();
       end_ = std::clamp(std::floor(end / interval_) + margin, number_ - 1, number_ + samples_max);

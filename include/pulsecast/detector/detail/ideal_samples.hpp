@@ -27,13 +27,13 @@ class IdealSamples {
  public:
   /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the
   /// samples [W]. `width_tail` is the time after the last pulse's peak that a width or a centroid needs [tau].
-  IdealSamples(double deviation, double background, const WaveformSettings& s, const Heard& heard,
+  IdealSamples(double deviation, double background, const WaveformSettings& s, const DetectorInput& input,
                std::span<const Reflection> reflections, double width_tail) noexcept
       : reflections_(reflections),
-        shape_(heard.emitter.laser.pulse_length, s.shape_divisor),
-        continuous_(heard.continuous, shape_),
-        rises_(heard.continuous, detail::GammaIntegrals(shape_)),
-        key_(heard.key),
+        shape_(input.emitter.laser.pulse_length, s.shape_divisor),
+        continuous_(input.continuous, shape_),
+        rises_(input.continuous, detail::GammaIntegrals(shape_)),
+        key_(input.key),
         interval_(s.sample_interval),
         record_size_(static_cast<double>(s.record_capacity())),
         deviation_(deviation),

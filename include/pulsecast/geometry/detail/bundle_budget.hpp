@@ -33,11 +33,11 @@ struct BudgetedLimit {
 };
 
 /// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a
-/// `BundleOfOne` to a `ClosestHit`.
+/// `SingleRayPacket` to a `ClosestHit`.
 template <class Rays, HitsOf<Rays> Hits, class Search>
 void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) noexcept {
   for (std::size_t j = 0; j < rays.size; ++j) {
-    BundleOfOne one(rays.ray(j));
+    SingleRayPacket one(rays.ray(j));
     one.direction_length = rays.direction_length;
     ClosestHit hit(nearest.limit_of(j));
     hit.part = nearest.part;

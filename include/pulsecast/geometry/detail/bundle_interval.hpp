@@ -42,7 +42,7 @@ class BundleInterval {
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
     if (!finite(rays.origin)) near_ = infinity;
     for (int k = 0; k < 3; ++k) {
-      const double low = rays.least_along(k), high = rays.most_along(k);
+      const double low = rays.direction_min(k), high = rays.direction_max(k);
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
       // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`

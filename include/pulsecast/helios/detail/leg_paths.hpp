@@ -59,9 +59,7 @@ class LegPaths {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Number for messages, rounded to three digits after the point.
-  [[nodiscard]] static std::string brief(double value) {
-    return pulsecast::detail::to_text(std::round(value * 1e3) / 1e3);
-  }
+  [[nodiscard]] static std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
   /// True if a leg goes on along the plan of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
@@ -96,7 +94,7 @@ class LegPaths {
       if (p.on_ground && survey_.platform.kind != PlatformKind::interpolated) {
         const std::optional<double> height = ground(Vec2{at.x, at.y});
         if (!height)
-          throw SettingError(leg_name(k) + ": onGround at x = " + pulsecast::detail::to_text(at.x) + ", y", at.y, "m",
+          throw SettingError(leg_name(k) + ": onGround at x = " + text::to_text(at.x) + ", y", at.y, "m",
                              "over ground of the scene: a material with helios_isGround");
         at.z = *height;
       }
@@ -158,7 +156,7 @@ class LegPaths {
       const double least = length(way) / max_duration;
       if (line.speed < least)
         throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
-                           "at least " + pulsecast::detail::to_text(least) + ", for a leg that ends within 1e15 s");
+                           "at least " + text::to_text(least) + ", for a leg that ends within 1e15 s");
       heading = heading_of(way, heading);
       paths_[k] = {{line, {}}, line.duration().seconds()};
     }

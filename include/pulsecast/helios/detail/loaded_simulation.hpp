@@ -136,7 +136,7 @@ class WaveformLimits {
   const bool by_wavelength =
       std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
   return {.passages = static_cast<std::size_t>(light.passages),
-          .least_share = light.least_share,
+          .share_min = light.share_min,
           .spread_planes = library_physics,
           .scattering = {.orders = static_cast<std::size_t>(light.orders),
                          .paths = static_cast<std::size_t>(light.paths),
@@ -212,7 +212,7 @@ class LoadedSimulation final : public Simulation {
     return pulsecast::run(*pipeline_, options, sink);
   }
 
-  void receive(const Receiving& how) override {
+  void receive(const ReceiverOverrides& how) override {
     std::vector<std::string> odd;
     const ScannerSettings scanner = limits_.sampled_alike(scanner_of(how), odd);
     if (settings_.echo_width && !how.ideal)
@@ -276,7 +276,7 @@ class LoadedSimulation final : public Simulation {
     return std::move(built.parts);
   }
 
-  [[nodiscard]] ScannerSettings scanner_of(const Receiving& how) const {
+  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& how) const {
     ScannerSettings scanner = survey_.scanner;
     for (ChannelSettings& channel : scanner.channels) {
       channel.waveform.rings = how.rings.value_or(channel.waveform.rings);

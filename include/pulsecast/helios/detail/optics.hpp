@@ -90,8 +90,8 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within the limits of the device, " + pulsecast::detail::to_text(channel.scan_frequency_min) +
-                           " to " + (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
+                       "within the limits of the device, " + text::to_text(channel.scan_frequency_min) + " to " +
+                           (most > 0 ? text::to_text(most) : "any") + " Hz");
 }
 
 /// Rate of an oscillating mirror: within the device's product of angle and rate, and then in cycles of whole pulses
@@ -111,7 +111,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
                                                           const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
   std::vector<std::string> notes;
-  const auto brief = [](double x) { return pulsecast::detail::to_text(std::round(x * 1e3) / 1e3); };
+  const auto brief = [](double x) { return text::to_text(std::round(x * 1e3) / 1e3); };
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
@@ -221,7 +221,7 @@ inline void require_finite(const char* field, const Formula& error, const std::p
     const double value = error(angle);
     if (!std::isfinite(value))  // drops the sign that some platforms give NaN
       throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
-                         "a formula with a finite value, also for a THETA of " + pulsecast::detail::to_text(angle));
+                         "a formula with a finite value, also for a THETA of " + text::to_text(angle));
   }
 }
 
@@ -309,9 +309,8 @@ namespace detail {
 /// empty if there is nothing to tell.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
-  return "light of " + pulsecast::detail::to_text(std::round(wavelength * 1e10) / 10) +
-         " nm in air of a visibility of " + pulsecast::detail::to_text(receiver.visibility / 1e3) +
-         " km: the formula of its extinction holds from 400 to 1600 nm" +
+  return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
+         text::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
          (receiver.aerosols == AerosolModel::kim ? ""
                                                  : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }

@@ -240,8 +240,8 @@ PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSour
   return table(std::move(all));
 }
 
-PULSECAST_INLINE Similarity SceneBuilder::placement_of(const PartSettings& part, const TransformSettings& transform) {
-  Similarity placement{.scale = transform.scale, .translation = transform.translation};
+PULSECAST_INLINE Placement SceneBuilder::placement_of(const PartSettings& part, const TransformSettings& transform) {
+  Placement placement{.scale = transform.scale, .translation = transform.translation};
   for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
   placement.rotation = normalize(placement.rotation);
   naming("part '" + part.id + "'", [&] { placement.validate(); });
@@ -251,7 +251,7 @@ PULSECAST_INLINE Similarity SceneBuilder::placement_of(const PartSettings& part,
 PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source,
                                         const TransformSettings& transform, std::size_t place,
                                         std::vector<SurveyPart>& all) {
-  const Similarity placement = placement_of(part, transform);
+  const Placement placement = placement_of(part, transform);
   const auto number = text::number_in<ObjectId>(part.id);
   ObjectId object = number.value_or(static_cast<ObjectId>(place));
   if (!number && !part.id.empty())
@@ -259,11 +259,11 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
           std::to_string(place)});
   const Attributes numbers = part.named_numbers();
   for (const Loaded& loaded : load(source)) {
-    const Similarity& inner = loaded.placement;
-    const Similarity placed = inner.identity()
-                                  ? placement
-                                  : Similarity{normalize(placement.rotation * inner.rotation),
-                                               placement.scale * inner.scale, placement.point(inner.translation)};
+    const Placement& inner = loaded.placement;
+    const Placement placed = inner.identity()
+                                 ? placement
+                                 : Placement{normalize(placement.rotation * inner.rotation),
+                                             placement.scale * inner.scale, placement.point(inner.translation)};
     const std::string name = loaded.name.empty() ? part.id
                              : part.id.empty()   ? loaded.name
                                                  : part.id + "/" + loaded.name;

@@ -177,16 +177,15 @@ class AsciiGridReader {
     const Entry& entry = entries_[key];
     if (entry.line == 0) words_.fail("has no " + quoted(key) + " up to here: expected it before the heights");
     if (!(entry.value >= 2 && entry.value <= pulsecast::detail::max_pixels && std::floor(entry.value) == entry.value))
-      words_.fail_at(entry.line, quoted(key) + " is " + pulsecast::detail::to_text(entry.value) +
-                                     ": expected a whole number from 2 to 2^27");
+      words_.fail_at(entry.line,
+                     quoted(key) + " is " + text::to_text(entry.value) + ": expected a whole number from 2 to 2^27");
     return static_cast<std::uint32_t>(entry.value);
   }
 
   [[nodiscard]] double spacing(Key key) const {
     const Entry& entry = entries_[key];
     if (!(entry.value > 0))
-      words_.fail_at(entry.line,
-                     quoted(key) + " is " + pulsecast::detail::to_text(entry.value) + ": expected a spacing above 0 m");
+      words_.fail_at(entry.line, quoted(key) + " is " + text::to_text(entry.value) + ": expected a spacing above 0 m");
     return entry.value;
   }
 

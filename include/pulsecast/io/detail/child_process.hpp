@@ -295,7 +295,7 @@ class ChildProcess {
     const auto fail = [&](const std::string& problem) { throw FileError(path, "", problem); };
     const std::string consequence = ": the file is damaged, or too large for the limit";
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-      fail("its import took more than " + pulsecast::detail::to_text(limits.time) + " s" + consequence);
+      fail("its import took more than " + text::to_text(limits.time) + " s" + consequence);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
       fail("its import was killed, as the system does when memory runs out: expected more free memory, or another try");
     if (WIFSIGNALED(status))

@@ -19,9 +19,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
   const bool on_globe = std::max(std::fabs(raster.first.x), std::fabs(last.x)) <= 360 &&
                         std::max(std::fabs(raster.first.y), std::fabs(last.y)) <= 91;
   if (!on_globe || raster.pixel.x >= 0.01) return {};
-  return "has pixels of " + pulsecast::detail::to_text(raster.pixel.x) + " m at (" +
-         pulsecast::detail::to_text(raster.first.x) + ", " + pulsecast::detail::to_text(raster.first.y) +
-         "): is it in degrees? Expected metres";
+  return "has pixels of " + text::to_text(raster.pixel.x) + " m at (" + text::to_text(raster.first.x) + ", " +
+         text::to_text(raster.first.y) + "): is it in degrees? Expected metres";
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -46,8 +46,7 @@ struct LeafRow {
   }
   const Vec3 direction{values[0], values[1], values[2]};
   if (!(std::fabs(length(direction) - 1) <= 1e-3))
-    table.fail_here("the direction has the length " + pulsecast::detail::to_text(length(direction)) +
-                    ": expected 1, within 1e-3");
+    table.fail_here("the direction has the length " + text::to_text(length(direction)) + ": expected 1, within 1e-3");
   return {{std::atan2(std::hypot(direction.x, direction.y), std::fabs(direction.z)), values[3]}, table.line()};
 }
 
@@ -73,8 +72,8 @@ PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) 
     const LeafProjection last = result.empty() ? projection : result.back();
     const double step = projection.zenith - last.zenith;
     if (step > widest)
-      table.fail("has no row between " + pulsecast::detail::to_text(std::round(degrees(last.zenith) * 10) / 10) +
-                 " and " + pulsecast::detail::to_text(std::round(degrees(projection.zenith) * 10) / 10) +
+      table.fail("has no row between " + text::to_text(std::round(degrees(last.zenith) * 10) / 10) + " and " +
+                 text::to_text(std::round(degrees(projection.zenith) * 10) / 10) +
                  " degrees from the vertical: expected one every 10 degrees at least");
     if (step <= same && std::fabs(projection.g - last.g) > 1e-3)
       throw FileError(table.path(), TextTable::place(std::max(row, line)),

@@ -84,10 +84,9 @@ class PictureShelf {
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw fail();
   if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
       static_cast<double>(width) * height > static_cast<double>(max_pixels))
-    throw FileError(
-        path, "",
-        pulsecast::detail::joined({"has ", std::to_string(width), " x ", std::to_string(height),
-                                   " pixels, expected at most ", std::to_string(max_pixels), ", and 65536 a side"}));
+    throw FileError(path, "",
+                    text::joined({"has ", std::to_string(width), " x ", std::to_string(height),
+                                  " pixels, expected at most ", std::to_string(max_pixels), ", and 65536 a side"}));
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
   if (!pixels) throw fail();

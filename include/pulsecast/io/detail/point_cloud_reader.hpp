@@ -151,10 +151,9 @@ class PointCloudReader {
     }
     if (!(cells <= 0x1p32))
       throw FileError(path.string(), "",
-                      std::string("the cloud extends over ") + pulsecast::detail::to_text(extent) + " m along " +
-                          "xyz"[axis] + ", which is " + pulsecast::detail::to_text(cells) +
-                          " voxels: expected no more than 2^32; voxels are " + pulsecast::detail::to_text(edge) +
-                          " m large");
+                      std::string("the cloud extends over ") + text::to_text(extent) + " m along " + "xyz"[axis] +
+                          ", which is " + text::to_text(cells) + " voxels: expected no more than 2^32; voxels are " +
+                          text::to_text(edge) + " m large");
     last_[axis] = cells - 1;
   }
 
@@ -165,10 +164,9 @@ class PointCloudReader {
     const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
     if (edge >= least) return;
     throw FileError(path.string(), "",
-                    "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) +
-                        " m from the origin, where voxels of " + pulsecast::detail::to_text(edge) +
-                        " m are below the resolution of coordinates: expected at least " +
-                        pulsecast::detail::to_text(least) + " m");
+                    "the cloud begins " + text::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
+                        text::to_text(edge) + " m are below the resolution of coordinates: expected at least " +
+                        text::to_text(least) + " m");
   }
 
   /// Second pass: adds a point to its voxel.
@@ -232,8 +230,8 @@ class PointCloudReader {
     const double largest = settings_.colour_max.value_or(Points::max_colour);
     for (int k = 0; k < 3; ++k)
       if (!(colour[k] >= 0 && colour[k] <= largest))
-        points.fail_here("has the colour " + pulsecast::detail::to_text(colour[k]) + ": expected one from 0 to " +
-                         pulsecast::detail::to_text(largest));
+        points.fail_here("has the colour " + text::to_text(colour[k]) + ": expected one from 0 to " +
+                         text::to_text(largest));
     const Vec3 share = colour / largest;
     if (!settings_.colour_max && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
     squares_[voxel] += share * share;

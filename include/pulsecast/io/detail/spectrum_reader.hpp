@@ -141,8 +141,7 @@ class SpectrumReader {
       unit_ = shortest >= 100   ? WavelengthUnit::nanometre
               : shortest < 0.01 ? WavelengthUnit::metre
                                 : WavelengthUnit::micrometre;
-    const std::string range =
-        pulsecast::detail::to_text(shortest) + " to " + pulsecast::detail::to_text(high->wavelength);
+    const std::string range = text::to_text(shortest) + " to " + text::to_text(high->wavelength);
     for (Row& sample : samples_) {
       double& w = sample.wavelength;
       w = *unit_ == WavelengthUnit::metre        ? w
@@ -160,7 +159,7 @@ class SpectrumReader {
     const double largest = std::max_element(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) {
                              return a.reflectance < b.reflectance;
                            })->reflectance;
-    const std::string reach = "its values reach " + pulsecast::detail::to_text(largest);
+    const std::string reach = "its values reach " + text::to_text(largest);
     const bool many = largest > 1.5;
     const bool told = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
     scale = told ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;

@@ -147,8 +147,8 @@ class VoxelFileReader {
     file_.voxels.edge = *edge_;
     if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
       throw FileError(table_.path(), TextTable::place(edge_line_),
-                      "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " +
-                          pulsecast::detail::to_text(least) + " at the distance of 'min_corner' from the origin");
+                      "'res' is " + text::to_text(*edge_) + ": expected at least " + text::to_text(least) +
+                          " at the distance of 'min_corner' from the origin");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
     if (max_norm(should - *max_corner_) > *edge_ / 2)
@@ -188,8 +188,8 @@ class VoxelFileReader {
     const auto value = text::number_in<std::uint32_t>(text);
     if (!value) table_.fail_here(column, text::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
     if (split_ && !(*value < (*split_)[axis]))
-      table_.fail_here(column, text::quoted(text) + ": expected less than the " +
-                                   pulsecast::detail::to_text((*split_)[axis]) + " voxels that 'split' gives");
+      table_.fail_here(column, text::quoted(text) + ": expected less than the " + text::to_text((*split_)[axis]) +
+                                   " voxels that 'split' gives");
     return *value;
   }
 
@@ -206,12 +206,12 @@ class VoxelFileReader {
     file_.density_max = settings_.density_max.value_or(max_pad_.value_or(density_max_));
     if (settings_.use == VoxelUse::scaled && !settings_.density_max && !max_pad_)
       file_.warnings.push_back(table_.path() + ": has no key 'max_pad': the largest density of its rows, " +
-                               pulsecast::detail::to_text(density_max_) + " m^2/m^3, is that of whole cubes");
+                               text::to_text(density_max_) + " m^2/m^3, is that of whole cubes");
     if (settings_.use == VoxelUse::scaled) scale();
     if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
     file_.voxels.cells = std::move(kept_);
     warn(no_density_, "has no density (NaN)", "they are left out");
-    warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::to_text(file_.density_max) + " m^2/m^3",
+    warn(too_dense_, "is denser than the maximum, " + text::to_text(file_.density_max) + " m^2/m^3",
          "they fill their cells");
     if (file_.voxels.cells.empty())
       table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"

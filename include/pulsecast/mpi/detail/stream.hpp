@@ -59,7 +59,7 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   std::vector<float> samples;
-  std::vector<SubrayHit> subrays;
+  std::vector<SubrayRecord> subrays;
   while (!bytes.rest().empty()) {
     const auto head = bytes.next<MpiBatchWriter::Head>();
     bytes.next(shots, head.shots);

@@ -40,9 +40,7 @@ class JsonWriter {
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(bool truth) { return token(truth ? "true" : "false"); }
   JsonWriter& value(std::integral auto number) { return token(std::to_string(number)); }
-  JsonWriter& value(double number) {
-    return token(std::isfinite(number) ? pulsecast::detail::to_text(number) : "null");
-  }
+  JsonWriter& value(double number) { return token(std::isfinite(number) ? text::to_text(number) : "null"); }
 
   template <class T, std::size_t N>
   JsonWriter& value(const std::array<T, N>& values) {

@@ -86,7 +86,7 @@ class MovingIndex {
     return bytes;
   }
 
-  /// Calls `test(i)` for each body that a bundle or a `BundleOfOne` may meet at its tick before its nearest hits.
+  /// Calls `test(i)` for each body that a bundle or a `SingleRayPacket` may meet at its tick before its nearest hits.
   template <class Rays, class Test, class Hits>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     const double share = share_at(rays.tick);

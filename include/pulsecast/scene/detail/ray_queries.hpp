@@ -16,7 +16,7 @@
 #include <pulsecast/scene/ray_hit.hpp>
 
 /// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a
-/// `HitBuffer`.
+/// `AllHits`.
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Shape that takes such rays and hits.
@@ -27,7 +27,7 @@ concept Intersects = requires(const Shape& shape, const Rays& rays, Hits& hits) 
 
 /// Shape with a surface where a single ray meets it.
 template <class Shape>
-concept SurfacedBySingleRay = requires(const Shape& shape, const BundleOfOne& ray) {
+concept SurfacedBySingleRay = requires(const Shape& shape, const SingleRayPacket& ray) {
   shape.surface(PrimitiveIndex{}, ray, std::size_t{});
 };
 
@@ -37,9 +37,9 @@ template <class Shape, class Rays, class Hits>
 void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   if constexpr (Intersects<Shape, Rays, Hits>) {
     shape.closest(rays, hits);
-  } else if constexpr (std::is_same_v<Hits, HitBuffer>) {
-    hits.offer_chain(rays,
-                     [&shape](const BundleOfOne& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
+  } else if constexpr (std::is_same_v<Hits, AllHits>) {
+    hits.offer_chain(
+        rays, [&shape](const SingleRayPacket& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
   } else {
     const RayBundle bundle = bundle_of(rays, hits.limit_of(0));
     ClosestHits nearest(bundle);
@@ -51,7 +51,7 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
 
 /// Surface of a shape's primitive where a single ray meets it.
 template <class Shape>
-[[nodiscard]] Surface surface_of(const Shape& shape, PrimitiveIndex primitive, const BundleOfOne& ray) noexcept {
+[[nodiscard]] Surface surface_of(const Shape& shape, PrimitiveIndex primitive, const SingleRayPacket& ray) noexcept {
   if constexpr (SurfacedBySingleRay<Shape>)
     return shape.surface(primitive, ray, 0);
   else
@@ -65,7 +65,7 @@ template <class Shape>
 template <class Search>
 [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray, const Search& search) noexcept {
   ClosestHit nearest(ray.far);
-  search(BundleOfOne(ray), nearest);
+  search(SingleRayPacket(ray), nearest);
   if (!nearest.met(0)) return std::nullopt;
   return ray_hit(nearest.range, nearest.id);
 }
@@ -73,18 +73,18 @@ template <class Search>
 template <class Search>
 [[nodiscard]] bool occluded(const Ray& ray, double range, const Search& search) noexcept {
   AnyHit any(range < ray.far ? range : ray.far);
-  search(BundleOfOne(ray), any);
+  search(SingleRayPacket(ray), any);
   return any.found;
 }
 
 template <class Search, class Visitor>
 std::size_t visit_hits(const Ray& ray, const Search& search,
                        Visitor& visitor) noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
-  BundleOfOne from(ray);
-  HitBuffer buffer(ray.near, ray.far);
+  SingleRayPacket from(ray);
+  AllHits buffer(ray.near, ray.far);
   for (std::size_t visited = 0;;) {
     search(from, buffer);
-    for (const HitBuffer::Entry& hit : buffer.hits()) {
+    for (const AllHits::Entry& hit : buffer.hits()) {
       ++visited;
       if constexpr (std::is_void_v<std::invoke_result_t<Visitor&, const RayHit&>>)
         visitor(ray_hit(hit.range, hit.id));
@@ -97,16 +97,16 @@ std::size_t visit_hits(const Ray& ray, const Search& search,
 }
 
 template <class Part>
-[[nodiscard]] SurfacePoint surface_at(const RayHit& hit, const Ray& ray, const Part& part,
-                                      const Similarity& placement) noexcept {
-  BundleOfOne before(ray);
+[[nodiscard]] SurfaceInteraction surface_at(const RayHit& hit, const Ray& ray, const Part& part,
+                                            const Placement& placement) noexcept {
+  SingleRayPacket before(ray);
   before.near = std::nextafter(
       hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
-  const BundleOfOne local = placement.to_local(before);
-  SurfacePoint point{.position = ray.origin + hit.range * ray.direction,
-                     .part = hit.part,
-                     .primitive = hit.primitive,
-                     .object = part.object};
+  const SingleRayPacket local = placement.to_local(before);
+  SurfaceInteraction point{.position = ray.origin + hit.range * ray.direction,
+                           .part = hit.part,
+                           .primitive = hit.primitive,
+                           .object = part.object};
   const auto look = [&](const auto& shape) noexcept {
     using Shape = std::remove_cvref_t<decltype(*shape)>;
     const Surface surface = surface_of(*shape, hit.primitive, local);

@@ -14,7 +14,7 @@
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
@@ -25,7 +25,7 @@ class BeamParticles {
   static constexpr double most =
       1000;  ///< expected number of particles from the beam's beginning on that are met one by one
 
-  BeamParticles(const Illumination& light, LightLedger& ledger) noexcept : light_(light), ledger_(ledger) {}
+  BeamParticles(const TransportInput& light, LightLedger& ledger) noexcept : light_(light), ledger_(ledger) {}
 
   /// Range up to which the particles of a stretch are met one by one [m]: `from` if none are.
   [[nodiscard]] double end(double from, double to, const MediumRegion& region, double density) const noexcept {
@@ -37,7 +37,7 @@ class BeamParticles {
   /// Adds the echoes of the particles between two ranges [m]. `both`: share of the light that is there on both ways at
   /// the first; `occluded(ray, range)` tells if a ray meets a surface.
   template <class Occluded>
-  void meet(double from, double to, const MediumRegion& region, double density, double both,
+  void meet(double from, double to, const MediumRegion& region, double density, double two_way_share,
             const Occluded& occluded) noexcept {
     const double all = volume(from, to), per_volume = density * region.particles.number();
     const Vec3 origin = light_.pulse.origin();
@@ -58,7 +58,7 @@ class BeamParticles {
           2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // by the power of the beam [1/m^2]
       const double scattered =
           pi * region.particles.backscatter_cross_section(region.particles.diameter(size)) * irradiance;
-      const double left = both * std::exp(-2 * density * region.medium.extinction() * (range - from));
+      const double left = two_way_share * std::exp(-2 * density * region.medium.extinction() * (range - from));
       const double power = light_.budget.power(left, scattered, distance);
       if (power > 0 && light_.gate.contains(distance))
         ledger_.reflect({.range = distance}, power, {ReflectionKind::air});
@@ -95,7 +95,7 @@ class BeamParticles {
     return (low + high) / 2;
   }
 
-  const Illumination& light_;
+  const TransportInput& light_;
   LightLedger& ledger_;
   std::uint32_t next_ = 0;  ///< number of the next particle of the pulse
 };

@@ -9,12 +9,12 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Way by which light came to where it ends.
-struct LightWay {
+struct PathState {
   ReflectionKind kind = ReflectionKind::surface;  ///< kind of the way
   double share = 0;                               ///< share of the pulse's energy that arrives
   double velocity = 0;                            ///< rate at which the optical path to the place grows [m/s]
@@ -22,7 +22,7 @@ struct LightWay {
 
 /// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by
 /// that of a lobe much wider than it; 1 without a width.
-inline double caught(const LinkBudget& budget, const Material& material, double range) noexcept {
+inline double aperture_fraction(const LinkBudget& budget, const Material& material, double range) noexcept {
   if (!(material.retroreflection_width > 0)) return 1;
   const double apertures = budget.aperture_radius() / (material.retroreflection_width * range),
                x = 2 * apertures * apertures;
@@ -34,7 +34,7 @@ class LightLedger {
  public:
   EnergyLedger shares{};  ///< shares of the energy sent
 
-  LightLedger(const Illumination& light, std::span<Reflection> reflections, TransportResult& result) noexcept
+  LightLedger(const TransportInput& light, std::span<Reflection> reflections, TransportResult& result) noexcept
       : light_(light), reflections_(reflections), result_(result) {}
 
   /// Light that misses at a range: NaN if the map answered so.
@@ -45,7 +45,7 @@ class LightLedger {
 
   /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the
   /// hit is half the optical path [m].
-  void end_at(const Hit& hit, const Material& material, double scattered, double power, const LightWay& way) noexcept {
+  void end_at(const Hit& hit, const Material& material, double scattered, double power, const PathState& way) noexcept {
     met_ = true;
     const double kept = material.smooth.passes_light() ? 0 : 1 - scattered;
     if (!light_.gate.contains(hit.range)) {
@@ -63,7 +63,7 @@ class LightLedger {
 
   /// Adds a reflection of a power [W], for light that is scattered or comes back into the aperture: cut, if there is no
   /// room.
-  void reflect(const Hit& hit, double power, const LightWay& way) noexcept {
+  void reflect(const Hit& hit, double power, const PathState& way) noexcept {
     met_ = true;
     if (!light_.gate.contains(hit.range)) {
       shares.out_of_range += way.share;
@@ -96,7 +96,7 @@ class LightLedger {
   }
 
  private:
-  const Illumination& light_;
+  const TransportInput& light_;
   std::span<Reflection> reflections_;
   TransportResult& result_;
   double received_ = 0;  ///< power [W]

@@ -15,11 +15,11 @@
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/material.hpp>
 
-/// Contract: light on its way. A `Pencil` is the subrays of a pulse that still seem to come from one point, a
+/// Contract: light on its way. A `CoaxialRays` is the subrays of a pulse that still seem to come from one point, a
 /// `LightPath` a subray that was refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
-inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than this are one [m]
+inline constexpr double surface_epsilon = 1e-6;  ///< surfaces nearer to each other than this are one [m]
 
 /// Normal of a plane that a ray meets, towards the ray.
 [[nodiscard]] inline Vec3 towards(const Vec3& normal, const Vec3& direction) noexcept {
@@ -28,26 +28,26 @@ inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than t
 
 /// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are
 /// counted from there, so that they are lengths of the whole way.
-struct Pencil {
-  StaggeredBundle rays{};              ///< with the range from which each exists
-  alignas(64) RayBundle::Column sent;  ///< share of the pulse's energy on its way
-  alignas(64) RayBundle::Column both;  ///< the same times the share that passes the same way back
-  RayBundle::Column delay;             ///< optical path so far less the range [m]
-  RayBundle::Column drift;             ///< rate at which the optical path so far grows, as mirrors move [m/s]
-  unsigned passages = 0;               ///< surfaces that passed the light on
+struct CoaxialRays {
+  StaggeredBundle rays{};                       ///< with the range from which each exists
+  alignas(64) RayBundle::Column sent;           ///< share of the pulse's energy on its way
+  alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes the same way back
+  RayBundle::Column delay;                      ///< optical path so far less the range [m]
+  RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows, as mirrors move [m/s]
+  unsigned passages = 0;                        ///< surfaces that passed the light on
   ReflectionKind kind = ReflectionKind::surface;
 };
 
 /// Subray after it entered a body, with the derivatives of place and direction by the angles at the pulse's exit.
 /// Source: Igehy 1999, Tracing ray differentials.
 struct LightPath {
-  Ray ray{};              ///< from the last surface on
-  double sent = 0;        ///< share of the pulse's energy on its way
-  double both = 0;        ///< the same times the share that passes the same way back
-  double optical = 0;     ///< optical path up to the ray's origin [m]
-  double air = 0;         ///< way in air up to the ray's origin [m]
-  double drift = 0;       ///< as in `Pencil` [m/s]
-  unsigned passages = 0;  ///< as in `Pencil`
+  Ray ray{};                 ///< from the last surface on
+  double sent = 0;           ///< share of the pulse's energy on its way
+  double two_way_share = 0;  ///< the same times the share that passes the same way back
+  double optical = 0;        ///< optical path up to the ray's origin [m]
+  double air = 0;            ///< way in air up to the ray's origin [m]
+  double path_rate = 0;      ///< as in `CoaxialRays` [m/s]
+  unsigned passages = 0;     ///< as in `CoaxialRays`
   ReflectionKind kind = ReflectionKind::surface;
   std::array<Vec3, 2> place{}, turn{};      ///< derivatives of the ray's origin [m/rad] and direction
   std::array<const Material*, 4> bodies{};  ///< bodies that it is in, the outermost first
@@ -107,7 +107,7 @@ struct LightPath {
   /// Takes a share of the light along.
   void keep(double share) noexcept {
     sent *= share;
-    both *= share * share;
+    two_way_share *= share * share;
   }
   /// Continues in the mirror's direction.
   void reflect(const Vec3& normal) noexcept {

@@ -19,20 +19,20 @@
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/volume_profile.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Takes the light of one pulse through media: what they absorb and scatter, and what they send back.
 class MediaPassage {
  public:
-  /// `air`: media between the surfaces; `least_share` as in `LightPaths`; `in_air`, `in_water`: memory for what media
+  /// `air`: media between the surfaces; `share_min` as in `LightPaths`; `in_air`, `in_water`: memory for what media
   /// in the air and bodies send back; `returns`: memory for both.
-  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger,
+  MediaPassage(const TransportInput& light, const Media& air, double share_min, LightLedger& ledger,
                VolumeProfile& in_air, VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
       : light_(light),
         air_(air),
-        least_share_(least_share),
+        share_min_(share_min),
         ledger_(ledger),
         in_air_(in_air),
         in_water_(in_water),
@@ -52,28 +52,28 @@ class MediaPassage {
   /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all.
   /// `occluded(ray, range)` tells if a ray meets a surface.
   template <class Occluded>
-  void pass_air(Pencil& p, std::span<const Hit> hits, const Occluded& occluded) noexcept {
+  void pass_air(CoaxialRays& p, std::span<const Hit> hits, const Occluded& occluded) noexcept {
     if (air_.empty()) return;
     struct End {
-      double range, both;
+      double range, two_way_share;
     };
     std::array<End, RayBundle::capacity> ends;
     const std::size_t size = p.rays.size, middle = size / 2;
     double together = 0, passed = 1;  // share of the light on both ways, and what is left of it
     for (std::size_t j = 0; j < size; ++j) {
-      ends[j] = {hits[j].met() ? hits[j].range : std::numeric_limits<double>::infinity(), p.both[j]};
-      together += p.both[j];
+      ends[j] = {hits[j].met() ? hits[j].range : std::numeric_limits<double>::infinity(), p.two_way_share[j]};
+      together += p.two_way_share[j];
     }
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size),
               [](const End& a, const End& b) { return a.range < b.range; });
     const double resolution = pulse_ / 32;
     for (std::size_t j = 0, next = 0; j < size; j = next) {  // rays that end together end at their mean
-      double both = 0, moment = 0;
+      double two_way_share = 0, moment = 0;
       for (next = j; next < size && ends[next].range - ends[j].range < resolution; ++next) {
-        both += ends[next].both;
-        moment += ends[next].both * (ends[next].range - ends[j].range);
+        two_way_share += ends[next].two_way_share;
+        moment += ends[next].two_way_share * (ends[next].range - ends[j].range);
       }
-      const double mean = both > 0 ? ends[j].range + moment / both : ends[j].range;
+      const double mean = two_way_share > 0 ? ends[j].range + moment / two_way_share : ends[j].range;
       for (std::size_t k = j; k < next; ++k) ends[k].range = mean;
       next = std::max(next, j + 1);  // of rays without end
     }
@@ -87,12 +87,12 @@ class MediaPassage {
                    grains = of_beam ? particles_.end(from, to, region, density) : from;
       if (meets_particles && grains > from) particles_.meet(from, grains, region, density, passed, occluded);
       for (double at = from; at < to;) {
-        for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
+        for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].two_way_share;
         if (ended == size) return;
         double end = std::min(to, ends[ended].range);
         if (at < grains) end = std::min(end, grains);
         const bool straight = of_beam && at == 0 && p.rays.begin[middle] == 0;
-        const VolumeWay way{
+        const VolumeSegment way{
             at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle], 1, straight};
         if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
         passed *= std::exp(-2 * loss * (end - at));
@@ -105,24 +105,24 @@ class MediaPassage {
                  [&](double from, double to, const MediumRegion& region, double density) noexcept {
                    const double left = lose(region.medium, density, to - from, p.sent[j]);
                    p.sent[j] *= left;
-                   p.both[j] *= left * left;
+                   p.two_way_share[j] *= left * left;
                  });
   }
 
   /// Takes a path through the media up to its next surface, at a range [m].
   void pass(LightPath& path, double range) noexcept {
-    const double least = least_return() * path.both;
+    const double least = least_return() * path.two_way_share;
     const auto stretch = [&](double from, double to, const Medium& medium, double density,
                              VolumeProfile& bins) noexcept {
       if (medium.backscatter > 0) {
-        const VolumeWay way{from,
-                            to,
-                            path.both,
-                            least,
-                            density * medium.extinction(),
-                            density * medium.backscatter,
-                            path.optical + from * path.medium().delay(),
-                            path.medium().delay()};
+        const VolumeSegment way{from,
+                                to,
+                                path.two_way_share,
+                                least,
+                                density * medium.extinction(),
+                                density * medium.backscatter,
+                                path.optical + from * path.medium().delay(),
+                                path.medium().delay()};
         add_volume(
             bins, way, [&](double s) noexcept { return path.spread(s); },
             [&](double s) noexcept { return path.depth == 0 ? path.air + s : path.air; });
@@ -165,15 +165,15 @@ class MediaPassage {
   }
 
   /// Way of light that a medium scatters back.
-  struct VolumeWay {
-    double from = 0, to = 0;  ///< ends of the stretch, from where `spread` counts [m]
-    double both = 0;          ///< as in `Pencil`, at its beginning
-    double least = 0;         ///< least of it of which the return counts
-    double extinction = 0;    ///< of the medium [1/m]
-    double backscatter = 0;   ///< of the medium [1/(m sr)]
-    double optical = 0;       ///< optical path up to its beginning [m]
-    double delay = 1;         ///< optical path by way
-    bool straight = false;    ///< true if it began at the instrument, and all of the way so far was through the medium
+  struct VolumeSegment {
+    double from = 0, to = 0;   ///< ends of the stretch, from where `spread` counts [m]
+    double two_way_share = 0;  ///< as in `CoaxialRays`, at its beginning
+    double least = 0;          ///< least of it of which the return counts
+    double extinction = 0;     ///< of the medium [1/m]
+    double backscatter = 0;    ///< of the medium [1/(m sr)]
+    double optical = 0;        ///< optical path up to its beginning [m]
+    double delay = 1;          ///< optical path by way
+    bool straight = false;     ///< true if it began at the instrument, and all of the way so far was through the medium
   };
   /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air
   /// [m].
@@ -181,28 +181,30 @@ class MediaPassage {
   /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the mean. Nodes are
   /// lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).
   template <class Spread, class Air>
-  void add_volume(VolumeProfile& profile, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
+  void add_volume(VolumeProfile& profile, const VolumeSegment& way, const Spread& spread, const Air& air) noexcept {
     const double aperture2 = light_.budget.aperture_radius() * light_.budget.aperture_radius(),
                  white = pi * way.backscatter / way.delay;
     const double loss = 2 * way.extinction + light_.budget.loss(), most = loss > 0 ? loss_step / loss : infinity;
-    const auto density_at = [&](double at, double both) noexcept {
+    const auto density_at = [&](double at, double two_way_share) noexcept {
       const double s = spread(at), square = s * s + aperture2, wide = std::sqrt(square);
       const double h = std::min(VolumeProfile::step(wide, pulse_), most), x = loss * h, y = h / wide;
       const double bend = x * x + 4 * x * y * s / wide + y * y * (8 * s * s / square - 2);
-      return light_.budget.power_through(both, white, s, air(at)) * (1 - bend / 12);
+      return light_.budget.power_through(two_way_share, white, s, air(at)) * (1 - bend / 12);
     };
     const auto range_at = [&](double at) noexcept { return way.optical + way.delay * (at - way.from); };
     const auto place_of = [&](double range) noexcept { return way.from + (range - way.optical) / way.delay; };
     const double begin = std::max(way.from, place_of(light_.gate.near));
     double end = std::min(way.to, place_of(light_.gate.far));
     if (way.extinction > 0 && way.least > 0)
-      end = std::min(end, way.from + std::log(way.both / way.least) / (2 * way.extinction));
+      end = std::min(end, way.from + std::log(way.two_way_share / way.least) / (2 * way.extinction));
     if (!(begin < end)) return;
-    double both = way.both * std::exp(-2 * way.extinction * (begin - way.from)), density = density_at(begin, both);
+    double two_way_share = way.two_way_share * std::exp(-2 * way.extinction * (begin - way.from)),
+           density = density_at(begin, two_way_share);
     std::size_t cell = profile.cell_of(range_at(begin));
     bool at_node = range_at(begin) == 0;
     for (double at = begin; at < end;) {
-      if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density))
+      if (at_node && way.straight &&
+          add_straight(profile, way, end, most, density_at, cell, at, two_way_share, density))
         continue;
       const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity,
                    to = std::min(node, end);
@@ -210,8 +212,8 @@ class MediaPassage {
                    widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
       const bool whole = to - at <= widest;
       const double next = whole ? to : to < infinity ? at + (to - at) / std::ceil((to - at) / widest) : at + widest;
-      both *= std::exp(-2 * way.extinction * (next - at));
-      const double then = density_at(next, both);
+      two_way_share *= std::exp(-2 * way.extinction * (next - at));
+      const double then = density_at(next, two_way_share);
       if (at_node && whole && to == node)
         ledger_.receive(profile.add(cell, density, then));
       else if (next > at)
@@ -225,8 +227,9 @@ class MediaPassage {
   /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no
   /// wider than `most` [m]; false if there are none.
   template <class DensityAt>
-  bool add_straight(VolumeProfile& profile, const VolumeWay& way, double end, double most, const DensityAt& density_at,
-                    std::size_t& cell, double& at, double& both, double& density) noexcept {
+  bool add_straight(VolumeProfile& profile, const VolumeSegment& way, double end, double most,
+                    const DensityAt& density_at, std::size_t& cell, double& at, double& two_way_share,
+                    double& density) noexcept {
     VolumeProfile::Straight& known = profile.straight(light_.budget, way.extinction, way.backscatter);
     const auto node = [&](std::size_t k) noexcept { return k > 0 ? profile.end_of(k - 1) : 0; };
     std::size_t to = profile.cell_of(end);
@@ -240,23 +243,23 @@ class MediaPassage {
     }
     to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
     if (!(to > cell)) return false;
-    ledger_.receive(profile.add(cell, to, way.both));
+    ledger_.receive(profile.add(cell, to, way.two_way_share));
     cell = to;
     at = profile.end_of(cell - 1);
-    both = way.both * known.left[cell];
-    density = way.both * known.density[cell];
+    two_way_share = way.two_way_share * known.left[cell];
+    density = way.two_way_share * known.density[cell];
     return true;
   }
   /// Share of light to and fro, of that with which it begins a way, below which what media send back is left out.
-  [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, least_share_ * least_share_); }
+  [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, share_min_ * share_min_); }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double loss_step =
       0.08;  ///< greatest loss of power between nodes; with that of `VolumeProfile`, power by range is linear to 0.4 %
 
-  const Illumination& light_;
+  const TransportInput& light_;
   const Media& air_;
-  double least_share_;
+  double share_min_;
   LightLedger& ledger_;
   VolumeProfile &in_air_, &in_water_;
   std::vector<ContinuousReturn>& returns_;

@@ -22,13 +22,13 @@
 #include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/detail/scattered_paths.hpp>
 #include <pulsecast/transport/detail/volume_profile.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Pencil with what its rays met.
-struct PencilHits {
-  Pencil pencil;
+/// CoaxialRays with what its rays met.
+struct PathLevel {
+  CoaxialRays pencil;
   std::array<Hit, RayBundle::capacity> hits{};
   std::array<HitSurface, RayBundle::capacity> surfaces{};
   RayBundle::Column power{};
@@ -37,14 +37,14 @@ struct PencilHits {
 /// Settings of a `PathTracer`.
 struct PathSettings {
   std::size_t passages;
-  double least_share;
+  double share_min;
   const Media& air;
   const MultipleScattering& scattering;
 };
 
 /// Scratch memory of a `PathTracer`.
 struct PathWorkspace {
-  std::vector<PencilHits> levels;           ///< by number of surfaces that passed light on
+  std::vector<PathLevel> levels;            ///< by number of surfaces that passed light on
   VolumeProfile in_air, in_water;           ///< light that media scatter back
   std::vector<ContinuousReturn> returns{};  ///< of both
   SubrayDirections slope;                   ///< subrays for a smooth surface
@@ -59,22 +59,22 @@ struct PathWorkspace {
 template <bool with_velocity, OpticalTarget Map>
 class PathTracer {
  public:
-  PathTracer(const Map& map, const Illumination& light, const PathSettings& settings, PathWorkspace& w,
+  PathTracer(const Map& map, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
              std::span<Reflection> reflections, TransportResult& result) noexcept
       : map_(map),
         light_(light),
-        least_share_(settings.least_share),
+        share_min_(settings.share_min),
         w_(w),
         ledger_(light, reflections, result),
-        media_(light, settings.air, settings.least_share, ledger_, w.in_air, w.in_water, w.returns),
-        bodies_(map, light, settings.least_share, settings.passages, ledger_, media_),
+        media_(light, settings.air, settings.share_min, ledger_, w.in_air, w.in_water, w.returns),
+        bodies_(map, light, settings.share_min, settings.passages, ledger_, media_),
         scattered_(map, light, settings.air, settings.scattering, ledger_) {}
 
   /// Follows all subrays.
   void trace() noexcept {
     const SubrayDirections& beam = light_.beam;
     const Matrix3 world_from_beam = matrix_of(light_.pulse.pose.rotation);
-    Pencil& p = w_.levels[0].pencil;
+    CoaxialRays& p = w_.levels[0].pencil;
     StaggeredBundle& rays = p.rays;
     rays.origin = light_.pulse.origin();
     rays.wavelength = light_.emitter.laser.wavelength;
@@ -87,8 +87,8 @@ class PathTracer {
       if (!beam.from_a_point()) rays.origin = light_.pulse.origin() + world_from_beam * beam.exits[first];
       beam.to_world(world_from_beam, first, rays);
       for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-        p.sent[j] = p.both[j] = beam.shares[first + j];
-        rays.begin[j] = p.delay[j] = p.drift[j] = 0;
+        p.sent[j] = p.two_way_share[j] = beam.shares[first + j];
+        rays.begin[j] = p.delay[j] = p.path_rate[j] = 0;
       }
       follow(0);
       scattered_.start(p, w_.levels[0].hits, w_.levels[0].surfaces);
@@ -105,9 +105,9 @@ class PathTracer {
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     map_.closest(p.rays, hits, surfaces);
-    if (level > 0) meet_late(level);
+    if (level > 0) retrace_before_origin(level);
     media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return map_.occluded(ray, range); });
-    received_power(light_, p.both.data(), p.rays.size, hits, power);
+    received_power(light_, p.two_way_share.data(), p.rays.size, hits, power);
     if (level == 0 && !light_.record.empty())
       record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
     bool goes_on = false;
@@ -120,23 +120,23 @@ class PathTracer {
       if (refracts(surfaces[j])) continue;  // its path meets the surface once more
       const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object,
                    hits[j].classification};
-      power[j] *= caught(light_.budget, *surfaces[j].material, at.range);
-      LightWay way{p.kind, p.sent[j]};
-      if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, ray_of(p, j));
+      power[j] *= aperture_fraction(light_.budget, *surfaces[j].material, at.range);
+      PathState way{p.kind, p.sent[j]};
+      if constexpr (with_velocity) way.velocity = p.path_rate[j] + radial_velocity(map_, ray_of(p, j));
       ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
     }
     if (goes_on) pass_on(level);
   }
 
   /// Ray of a pencil, from where it exists.
-  static Ray ray_of(const Pencil& p, std::size_t j) noexcept {
+  static Ray ray_of(const CoaxialRays& p, std::size_t j) noexcept {
     Ray ray = p.rays.ray(j);
     ray.near = p.rays.begin[j];
     return ray;
   }
 
   /// Traces the rays again that met something before they begin: shapes other than triangles do not heed that.
-  void meet_late(std::size_t level) noexcept {
+  void retrace_before_origin(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     for (std::size_t j = 0; j < p.rays.size; ++j) {
       if (!(hits[j].range <= p.rays.begin[j])) continue;
@@ -170,7 +170,7 @@ class PathTracer {
       if (!smooth.passes_light()) continue;
       passed_on_ = true;
       if (!smooth.keeps_pencils()) {
-        leave_pencil(p, first);
+        trace_individually(p, first);
         continue;
       }
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
@@ -200,8 +200,8 @@ class PathTracer {
   /// Sends rays on from the image of their origin in a plane; `share(j)` is the share reflected.
   template <class Share>
   void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const Share& share) noexcept {
-    const PencilHits& met = w_.levels[level];
-    const Pencil& p = met.pencil;
+    const PathLevel& met = w_.levels[level];
+    const CoaxialRays& p = met.pencil;
     const auto& hits = met.hits;
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // height of the origin above the plane
@@ -214,8 +214,8 @@ class PathTracer {
   /// Reflects rays at a pane, and lets them through.
   void pass_pane(std::size_t level, std::size_t first, std::size_t end, const SmoothInterface& pane,
                  double reaching) noexcept {
-    const PencilHits& met = w_.levels[level];
-    const Pencil& p = met.pencil;
+    const PathLevel& met = w_.levels[level];
+    const CoaxialRays& p = met.pencil;
     const auto& hits = met.hits;
     std::array<PaneSplit, RayBundle::capacity> split;
     double least = infinity, most = 0;
@@ -233,7 +233,7 @@ class PathTracer {
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside,
               p.delay[j] + split[j].delay};
     };
-    const bool together = most - least < apart;  // no ray is out of place by more than half of that
+    const bool together = most - least < surface_epsilon;  // no ray is out of place by more than half of that
     for (std::size_t from = first, to = 0; from < end; from = to) {
       to = together ? end : from + 1;
       const double shift = together ? (least + most) / 2 : split[from].shift;
@@ -245,16 +245,16 @@ class PathTracer {
   struct Next {
     Vec3 direction{};
     double share = 0;  ///< share of the light
-    double begin = 0;  ///< as in `Pencil`
-    double delay = 0;  ///< as in `Pencil`
+    double begin = 0;  ///< as in `CoaxialRays`
+    double delay = 0;  ///< as in `CoaxialRays`
   };
 
   /// Sends rays of a level on from a common origin; `next(j)` tells of each how.
   template <class NextOf>
   void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind,
             const NextOf& next) noexcept {
-    const Pencil& p = w_.levels[level].pencil;
-    Pencil& to = w_.levels[level + 1].pencil;
+    const CoaxialRays& p = w_.levels[level].pencil;
+    CoaxialRays& to = w_.levels[level + 1].pencil;
     static_cast<BundleOrigin&>(to.rays) = p.rays;
     to.rays.origin = origin;
     to.rays.near = infinity;
@@ -268,27 +268,28 @@ class PathTracer {
       const Next ray = next(j);
       to.rays.set_direction(k, ray.direction);
       to.sent[k] = p.sent[j] * ray.share;
-      to.both[k] = p.both[j] * ray.share * ray.share;
-      to.rays.begin[k] = ray.begin + apart;
+      to.two_way_share[k] = p.two_way_share[j] * ray.share * ray.share;
+      to.rays.begin[k] = ray.begin + surface_epsilon;
       to.delay[k] = ray.delay;
-      to.drift[k] = p.drift[j];
-      if constexpr (with_velocity) to.drift[k] += dot(velocity_at(ray_of(p, j)), p.rays.direction(j) - ray.direction);
+      to.path_rate[k] = p.path_rate[j];
+      if constexpr (with_velocity)
+        to.path_rate[k] += dot(velocity_at(ray_of(p, j)), p.rays.direction(j) - ray.direction);
       to.rays.near = std::min(to.rays.near, to.rays.begin[k]);
-      if (kind == ReflectionKind::mirror) take_captured(to, k);
+      if (kind == ReflectionKind::mirror) capture_in_aperture(to, k);
       sum += to.sent[k];
-      if (to.sent[k] > 0) most = std::max(most, to.both[k] / to.sent[k]);
+      if (to.sent[k] > 0) most = std::max(most, to.two_way_share[k] / to.sent[k]);
     }
-    if (most < least_share_) {
+    if (most < share_min_) {
       ledger_.shares.cut += sum;
       return;
     }
-    for (std::size_t k = to.rays.size; k < to.rays.padded_size(); ++k) to.both[k] = to.rays.begin[k] = 0;
+    for (std::size_t k = to.rays.size; k < to.rays.padded_size(); ++k) to.two_way_share[k] = to.rays.begin[k] = 0;
     to.rays.pad();
     follow(level + 1);
   }
 
   /// Takes the light of a ray that comes back into the aperture.
-  void take_captured(Pencil& p, std::size_t k) noexcept {
+  void capture_in_aperture(CoaxialRays& p, std::size_t k) noexcept {
     const Vec3 to_exit = light_.pulse.origin() - p.rays.origin, direction = p.rays.direction(k);
     const double way = dot(to_exit, direction), radius = light_.budget.aperture_radius();
     const Vec3 off = to_exit - way * direction;
@@ -296,8 +297,8 @@ class PathTracer {
     Ray back{.origin = p.rays.origin, .direction = direction, .near = p.rays.begin[k], .tick = p.rays.tick};
     if (map_.occluded(back, way)) return;
     const Hit at{.range = (way + p.delay[k]) / 2, .cos_incidence = 1, .backscatter = 1};
-    ledger_.reflect(at, light_.budget.power_captured(p.sent[k], way), {p.kind, p.sent[k], p.drift[k] / 2});
-    p.sent[k] = p.both[k] = 0;
+    ledger_.reflect(at, light_.budget.power_captured(p.sent[k], way), {p.kind, p.sent[k], p.path_rate[k] / 2});
+    p.sent[k] = p.two_way_share[k] = 0;
   }
 
   /// Velocity of the surface that a ray meets [m/s].
@@ -309,21 +310,21 @@ class PathTracer {
   }
 
   /// Follows a ray that meets a body by itself.
-  void leave_pencil(const Pencil& p, std::size_t j) noexcept {
+  void trace_individually(const CoaxialRays& p, std::size_t j) noexcept {
     LightPath path;
     path.start(ray_of(p, j));
     path.sent = p.sent[j];
-    path.both = p.both[j];
+    path.two_way_share = p.two_way_share[j];
     path.optical = p.delay[j];
-    path.drift = p.drift[j];
+    path.path_rate = p.path_rate[j];
     path.passages = p.passages;
     path.kind = p.kind;
     bodies_.follow(path, true);
   }
 
   const Map& map_;
-  const Illumination& light_;
-  double least_share_;
+  const TransportInput& light_;
+  double share_min_;
   PathWorkspace& w_;
   LightLedger ledger_;
   MediaPassage media_;

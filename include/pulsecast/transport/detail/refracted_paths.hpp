@@ -12,7 +12,7 @@
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/media_passage.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
@@ -21,13 +21,13 @@ template <bool with_velocity, OpticalTarget Map>
 class RefractedPaths {
  public:
   /// `passages`: greatest number of surfaces that pass light on.
-  RefractedPaths(const Map& map, const Illumination& light, double least_share, std::size_t passages,
+  RefractedPaths(const Map& map, const TransportInput& light, double share_min, std::size_t passages,
                  LightLedger& ledger, MediaPassage& media) noexcept
-      : map_(map), light_(light), least_share_(least_share), passages_(passages), ledger_(ledger), media_(media) {}
+      : map_(map), light_(light), share_min_(share_min), passages_(passages), ledger_(ledger), media_(media) {}
 
   /// Follows a path to its end. `passed_air`: the media up to the first surface are passed already.
   void follow(LightPath path, bool passed_air = false) noexcept {
-    while (path.both >= least_share_ * path.sent && path.both > 0) {
+    while (path.two_way_share >= share_min_ * path.sent && path.two_way_share > 0) {
       const auto hit = map_.closest_hit(path.ray);
       const double range = hit ? hit->range : infinity;
       if (!passed_air) media_.pass(path, range);
@@ -39,7 +39,7 @@ class RefractedPaths {
       const Face face = face_at(path, at);
       end_at(path, at, face);
       if (!material.smooth.passes_light() || !pass_on(path, at, face)) return;
-      path.ray.near = apart;
+      path.ray.near = surface_epsilon;
       ++path.passages;
     }
     ledger_.shares.cut += path.sent;
@@ -73,10 +73,11 @@ class RefractedPaths {
         .range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
     hit.backscatter = at.material->backscatter(light_.emitter.laser.wavelength, at.texture)(hit.cos_incidence);
     const double spread = path.spread(),
-                 wide = light_.budget.power_through(path.both, hit.backscatter, spread, path.air);
-    const double power = wide * caught(light_.budget, *at.material, spread);
-    LightWay way{path.kind, path.sent};
-    if constexpr (with_velocity) way.velocity = path.drift + path.medium().index * dot(at.velocity, path.ray.direction);
+                 wide = light_.budget.power_through(path.two_way_share, hit.backscatter, spread, path.air);
+    const double power = wide * aperture_fraction(light_.budget, *at.material, spread);
+    PathState way{path.kind, path.sent};
+    if constexpr (with_velocity)
+      way.velocity = path.path_rate + path.medium().index * dot(at.velocity, path.ray.direction);
     ledger_.end_at(hit, *at.material, face.scattered, power, way);
   }
 
@@ -93,7 +94,7 @@ class RefractedPaths {
     }
     const auto moved = [&](LightPath& p) noexcept {
       if constexpr (with_velocity)
-        p.drift += dot(at.velocity, around.index * before - p.medium().index * p.ray.direction);
+        p.path_rate += dot(at.velocity, around.index * before - p.medium().index * p.ray.direction);
     };
     const auto reflect = [&](LightPath& p, double share) noexcept {
       p.keep(share);
@@ -104,7 +105,7 @@ class RefractedPaths {
     const auto reflect_too = [&](double share) noexcept {
       LightPath other = path;
       reflect(other, share);
-      other.ray.near = apart;
+      other.ray.near = surface_epsilon;
       ++other.passages;
       follow(other);
     };
@@ -142,8 +143,8 @@ class RefractedPaths {
   }
 
   const Map& map_;
-  const Illumination& light_;
-  double least_share_;
+  const TransportInput& light_;
+  double share_min_;
   std::size_t passages_;
   LightLedger& ledger_;
   MediaPassage& media_;

@@ -8,7 +8,7 @@
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 /// Light that the hits of a bundle send back, for all transports.
 namespace PULSECAST_NAMESPACE::detail {
@@ -21,7 +21,7 @@ namespace PULSECAST_NAMESPACE::detail {
 
 /// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W].
 /// Undefined for misses.
-[[gnu::always_inline]] inline void received_power(const Illumination& light, const double* shares, std::size_t size,
+[[gnu::always_inline]] inline void received_power(const TransportInput& light, const double* shares, std::size_t size,
                                                   std::span<const Hit> hits, RayBundle::Column& power) noexcept {
   if (size == 1) {
     power[0] = shares[0] * hits[0].backscatter * light.white_target.power(light.budget, hits[0].range);
@@ -47,12 +47,12 @@ inline void set_reflection(Reflection& reflection, const Hit& hit, double power)
 }
 
 /// Records the subrays from `first` on: their first hits, and what returns from there.
-inline void record_subrays(const Illumination& light, std::size_t first, std::span<const Hit> hits,
+inline void record_subrays(const TransportInput& light, std::size_t first, std::span<const Hit> hits,
                            const RayBundle::Column& power) noexcept {
   const SubrayDirections& beam = light.beam;
   for (std::size_t j = 0; j < hits.size(); ++j) {
     const Hit& hit = hits[j];
-    SubrayHit& subray = light.record[first + j];
+    SubrayRecord& subray = light.record[first + j];
     subray = {hit, 0, Vec3{}};
     if (!hit.met()) continue;
     const Vec3 exit = beam.from_a_point() ? Vec3{} : beam.exits[first + j];

@@ -17,8 +17,8 @@
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
-#include <pulsecast/transport/illumination.hpp>
 #include <pulsecast/transport/multiple_scattering.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
@@ -30,13 +30,13 @@ namespace PULSECAST_NAMESPACE::detail {
 template <OpticalTarget Map>
 class ScatteredPaths {
  public:
-  ScatteredPaths(const Map& map, const Illumination& light, const Media& air, const MultipleScattering& settings,
+  ScatteredPaths(const Map& map, const TransportInput& light, const Media& air, const MultipleScattering& settings,
                  LightLedger& ledger) noexcept
       : map_(map), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
 
   /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all
   /// paths.
-  void start(const Pencil& p, std::span<const Hit> hits, std::span<const HitSurface> surfaces) noexcept {
+  void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const HitSurface> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);
     for (std::size_t j = 0; j < p.rays.size; ++j) {
@@ -93,7 +93,7 @@ class ScatteredPaths {
       const bool even = at.normal == Vec3{};
       Ray ray{.origin = at.place,
               .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v),
-              .near = apart,
+              .near = surface_epsilon,
               .tick = light_.pulse.tick};
       name(ray);
       const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
@@ -133,7 +133,7 @@ class ScatteredPaths {
     const double scattered =
         at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength, at.texture);
     if (!(scattered > 0)) return;
-    Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
+    Ray ray{.origin = at.place, .direction = direction, .near = surface_epsilon, .tick = light_.pulse.tick};
     name(ray);
     if (map_.occluded(ray, distance)) return;
     const double both_ways = (at.way + distance) / 2;
@@ -170,7 +170,7 @@ class ScatteredPaths {
   }
 
   const Map& map_;
-  const Illumination& light_;
+  const TransportInput& light_;
   const Media& air_;
   const MultipleScattering& settings_;
   LightLedger& ledger_;

@@ -147,7 +147,7 @@ struct PartSettings {
 /// Light that goes on from smooth surfaces: `<light>`, of this library. As `LightPaths`.
 struct LightSettings {
   int passages = 8;             ///< greatest number of surfaces that pass light on; `passages`
-  double least_share = 1e-4;    ///< least share of a subray that is followed; `leastShare`
+  double share_min = 1e-4;      ///< least share of a subray that is followed; `leastShare`
   int orders = 1;               ///< greatest number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
   double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
@@ -155,7 +155,7 @@ struct LightSettings {
   /// @throws SettingError for values out of range
   void validate() const {
     require_within("passages", passages, 0, 32, "");
-    require_within("leastShare", least_share, 0, 1, "");
+    require_within("leastShare", share_min, 0, 1, "");
     require_within("orders", orders, 1, 64, "");
     require_within("paths", paths, 1, 100'000, "");
     require_within("fieldOfView_deg", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");

@@ -67,7 +67,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
 [[nodiscard]] inline std::string xml_number(double value) {
   if (value == 0) return "0";
   const double size = std::abs(value);
-  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::to_text(value);
+  if (!(size >= 1e-6 && size < 1e15)) return text::to_text(value);
   std::array<char, 64> digits;
   return {digits.data(),
           std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};

@@ -202,7 +202,7 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
 template <class Io>
 void fields(Io& io, Of<Io, LightSettings>& light) {
   io.whole("passages", light.passages, 0, 32);
-  io.number("leastShare", light.least_share, units::one, 0, 1);
+  io.number("leastShare", light.share_min, units::one, 0, 1);
   io.whole("orders", light.orders, 1, 64);
   io.whole("paths", light.paths, 1, 100'000);
   io.number("fieldOfView_deg", light.field_of_view, units::degree, 0, 360);

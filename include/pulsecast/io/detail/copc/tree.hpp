@@ -226,8 +226,8 @@ class CopcTree {
     }
     if (chunk.bytes.size() > most || chunk.points > most)
       throw FileError(file_.path().string(), "",
-                      pulsecast::detail::joined({"has ", std::to_string(chunk.points),
-                                                 " points in one place; expected fewer than 2^31, and as many bytes"}));
+                      text::joined({"has ", std::to_string(chunk.points),
+                                    " points in one place; expected fewer than 2^31, and as many bytes"}));
     entries_.push_back({chunk.key, file_.position(), static_cast<std::int32_t>(chunk.bytes.size()),
                         static_cast<std::int32_t>(chunk.points)});
     chunk_sizes_.push_back(chunk.bytes.size());

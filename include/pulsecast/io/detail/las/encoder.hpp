@@ -148,11 +148,11 @@ class LasEncoder {
           std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 12).ptr);
     };
     const int k = static_cast<int>(axis);
-    return pulsecast::detail::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
-                                      " m, which does not fit 32 bits; expected ", text(offset_[k]), " m +- ",
-                                      text(settings_.scale * std::numeric_limits<std::int32_t>::max()),
-                                      " m (offset, and 2^31 steps of ", text(settings_.scale),
-                                      " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
+    return text::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
+                         " m, which does not fit 32 bits; expected ", text(offset_[k]), " m +- ",
+                         text(settings_.scale * std::numeric_limits<std::int32_t>::max()),
+                         " m (offset, and 2^31 steps of ", text(settings_.scale),
+                         " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
   }
 
   /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far

@@ -143,13 +143,12 @@ class LasPackets {
     if (can_be && spacing_ == whole) return;
     const std::string allowed =
         spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before";
-    reject({"samples are ", pulsecast::detail::to_text(picoseconds), " ps apart; expected ", allowed});
+    reject({"samples are ", text::to_text(picoseconds), " ps apart; expected ", allowed});
   }
 
   [[noreturn]] void reject(std::initializer_list<std::string_view> problem) {
     file_.discard();
-    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()),
-                    pulsecast::detail::joined(problem));
+    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), text::joined(problem));
   }
 
   [[nodiscard]] detail::LasBytes<header_size> header() const {

@@ -138,11 +138,9 @@ class LasPoints {
       scale_[axis] = number<double>(bytes, 131 + 8 * axis);
       offset_[axis] = number<double>(bytes, 155 + 8 * axis);
       if (!(scale_[axis] > 0) || !std::isfinite(scale_[axis]))
-        file_.fail_at_byte(131 + 8 * axis,
-                           "the scale is " + pulsecast::detail::to_text(scale_[axis]) + ": expected one above 0");
+        file_.fail_at_byte(131 + 8 * axis, "the scale is " + text::to_text(scale_[axis]) + ": expected one above 0");
       if (!std::isfinite(offset_[axis]))
-        file_.fail_at_byte(155 + 8 * axis,
-                           "the offset is " + pulsecast::detail::to_text(offset_[axis]) + ": expected a finite one");
+        file_.fail_at_byte(155 + 8 * axis, "the offset is " + text::to_text(offset_[axis]) + ": expected a finite one");
     }
     file_.seek(begin);
   }

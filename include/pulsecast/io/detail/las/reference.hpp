@@ -33,26 +33,24 @@ namespace PULSECAST_NAMESPACE::io::detail {
                                    [&](const Family& f) { return epsg >= f.first && epsg <= f.last; });
   if (family == families.end()) return {};
   const unsigned zone = epsg - family->first + family->zone;
-  const auto code = [](std::string_view number) {
-    return pulsecast::detail::joined({"AUTHORITY[\"EPSG\",\"", number, "\"]"});
-  };
-  const std::string ellipsoid = pulsecast::detail::joined(
+  const auto code = [](std::string_view number) { return text::joined({"AUTHORITY[\"EPSG\",\"", number, "\"]"}); };
+  const std::string ellipsoid = text::joined(
       {"SPHEROID[\"", family->ellipsoid, "\",6378137,", family->flattening, ",", code(family->ellipsoid_code), "]"});
   const std::string datum =
-      pulsecast::detail::joined({"DATUM[\"", family->datum, "\",", ellipsoid, ",", code(family->datum_code), "]"});
-  const std::string geographic = pulsecast::detail::joined(
-      {"GEOGCS[\"", family->system, "\",", datum, ",PRIMEM[\"Greenwich\",0,", code("8901"),
-       "],UNIT[\"degree\",0.0174532925199433,", code("9122"), "],", code(family->system_code), "]"});
-  const std::string name = pulsecast::detail::joined(
+      text::joined({"DATUM[\"", family->datum, "\",", ellipsoid, ",", code(family->datum_code), "]"});
+  const std::string geographic =
+      text::joined({"GEOGCS[\"", family->system, "\",", datum, ",PRIMEM[\"Greenwich\",0,", code("8901"),
+                    "],UNIT[\"degree\",0.0174532925199433,", code("9122"), "],", code(family->system_code), "]"});
+  const std::string name = text::joined(
       {"PROJCS[\"", family->system, " / UTM zone ", std::to_string(zone), family->south ? "S" : "N", "\","});
-  const std::string projection = pulsecast::detail::joined(
+  const std::string projection = text::joined(
       {",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",",
        std::to_string(6 * static_cast<int>(zone) - 183),
        "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",",
        family->south ? "10000000" : "0", "],"});
-  const std::string axes = pulsecast::detail::joined(
-      {"UNIT[\"metre\",1,", code("9001"), "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH],"});
-  return pulsecast::detail::joined({name, geographic, projection, axes, code(std::to_string(epsg)), "]"});
+  const std::string axes =
+      text::joined({"UNIT[\"metre\",1,", code("9001"), "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH],"});
+  return text::joined({name, geographic, projection, axes, code(std::to_string(epsg)), "]"});
 }
 
 /// GeoTIFF key directory: header and three keys (projected model, its code, metre as unit). Source: OGC

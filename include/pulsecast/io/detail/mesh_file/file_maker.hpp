@@ -96,7 +96,7 @@ class MeshFileMaker {
     const double rounding = farthest_ * 0x1p-24;
     if (rounding > 1e-3)
       warn("has coordinates up to " + std::to_string(std::llround(farthest_)) +
-           " m, which are read in single precision, to " + pulsecast::detail::to_text(std::ceil(rounding * 1e3) / 1e3) +
+           " m, which are read in single precision, to " + text::to_text(std::ceil(rounding * 1e3) / 1e3) +
            " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all "
            "digits");
   }

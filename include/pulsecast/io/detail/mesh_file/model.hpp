@@ -70,8 +70,8 @@ struct FileMesh {
 
 /// Node of a file that shows a mesh.
 struct MeshPlacement {
-  std::size_t mesh = 0;    ///< number of the mesh
-  Similarity placement{};  ///< from the mesh to the world: z up, in metres
+  std::size_t mesh = 0;   ///< number of the mesh
+  Placement placement{};  ///< from the mesh to the world: z up, in metres
   std::string
       name{};  ///< names of the node and those above it, but for the root, joined by `/`; else that of the mesh or file
 };

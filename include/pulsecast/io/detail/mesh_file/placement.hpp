@@ -16,8 +16,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Transform as what is applied to the vertices, and then a placement.
 struct SplitTransform {
-  Matrix3 shape{1};      ///< symmetric, of determinant 1 or -1; the identity for a similarity
-  Similarity placement;  ///< of the shape
+  Matrix3 shape{1};     ///< symmetric, of determinant 1 or -1; the identity for a similarity
+  Placement placement;  ///< of the shape
   bool is_similarity = true;
 };
 

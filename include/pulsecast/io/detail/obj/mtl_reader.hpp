@@ -53,7 +53,7 @@ class MtlReader : private StatementBuffer {
  private:
   void check(std::string& ready) override {
     // tinyobjloader drops keys before the first name, and its default exponent is 1
-    static const std::string exponent = "\nNs " + pulsecast::detail::to_text(Material{}.specular_exponent) + "\n";
+    static const std::string exponent = "\nNs " + text::to_text(Material{}.specular_exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
     if (keyword() == "newmtl") current_ = rest();
     if (keyword() == "newmtl") repeated_ = lines_.contains({current_, "newmtl"});
@@ -106,8 +106,7 @@ class MtlReader : private StatementBuffer {
       const auto number = number_in<double>(given[i]);
       if (!number) break;
       numbers.push_back(std::clamp(*number, 0.0, max_number));
-      if (numbers.back() != *number)
-        note("takes " + pulsecast::detail::to_text(numbers.back()) + " for " + std::string(given[i]));
+      if (numbers.back() != *number) note("takes " + text::to_text(numbers.back()) + " for " + std::string(given[i]));
     }
     const bool is_comment = given.size() > 1 && given[1].starts_with('/');
     if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
@@ -116,8 +115,7 @@ class MtlReader : private StatementBuffer {
     }
     if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
     std::string made(keyword());
-    for (std::size_t i = 0; i < count; ++i)
-      made += ' ' + pulsecast::detail::to_text(numbers[std::min(i, numbers.size() - 1)]);
+    for (std::size_t i = 0; i < count; ++i) made += ' ' + text::to_text(numbers[std::min(i, numbers.size() - 1)]);
     return made;
   }
 
@@ -246,9 +244,7 @@ class MtlReader : private StatementBuffer {
     }
   }
 
-  [[nodiscard]] static std::string nanometres(double metres) {
-    return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3);
-  }
+  [[nodiscard]] static std::string nanometres(double metres) { return text::to_text(std::round(metres * 1e12) / 1e3); }
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;

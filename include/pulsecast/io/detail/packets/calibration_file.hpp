@@ -24,15 +24,14 @@ class CalibrationFile {
   /// @throws FileError for a file that is no map of YAML
   CalibrationFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     InputFile file(path, expected);
-    if (file.size() > InputFile::block_size)
-      file.fail(pulsecast::detail::joined({"is longer than 1 MiB: expected ", expected}));
+    if (file.size() > InputFile::block_size) file.fail(text::joined({"is longer than 1 MiB: expected ", expected}));
     const std::string text = file.take_rest();
     try {
       root_ = YAML::Load(text);
     } catch (const YAML::Exception& error) {
       fail(error.mark, "is no YAML or JSON: " + error.msg);
     }
-    if (!root_.IsMap()) file.fail(pulsecast::detail::joined({"is no map: expected ", expected}));
+    if (!root_.IsMap()) file.fail(text::joined({"is no map: expected ", expected}));
   }
 
   [[nodiscard]] const YAML::Node& root() const noexcept { return root_; }
@@ -61,9 +60,9 @@ class CalibrationFile {
     const std::string scalar = word(node, name);
     const std::optional<double> value = text::finite_number_in(scalar);
     if (!value || *value < low || *value > high) {
-      using pulsecast::detail::to_text;
-      const std::string allowed = low < high ? "a number from " + to_text(low) + " to " + to_text(high) : to_text(high);
-      fail(node, pulsecast::detail::joined({name, " is ", text::quoted(scalar), ": expected ", allowed}));
+      const std::string allowed =
+          low < high ? "a number from " + text::to_text(low) + " to " + text::to_text(high) : text::to_text(high);
+      fail(node, text::joined({name, " is ", text::quoted(scalar), ": expected ", allowed}));
     }
     return *value;
   }
@@ -72,7 +71,7 @@ class CalibrationFile {
   [[nodiscard]] std::vector<double> numbers(const YAML::Node& node, const std::string& name, std::size_t count,
                                             double low, double high) const {
     if (!node.IsSequence() || node.size() != count)
-      fail(node, pulsecast::detail::joined({name, " is no list of ", std::to_string(count)}));
+      fail(node, text::joined({name, " is no list of ", std::to_string(count)}));
     std::vector<double> values;
     for (const YAML::Node& value : node) values.push_back(number(value, name, low, high));
     return values;

@@ -80,7 +80,7 @@ class TextPoints {
   }  ///< of the current row
 
   void note(const std::string& oddity) {
-    notes_.push_back(pulsecast::detail::joined({file_.path(), ", line ", std::to_string(file_.line()), ": ", oddity}));
+    notes_.push_back(text::joined({file_.path(), ", line ", std::to_string(file_.line()), ": ", oddity}));
   }
 
   /// Splits a row by the separators of the settings, or those that it has.

@@ -23,7 +23,7 @@ class TextRow {
   explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
 
   /// Adds a number in the shortest form that reads back the same; zero has no sign.
-  TextRow& add(double value) { return append(pulsecast::detail::to_text(value == 0 ? 0 : value)); }
+  TextRow& add(double value) { return append(text::to_text(value == 0 ? 0 : value)); }
 
   /// Adds a number in fixed notation, rounded to nearest; zero and NaN have no sign.
   TextRow& add(double value, int decimals) {

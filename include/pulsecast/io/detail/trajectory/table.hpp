@@ -33,8 +33,7 @@ struct TimeWindow {
     if (start) require_finite("TimeWindow::start", *start, "s");
     if (end) require_finite("TimeWindow::end", *end, "s");
     if (start && end && *start > *end)
-      throw SettingError("TimeWindow::start", *start, "s",
-                         "no later than the end, " + pulsecast::detail::to_text(*end));
+      throw SettingError("TimeWindow::start", *start, "s", "no later than the end, " + text::to_text(*end));
   }
 };
 
@@ -214,8 +213,7 @@ class TrajectoryReader {
     const Rotation given = pulsecast::detail::rotation_wxyz(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) +
-                       ": expected 1, within 1e-3");
+      table_.fail_here("the quaternion has the norm " + text::to_text(length(given)) + ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
@@ -311,7 +309,7 @@ class TrajectoryReader {
     return {time, pose.position, pose.rotation};
   }
 
-  [[nodiscard]] static std::string seconds(double time) { return pulsecast::detail::to_text(time) + " s"; }
+  [[nodiscard]] static std::string seconds(double time) { return text::to_text(time) + " s"; }
 
   void warn(std::size_t line, const std::string& text) {
     result_.warnings.push_back(table_.path() + ", " + TextTable::place(line) + ": " + text);

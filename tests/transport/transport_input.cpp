@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/transport_input.hpp>
 
 #include <optional>
 #include <utility>
@@ -35,7 +35,7 @@ struct Spy : support::LeastTransport {
   Note* note;
   explicit Spy(Note& to) : note(&to) {}
   template <class Map>
-  TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+  TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                         std::span<Reflection> reflections) const noexcept {
     *note = {light.index,
              light.seed,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_TRANSPORT_ILLUMINATION_HPP
-#define PULSECAST_TRANSPORT_ILLUMINATION_HPP
+#ifndef PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
+#define PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -18,7 +18,7 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Light of one pulse, as a `Transport` takes it. Valid during the call.
-struct Illumination {
+struct TransportInput {
   const Pulse<frame::World>& pulse;  ///< tick, true pose, and reported pose unless exact
   PulseIndex index;                  ///< number of the pulse; with `seed`, key of random numbers
   std::uint64_t seed;                ///< seed of the survey
@@ -28,7 +28,7 @@ struct Illumination {
   const LinkBudget& budget;          ///< link budget of emitter and receiver
   WhiteTarget& white_target;         ///< memory of that budget's last result
   RangeGate gate{};                  ///< range gate of the receiver
-  std::span<SubrayHit> record{};     ///< first surface of each subray, to be set; empty unless subrays are recorded
+  std::span<SubrayRecord> record{};  ///< first surface of each subray, to be set; empty unless subrays are recorded
 
   /// Energy of the pulse [J].
   [[nodiscard]] double energy() const noexcept { return emitter.laser.energy(); }
