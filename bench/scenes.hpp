@@ -220,7 +220,7 @@ double sum_of_single_ranges(const Shape& shape, const Bundles& all) noexcept {
   for (std::size_t i = 0; i < all.size(); ++i) {
     ClosestHit nearest(std::numeric_limits<double>::infinity());
     shape.closest(all.ray(i), nearest);
-    sum += nearest.met(0) ? nearest.range : 0;
+    sum += nearest.met(0) ? nearest.range[0] : 0;
   }
   return sum;
 }
@@ -249,7 +249,7 @@ template <class Shape>
   for (std::size_t i = 0; i < all.size(); ++i) {
     ClosestHit nearest(std::numeric_limits<double>::infinity());
     shape.closest(all.ray(i), nearest);
-    found.push_back({nearest.range, nearest.id});
+    found.push_back({nearest.range[0], nearest.id[0]});
   }
   return found;
 }

@@ -33,8 +33,7 @@ constexpr std::size_t kinds = 3;
 
 Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
 
-// ------------------------------------------------------------------------------------------------------------------
-// slots
+// ------------------------------------------------------------------------------------------- slots
 
 /// Results of single slots, spread over the whole survey.
 struct Census {
@@ -119,8 +118,7 @@ PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number
                        static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
 }
 
-// -------------------------------------------------------------------------------------------------------------------
-// time
+// -------------------------------------------------------------------------------------------- time
 
 /// Blocks of consecutive slots, each with a first slot of one kind.
 std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end,
@@ -186,8 +184,7 @@ double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& 
   return sum;
 }
 
-// -----------------------------------------------------------------------------------------------------------------
-// errors
+// ------------------------------------------------------------------------------------------ errors
 
 /// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the
 /// normal approximation of the binomial distribution.
@@ -223,8 +220,7 @@ struct Differences {
   }
 };
 
-// ---------------------------------------------------------------------------------------------------------------
-// together
+// ---------------------------------------------------------------------------------------- together
 
 /// Round numbers (1, 2, 5, 10 and so on) in an interval.
 std::vector<double> round_numbers(double from, double to) {

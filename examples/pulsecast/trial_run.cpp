@@ -161,8 +161,7 @@ WritingCost regression(std::span<const Written> all, double Written::*cost, doub
   return found;
 }
 
-// -----------------------------------------------------------------------------------------------------------------
-// memory
+// ------------------------------------------------------------------------------------------ memory
 
 /// Resident memory of this process. Source: proc(5), /proc/PID/status.
 Resident resident_now() {

@@ -36,8 +36,7 @@ using namespace pulsecast::literals;
 
 namespace {
 
-// ------------------------------------------------------------------------------------------------ the closed form, on
-// its own
+// --------------------------------------------------------------------- the closed form, on its own
 
 using Real = long double;
 using Row = std::array<Real, 3>;
@@ -70,8 +69,7 @@ Matrix turn(std::size_t axis, Real angle_deg) {
   return m;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- the
-// flight
+// -------------------------------------------------------------------------------------- the flight
 
 const Vec3 start{512345.678, 5403210.987, 1234.5};  // as in UTM [m]
 const Vec3 lever_arm{0.3, -1.2, 0.7};

@@ -148,51 +148,69 @@ struct StaggeredBundle : RayBundle {
   return rays;
 }
 
-/// Closest hit so far of each ray of a bundle. At exactly equal range the smallest id wins.
-struct ClosestHits {
+/// Closest hit so far of each ray of a bundle, or of a single ray. At exactly equal range the smallest id wins.
+template <std::size_t capacity>
+struct Closest {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
 
-  alignas(64) std::array<double, RayBundle::capacity> range;      ///< range of the hit [m]; `far` without a hit
-  alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower;
-                                                                  ///< `none` if nothing was met
-  std::uint64_t part = 0;                                         ///< part under test, in the upper half
+  alignas(capacity > 1 ? 64 : 8) std::array<double, capacity> range;  ///< range of the hit [m]; `far` without a hit
+  /// Part in the upper half, primitive in the lower; `none` without a hit.
+  alignas(capacity > 1 ? 64 : 8) std::array<std::uint64_t, capacity> id;
+  std::uint64_t part = 0;  ///< part under test, in the upper half
 
   /// No hits so far of a bundle's rays.
-  explicit ClosestHits(const RayBundle& rays) noexcept {
+  explicit Closest(const RayBundle& rays) noexcept requires(capacity == RayBundle::capacity) {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
+      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane hits nothing
       id[j] = none;
     }
   }
+  /// No hit so far of a single ray, up to a range [m].
+  explicit Closest(double far) noexcept requires(capacity == 1) : range{far}, id{none} {}
 
   /// True if ray j has a hit.
-  [[nodiscard]] bool met(std::size_t j) const noexcept { return id[j] != none; }
+  [[nodiscard]] bool met(std::size_t j) const noexcept { return id[slot(j)] != none; }
   /// Part that ray j hits.
-  [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept { return static_cast<std::uint32_t>(id[j] >> 32); }
+  [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept {
+    return static_cast<std::uint32_t>(id[slot(j)] >> 32);
+  }
   /// Primitive of that part that ray j hits.
-  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept { return static_cast<PrimitiveIndex>(id[j]); }
+  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept {
+    return static_cast<PrimitiveIndex>(id[slot(j)]);
+  }
 
   /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.
   void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
     const std::uint64_t candidate = part | primitive;
-    if (at < range[j] || (at == range[j] && candidate < id[j])) {
-      range[j] = at;
-      id[j] = candidate;
+    if (at < range[slot(j)] || (at == range[slot(j)] && candidate < id[slot(j)])) {
+      range[slot(j)] = at;
+      id[slot(j)] = candidate;
     }
   }
 
   /// Largest range at which ray j can still find a closer hit [m].
-  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[j]; }
-  /// Largest range at which any ray of the bundle can still find a closer hit [m].
-  [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
+  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[slot(j)]; }
+  /// Largest range at which any ray can still find a closer hit [m]; minus infinity for NaN.
+  template <class Rays>
+  [[nodiscard]] double limit(const Rays& rays) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;
-    simd::Doubles last = simd::Doubles{} - infinity;
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
-      last = simd::max(simd::load<simd::Doubles>(range[j]), last);
-    return simd::max(last);
+    const double one = range[0] > -infinity ? range[0] : -infinity;
+    if constexpr (capacity > 1) {
+      if (rays.size == 1) return one;
+      simd::Doubles last = simd::Doubles{} - infinity;
+      for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
+        last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+      return simd::max(last);
+    }
+    return one;
   }
+
+ private:
+  static constexpr std::size_t slot(std::size_t j) noexcept { return capacity > 1 ? j : 0; }
 };
+
+using ClosestHits = Closest<RayBundle::capacity>;  ///< of a bundle
+using ClosestHit = Closest<1>;                     ///< of a single ray
 
 /// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still
 /// takes any [m], `limit(rays)` that of all rays; `part` is the part under test, in the upper half.

@@ -64,40 +64,6 @@ struct SingleRayPacket {
   return rays;
 }
 
-/// Closest hit so far of a single ray. At exactly equal range the smallest id wins.
-struct ClosestHit {
-  static constexpr std::uint64_t none = ClosestHits::none;  ///< id of no hit
-
-  double range;             ///< range of the hit [m]; the greatest that counts without a hit
-  std::uint64_t id = none;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
-  std::uint64_t part = 0;   ///< part under test, in the upper half
-
-  /// No hit so far, up to a range [m].
-  explicit ClosestHit(double far) noexcept : range(far) {}
-
-  [[nodiscard]] bool met(std::size_t) const noexcept { return id != none; }  ///< true if the ray has a hit
-  /// Part that the ray hits.
-  [[nodiscard]] std::uint32_t part_of(std::size_t) const noexcept { return static_cast<std::uint32_t>(id >> 32); }
-  /// Primitive of that part that the ray hits.
-  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t) const noexcept { return static_cast<PrimitiveIndex>(id); }
-
-  /// Records a hit with a primitive of the current part, if it is closer than the one before.
-  void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
-    const std::uint64_t candidate = part | primitive;
-    if (at < range || (at == range && candidate < id)) {
-      range = at;
-      id = candidate;
-    }
-  }
-
-  [[nodiscard]] double limit_of(std::size_t) const noexcept { return range; }  ///< as in `ClosestHits`
-  /// Largest range at which the ray can still find a closer hit [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return range > -infinity ? range : -infinity;
-  }
-};
-
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
 struct AnyHit {
   double far;              ///< greatest range that counts [m]; minus infinity once something is met
@@ -181,8 +147,8 @@ class AllHits {
       next.part = part;
       closest(ray, next);
       if (!next.met(0)) return;
-      offer(0, next.range, next.primitive_of(0));
-      ray.near = next.range;
+      offer(0, next.range[0], next.primitive_of(0));
+      ray.near = next.range[0];
     }
   }
 
@@ -193,7 +159,7 @@ class AllHits {
     ClosestHit first(limit_);
     first.part = part;
     closest(ray, first);
-    if (first.met(0)) offer(0, first.range, first.primitive_of(0));
+    if (first.met(0)) offer(0, first.range[0], first.primitive_of(0));
   }
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`

@@ -26,7 +26,6 @@
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/closest_hits.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.

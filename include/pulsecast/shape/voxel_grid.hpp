@@ -206,7 +206,7 @@ class VoxelGrid {
   }
 
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
   }
 

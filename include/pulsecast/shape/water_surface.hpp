@@ -91,7 +91,7 @@ class WaterSurface {
 
   /// The normal is upwards. `i` is the primitive that the ray's hit was offered with.
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     if (waves_.empty()) return {axis::up, 0};
     const Vec3 direction = rays.direction(j);
     const double at = span_of(rays.origin, direction).at_share(i);

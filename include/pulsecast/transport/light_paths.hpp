@@ -58,7 +58,7 @@ struct LightPaths {
   }
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.
-  template <bool with_velocity = false, OpticalTarget Map>
+  template <bool with_velocity = false, SceneQueries Map>
   [[nodiscard]] TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
     const detail::PathSettings settings{passages, share_min, air, scattering};

@@ -44,7 +44,7 @@ void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) n
     search(one, hit);
     if (!hit.met(0)) continue;
     nearest.part = std::uint64_t{hit.part_of(0)} << 32;
-    nearest.offer(j, hit.range, hit.primitive_of(0));
+    nearest.offer(j, hit.range[0], hit.primitive_of(0));
   }
 }
 

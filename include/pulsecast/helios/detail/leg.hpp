@@ -25,6 +25,7 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {

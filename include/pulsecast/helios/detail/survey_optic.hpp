@@ -19,6 +19,7 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Optics of survey documents, as one type.

@@ -30,7 +30,7 @@ namespace PULSECAST_NAMESPACE::detail {
 struct PathLevel {
   CoaxialRays pencil;
   std::array<Hit, RayBundle::capacity> hits{};
-  std::array<HitSurface, RayBundle::capacity> surfaces{};
+  std::array<PathVertex, RayBundle::capacity> surfaces{};
   RayBundle::Column power{};
 };
 
@@ -56,7 +56,7 @@ struct PathWorkspace {
 };
 
 /// Follows the light of one pulse.
-template <bool with_velocity, OpticalTarget Map>
+template <bool with_velocity, SceneQueries Map>
 class PathTracer {
  public:
   PathTracer(const Map& map, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
@@ -104,7 +104,10 @@ class PathTracer {
 
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
-    map_.closest(p.rays, hits, surfaces);
+    map_.closest(
+        p.rays, hits, [&met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+          std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
+        });
     if (level > 0) retrace_before_origin(level);
     media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return map_.occluded(ray, range); });
     received_power(light_, p.two_way_share.data(), p.rays.size, hits, power);
@@ -152,11 +155,11 @@ class PathTracer {
     }
   }
 
-  static bool refracts(const HitSurface& surface) noexcept {
+  static bool refracts(const PathVertex& surface) noexcept {
     return surface.material->smooth.passes_light() && !surface.material->smooth.keeps_pencils();
   }
 
-  double scattered_share(const HitSurface& surface, const Hit& hit) const noexcept {
+  double scattered_share(const PathVertex& surface, const Hit& hit) const noexcept {
     return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence, surface.texture);
   }
 
@@ -303,10 +306,8 @@ class PathTracer {
 
   /// Velocity of the surface that a ray meets [m/s].
   Vec3 velocity_at(const Ray& ray) const noexcept {
-    if constexpr (VelocityTarget<Map>) {
-      if (const auto hit = map_.closest_hit(ray)) return map_.surface(*hit, ray).velocity;
-    }
-    return Vec3{};
+    const auto hit = map_.closest_hit(ray);
+    return hit ? map_.surface(*hit, ray).velocity : Vec3{};
   }
 
   /// Follows a ray that meets a body by itself.

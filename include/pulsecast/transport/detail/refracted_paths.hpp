@@ -17,7 +17,7 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows subrays one by one, from where they meet a body.
-template <bool with_velocity, OpticalTarget Map>
+template <bool with_velocity, SceneQueries Map>
 class RefractedPaths {
  public:
   /// `passages`: greatest number of surfaces that pass light on.

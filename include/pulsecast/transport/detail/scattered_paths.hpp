@@ -27,7 +27,7 @@ namespace PULSECAST_NAMESPACE::detail {
 /// cosine of incidence says, so that they are by the cosine about its way back. Their mean is the phase function of a
 /// turbid medium of such leaves. Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine,
 /// from a uniform disk; leaves: Ross 1981.
-template <OpticalTarget Map>
+template <SceneQueries Map>
 class ScatteredPaths {
  public:
   ScatteredPaths(const Map& map, const TransportInput& light, const Media& air, const MultipleScattering& settings,
@@ -36,7 +36,7 @@ class ScatteredPaths {
 
   /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all
   /// paths.
-  void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const HitSurface> surfaces) noexcept {
+  void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const PathVertex> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);
     for (std::size_t j = 0; j < p.rays.size; ++j) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/scene/detail/ray_queries.hpp>
 
 #include <doctest/doctest.h>
 
@@ -163,7 +163,7 @@ struct Pair {
 
 static_assert(MadeOfTriangles<Mesh> && MadeOfTriangles<HeightField> && !MadeOfTriangles<VoxelGrid<>>);
 static_assert(Textured<Mesh> && !Textured<HeightField>);
-static_assert(sizeof(RayHit) == 16);
+static_assert(sizeof(RayHit) == 24);
 
 TEST_CASE("a hit names part, primitive and range, and its surface says all there is to know") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
