@@ -272,21 +272,31 @@ class Scene {
     visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
-  /// Surface of a primitive where ray j hits it, in the part's frame; `uniform` is true if it is the same for all rays
-  /// that hit the primitive.
-  SurfaceInteraction surface_of(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j,
-                                bool& uniform) const noexcept {
+  /// Members of a surface that all its hits need, in the part's frame: less to set than a `SurfaceInteraction`.
+  struct Sample {
+    Vec3 normal{};
+    const Material* material = nullptr;
+    std::uint32_t material_index = 0;
+    bool foliage = false;
+    bool uniform = false;  ///< same for every ray that hits the primitive
+    std::optional<Vec2> texture{};
+  };
+
+  Sample sample(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
     const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept {
-      SurfaceInteraction surface = shape->surface(primitive, local, j);
-      surface.material = &(*part.materials)[surface.material_index];
-      uniform = UniformGeometry<Shape>;
+      const SurfaceInteraction surface = shape->surface(primitive, local, j);
+      Sample found{.normal = surface.normal,
+                   .material = &(*part.materials)[surface.material_index],
+                   .material_index = surface.material_index,
+                   .foliage = surface.foliage,
+                   .uniform = UniformGeometry<Shape>};
       if constexpr (Textured<Shape>)
-        if (surface.material->reflectance_map) [[unlikely]] {
-          uniform = false;
-          surface.texture =
+        if (found.material->reflectance_map) [[unlikely]] {
+          found.uniform = false;
+          found.texture =
               shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
         }
-      return surface;
+      return found;
     };
     return visit_shape(look, part.geometry);
   }
@@ -310,14 +320,13 @@ class Scene {
         const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      bool uniform = false;
-      SurfaceInteraction surface = this->surface_of(parts_[at], nearest.primitive_of(first), *local, first, uniform);
-      while (end < rays.size && nearest.id[end] == nearest.id[first] && uniform)
+      const Sample surface = sample(parts_[at], nearest.primitive_of(first), *local, first);
+      while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
         ++end;  // neighbouring rays often hit the same primitive
       const Vec3 n = surface.normal / local->direction_length;
       const Backscatter law = surface.material->backscatter(rays.wavelength, surface.texture);
-      surface.object = parts_[at].object;
-      surface.classification = surface.material->classification;
+      const ObjectId object = parts_[at].object;
+      const std::uint16_t classification = surface.material->classification;
       const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + (surface.normal == Vec3{} ? 1.0 : 0.0);
       for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
         const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
@@ -328,10 +337,16 @@ class Scene {
         if (law.lobe != 0) [[unlikely]]
           values = law.glossy(cosines);
         for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
-          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], surface.object, surface.classification};
+          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], object, classification};
       }
-      surface.normal = placement_of(at).rotation * surface.normal;
-      visit(first, end, surface);
+      visit(first, end,
+            SurfaceInteraction{.normal = placement_of(at).rotation * surface.normal,
+                               .material_index = surface.material_index,
+                               .foliage = surface.foliage,
+                               .classification = classification,
+                               .object = object,
+                               .material = surface.material,
+                               .texture = surface.texture});
     }
   }
 
