@@ -25,11 +25,10 @@ namespace {
 auto beside_the_tree(PulseIndex pulses) {
   const Laser laser{.wavelength = 1064_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const Scanner scanner{.pulse_rate = 300_kHz, .pulses = pulses, .laser = laser};
-  const RotatingHead head{.rate = 90_deg / scanner.duration().seconds()};
+  const RotatingHead head{.angular_rate = 90_deg / scanner.duration().seconds()};
   return Platform{
       Tripod{.position = {8, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about(axis::up, 45_deg)},
-      Deflector{head,
-                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 100_deg, .angle_min = -40_deg}, scanner}}};
+      Deflector{head, Deflector{PolygonMirror{.line_rate = 100_Hz, .sweep = 100_deg, .angle_min = -40_deg}, scanner}}};
 }
 
 /// Slots of a kind, in order.

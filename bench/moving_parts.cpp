@@ -53,7 +53,7 @@ Cars plain(std::size_t cars, double seconds) {
     MotionSequence round;
     for (int side = 0; side < 4; ++side) {
       round.motions.push_back({.velocity = rotation_about(axis::up, side * pi / 2) * way, .duration = block / speed});
-      round.motions.push_back({.rate = pi / 2, .duration = 1});
+      round.motions.push_back({.angular_rate = pi / 2, .duration = 1});
     }
     parts.push_back(
         {.geometry = shape,

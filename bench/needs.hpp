@@ -33,7 +33,7 @@ using namespace pulsecast::literals;
 }
 
 inline constexpr StraightLine flight{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60};
-inline constexpr OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg};
+inline constexpr OscillatingMirror mirror{.cycle_rate = 50_Hz, .half_angle = 20_deg};
 inline constexpr Scanner laser{
     .pulse_rate = 100_kHz,
     .pulses = 100'000,

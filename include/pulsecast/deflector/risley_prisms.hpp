@@ -15,9 +15,8 @@ namespace PULSECAST_NAMESPACE {
 /// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end,
 /// towards which it bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;  ///< angle between the faces [rad]
-  double turns_per_second =
-      100;  ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
+  double wedge = pi / 10;          ///< angle between the faces [rad]
+  double rotation_rate = 100;      ///< positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
   double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
@@ -53,7 +52,7 @@ struct RisleyPrisms {
     require_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
     for (const Prism& p : prisms) {
       require_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
-      require_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
+      require_within("Prism::rotation_rate", p.rotation_rate, -1e12, 1e12, "Hz");
       require_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
       require_angle("Prism::start", p.start);
     }
@@ -91,7 +90,7 @@ struct RisleyPrisms {
     simd::Mask passes = all_lanes();
     light = Vec3Lanes(normalize(incident));
     for (const Prism& p : prisms) {
-      const auto turn = simd::sincos(simd::Doubles(p.start + 2 * pi * t.phase(p.turns_per_second)));
+      const auto turn = simd::sincos(simd::Doubles(p.start + 2 * pi * t.phase(p.rotation_rate)));
       const auto wedge = simd::sincos(p.wedge);
       const double aside = p.inclined_exit ? -wedge.sin : wedge.sin;
       const Vec3Lanes square(-axis::forward), inclined{turn.sin * aside, simd::Doubles{} - wedge.cos, turn.cos * aside};

@@ -129,7 +129,7 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
   file.write(text::joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
-                           text::to_text(sensor.turns_per_second),
+                           text::to_text(sensor.rotation_rate),
                            "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
   file.write(text::joined(
       {"  \"beam_altitude_angles\": ", detail::json_list(altitudes),

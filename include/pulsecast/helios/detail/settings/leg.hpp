@@ -59,11 +59,11 @@ struct LegPlatformSettings {
 struct LegScannerSettings {
   bool active = true;                          ///< `active`
   double pulse_rate = 0;                       ///< default: the scanner's first; `pulseFreq_hz` [Hz]
-  double scan_frequency = 0;                   ///< `scanFreq_hz` [Hz]
+  double scan_rate = 0;                        ///< `scanFreq_hz` [Hz]
   std::optional<double> scan_angle{};          ///< half angle, default the device's limit; `scanAngle_deg` [rad]
   std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
   std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
-  double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
+  double head_rate = 0;                        ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
   std::optional<double>
@@ -73,7 +73,7 @@ struct LegScannerSettings {
 
   void validate() const {
     require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
-    require_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    require_not_negative("scanFreq_hz", scan_rate, "Hz");
     if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
     require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
     require_not_negative("opticsWarmupPhase_s", warm_up, "s");
