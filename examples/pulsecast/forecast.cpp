@@ -273,7 +273,7 @@ class Forecaster {
     measure_as_is();
     out.sampled = sampled_;
     prepare_others();
-    for (const ReceiverOverrides& how : candidates()) out.all.push_back(forecast(how));
+    for (const ReceiverOverrides& overrides : candidates()) out.all.push_back(forecast(overrides));
     return out;
   }
 
@@ -335,7 +335,7 @@ class Forecaster {
     double trials = 0;  // in units of the survey's own settings
     const auto own = static_cast<double>(subrays_of(rings_));
     const auto effort = [&](int rings) { return 0.3 + 0.7 * static_cast<double>(subrays_of(rings)) / own; };
-    for (const ReceiverOverrides& how : candidates()) trials += effort(how.rings.value_or(rings_));
+    for (const ReceiverOverrides& overrides : candidates()) trials += effort(overrides.rings.value_or(rings_));
     const auto affordable = [&](double seconds, double each, double least, double most) {
       return static_cast<std::uint64_t>(std::clamp(seconds * workers_ / (each * met_cost_), least, most));
     };
@@ -366,19 +366,20 @@ class Forecaster {
     return all;
   }
 
-  Forecast forecast(const ReceiverOverrides& how) {
-    Forecast f{.how = how, .subrays = subrays_of(how.rings.value_or(rings_)), .points = census_.points};
-    const bool other = how != ReceiverOverrides{};
+  Forecast forecast(const ReceiverOverrides& overrides) {
+    Forecast f{
+        .overrides = overrides, .subrays = subrays_of(overrides.rings.value_or(rings_)), .points = census_.points};
+    const bool other = overrides != ReceiverOverrides{};
     double computing = computing_;
     if (other) {
-      simulation_.receive(how);
+      simulation_.receive(overrides);
       const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
       if (own_cost_ > 0)
         computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
       add_points(samples, f.points);
     }
     entire(f, computing);
-    simulation_.receive({how.rings, how.bin_size, true});
+    simulation_.receive({overrides.rings, overrides.bin_size, true});
     compare(simulation_.sample(compared_, threads_), f);
     simulation_.receive({});
     return f;

@@ -14,7 +14,7 @@
 
 /// Forecast of a survey with certain settings.
 struct Forecast {
-  pulsecast::helios::ReceiverOverrides how{};
+  pulsecast::helios::ReceiverOverrides overrides{};
   std::size_t subrays = 0;        ///< per pulse
   Estimate seconds{};             ///< total run time [s]
   Estimate memory{};              ///< peak [byte]

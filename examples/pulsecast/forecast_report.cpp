@@ -92,10 +92,10 @@ class SettingsChooser {
   }
 
   [[nodiscard]] int rings(const Forecast& f) const {
-    return f.how.rings.value_or(survey_.scanner.channels.front().waveform.rings);
+    return f.overrides.rings.value_or(survey_.scanner.channels.front().waveform.rings);
   }
   [[nodiscard]] double bin_size(const Forecast& f) const {
-    return f.how.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
+    return f.overrides.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
   }
 
   [[nodiscard]] std::string settings(const Forecast& f) const {
@@ -192,11 +192,11 @@ class SettingsChooser {
 
 }  // namespace
 
-bool forecast(const Options& options, const SurveyFile& file, const Loading& how, Notes& notes) {
+bool forecast(const Options& options, const SurveyFile& file, const Loading& loading, Notes& notes) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> scene_notes;
-  const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, how, scene_notes);
-  const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, loading, scene_notes);
+  const double loading_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   notes.odd(simulation->warnings());
   notes.require_none();
   if (simulation->compiled().source.size() == 0) {
@@ -205,7 +205,7 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
   }
   Options all = options;
   take_columns(all, *simulation);
-  const Forecasts found = forecasts_of(*simulation, file.survey, all, how.settings.seed, loading);
+  const Forecasts found = forecasts_of(*simulation, file.survey, all, loading.settings.seed, loading_time);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)

@@ -152,7 +152,7 @@ class Simulation {
   virtual RunSummary run(const RunOptions& options, const Sink& sink) const = 0;
 
   /// Replaces the receivers. Scene and legs remain.
-  virtual void receive(const ReceiverOverrides& how) = 0;
+  virtual void receive(const ReceiverOverrides& overrides) = 0;
   /// Simulates blocks, in any order. Equal blocks give equal samples, except for the time, on any number of threads.
   [[nodiscard]] virtual std::vector<Sample> sample(std::span<const SampleBlock> blocks, unsigned threads) const = 0;
   /// Counts the echoes of single slots.

@@ -212,13 +212,13 @@ class LoadedSimulation final : public Simulation {
     return pulsecast::run(*pipeline_, options, sink);
   }
 
-  void receive(const ReceiverOverrides& how) override {
+  void receive(const ReceiverOverrides& overrides) override {
     std::vector<std::string> odd;
-    const ScannerSettings scanner = limits_.sampled_alike(scanner_of(how), odd);
-    if (settings_.echo_width && !how.ideal)
-      connect<GaussianFit>(scanner, how.ideal, odd);
+    const ScannerSettings scanner = limits_.sampled_alike(scanner_of(overrides), odd);
+    if (settings_.echo_width && !overrides.ideal)
+      connect<GaussianFit>(scanner, overrides.ideal, odd);
     else
-      connect<NoWidth>(scanner, how.ideal, odd);
+      connect<NoWidth>(scanner, overrides.ideal, odd);
     add_new(warnings_, odd);
   }
 
@@ -276,12 +276,12 @@ class LoadedSimulation final : public Simulation {
     return std::move(built.parts);
   }
 
-  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& how) const {
+  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& overrides) const {
     ScannerSettings scanner = survey_.scanner;
     for (ChannelSettings& channel : scanner.channels) {
-      channel.waveform.rings = how.rings.value_or(channel.waveform.rings);
-      channel.waveform.bin_size = how.bin_size.value_or(channel.waveform.bin_size);
-      if (!how.ideal) continue;
+      channel.waveform.rings = overrides.rings.value_or(channel.waveform.rings);
+      channel.waveform.bin_size = overrides.bin_size.value_or(channel.waveform.bin_size);
+      if (!overrides.ideal) continue;
       channel.accuracy = 0;
       channel.errors.range_noise.clear();
     }
