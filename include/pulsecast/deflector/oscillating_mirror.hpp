@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE {
 /// Motion of an oscillating mirror from one end to the other.
 enum class Swing : std::uint8_t {
   triangle,  ///< constant rate, and constant acceleration at the turning points
-  sine,      ///< harmonic, as of a resonant mirror
+  sine,      ///< harmonic, such as that of a resonant mirror
 };
 
 /// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a

@@ -24,7 +24,7 @@ struct Prism {
 
 /// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from
 /// the front of the face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by
-/// that behind it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
+/// that after it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
 inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double ratio) noexcept {
   const simd::Doubles zero{}, ratios = zero + ratio, cosine = -dot(direction, normal);
   const simd::Doubles sine_squared = ratios * ratios * (1.0 - cosine * cosine);
@@ -60,7 +60,7 @@ struct RisleyPrisms {
     require_positive("RisleyPrisms::incident (length)", length(incident), "");
   }
 
-  /// Unit direction of the beam behind the last wedge; empty at total reflection.
+  /// Unit direction of the beam after the last wedge; empty at total reflection.
   [[nodiscard]] std::optional<Vec3> direction(Tick t) const noexcept {
     Vec3Lanes light;
     if (directions(TickLanes(t), light)[0] == 0) return std::nullopt;
@@ -85,7 +85,7 @@ struct RisleyPrisms {
   }
 
  private:
-  /// Unit directions behind the last wedge; returns the lanes without total reflection.
+  /// Unit directions after the last wedge; returns the lanes without total reflection.
   simd::Mask directions(const TickLanes& t, Vec3Lanes& light) const noexcept {
     simd::Mask passes = all_lanes();
     light = Vec3Lanes(normalize(incident));

@@ -24,8 +24,8 @@ using PrimitiveIndex = std::uint32_t;
 struct BundleOrigin {
   Vec3 origin{};                                         ///< common origin of the rays [m]
   double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
-  double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
-  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
+  double near = 0;                                       ///< hits are farther than this range, at least 0 [m]
+  double far = std::numeric_limits<double>::infinity();  ///< hits are not beyond this range [m]
   std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
 
   double wavelength = 1.064e-6;    ///< wavelength of the light [m]
@@ -120,10 +120,10 @@ struct RayBundle : BundleOrigin {
   }
 };
 
-/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less.
-/// Triangles heed the ranges; other shapes may meet a ray before it begins.
+/// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at most their minimum.
+/// Triangles respect the ranges; other shapes may be hit before a ray begins.
 struct StaggeredBundle : RayBundle {
-  alignas(64) Column begin;  ///< ray j meets nothing up to this range; set for `padded_size()` rays [m]
+  alignas(64) Column begin;  ///< ray j has no hits up to this range; set for `padded_size()` rays [m]
 
   StaggeredBundle() noexcept {}
   /// Takes the common properties, and leaves the directions and ranges unset.
@@ -154,13 +154,13 @@ struct ClosestHits {
 
   alignas(64) std::array<double, RayBundle::capacity> range;      ///< range of the hit [m]; `far` without a hit
   alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower;
-                                                                  ///< `none` if nothing was met
+                                                                  ///< `none` without a hit
   std::uint64_t part = 0;                                         ///< part under test, in the upper half
 
   /// No hits so far of a bundle's rays.
   explicit ClosestHits(const RayBundle& rays) noexcept {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
+      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane has no hits
       id[j] = none;
     }
   }

@@ -42,7 +42,7 @@ namespace detail {
 
 /// Haze of a visibility, from 1 to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
 /// 2001. Lidar ratio: 50 sr, of polluted continental air at 0.532 um (Li et al. 2022, 20 sr and more below the 70 sr of
-/// CALIPSO's version 4); not known to hold at other wavelengths. Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over
+/// CALIPSO's version 4); unverified at other wavelengths. Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over
 /// India). @throws SettingError out of range
 [[nodiscard]] inline Medium haze(double visibility, double wavelength) {
   require_within("haze (visibility)", visibility, 1e3, 1e5, "m");
@@ -64,9 +64,8 @@ namespace detail {
 
 /// Smoke of fires of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
 /// `extinction` by Kim 2001, measured in haze and fog, not smoke. Lidar ratio: 70 sr at 0.532 um (Li et al. 2022, from
-/// 65 to 75 sr over the Atlantic); not known to hold at other wavelengths. Scattered: 0.92 at 0.55 um, from 0.88 for
-/// grass to 0.97 for boreal forest (Sayer et al. 2014).
-/// @throws SettingError out of range
+/// 65 to 75 sr over the Atlantic); unverified at other wavelengths. Scattered: 0.92 at 0.55 um, from 0.88 for grass to
+/// 0.97 for boreal forest (Sayer et al. 2014). @throws SettingError out of range
 [[nodiscard]] inline Medium smoke(double visibility, double wavelength) {
   require_within("smoke (visibility)", visibility, 1, 1e5, "m");
   require_within("smoke (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -143,8 +142,8 @@ struct Precipitation {
     return std::numbers::pi / 2 * diameter * diameter;
   }
   /// Differential cross section for scattering straight back of a particle of a diameter [m] [m^2/sr]: by the shadow,
-  /// of its front, reflectance / (4 pi), as of a mirror sphere; of its inside, what brings both to `lidar_ratio`,
-  /// weakened by absorption.
+  /// of its front, reflectance / (4 pi), that of a mirror sphere; of its inside, the rest to `lidar_ratio`, weakened by
+  /// absorption.
   [[nodiscard]] double backscatter_cross_section(double diameter) const noexcept {
     return std::numbers::pi / 4 * diameter * diameter * (front() + inside() * std::exp(-absorption * diameter));
   }

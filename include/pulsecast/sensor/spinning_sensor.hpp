@@ -44,9 +44,9 @@ struct SpinningSensor {
   double start = 0;            ///< heading at the survey's start, from forward to the right [rad]
   double exit_radius = 0;      ///< distance of the exits from the axis [m]
   Laser beam{};                ///< every laser's beam
-  double range_min = 0;        ///< shortest range that is told [m]
-  double range_max = 100;      ///< longest range that is told [m]
-  double range_deviation = 0;  ///< standard deviation of told ranges [m]
+  double range_min = 0;        ///< minimum measured range [m]
+  double range_max = 100;      ///< maximum measured range [m]
+  double range_deviation = 0;  ///< standard deviation of measured ranges [m]
 
   /// @throws SettingError for settings out of range
   void validate() const {

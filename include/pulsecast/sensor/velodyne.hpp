@@ -41,9 +41,9 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
   return sensor;
 }
 
-/// Velodyne VLP-32C, which spins 5 to 20 times a second. Two lasers fire at a time. Axes as of the VLP-16.
-/// Source: Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet. Noise and divergence
-/// taken as for the VLP-16; its pulse length is not published: that of the VLP-16.
+/// Velodyne VLP-32C, which spins 5 to 20 times a second. Two lasers fire at a time. Axes as in the VLP-16. Source:
+/// Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet. Noise and divergence taken as
+/// for the VLP-16; its pulse length is not published: that of the VLP-16.
 [[nodiscard]] inline SpinningSensor velodyne_vlp_32c(double rotation_rate = 10) {
   using namespace literals;
   struct Row {
