@@ -79,10 +79,11 @@ class Simulation {
     bool waveform_noise = false;   ///< add receiver noise
     bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
     bool library_physics =
-        false;                   ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
-    bool light_paths = false;    ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
-    bool platform_noise = true;  ///< true: as in the survey; false: none
-    bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
+        false;  ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
+    bool light_paths =
+        false;  ///< true: follows multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
+    bool platform_noise = true;                   ///< true: as in the survey; false: none
+    bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
     std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty

@@ -22,7 +22,7 @@
 #include <pulsecast/sensor/ouster.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>
 
-/// Files by which decoders know the lasers of a sensor, written and read.
+/// Writers and readers of the files that describe a sensor's lasers to decoders.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in radians, heights in

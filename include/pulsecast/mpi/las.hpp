@@ -63,7 +63,7 @@ class MpiLasPiece final : public MpiPiece {
     return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
   }
 
-  /// Finished records, for a position behind `number` points. Throws a `FileError` if coordinates do not fit.
+  /// Finished records, for a position after `number` points. Throws a `FileError` if coordinates do not fit.
   [[nodiscard]] std::span<const std::byte> located(const Vec3& first, std::uint64_t number, std::uint64_t packets_at) {
     const std::size_t size = encoder_.layout().record();
     encoder_.choose_offset(first);

@@ -59,10 +59,10 @@ struct RunRequest {
   }
 };
 
-/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, of colours
-/// only if asked. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with
-/// the result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for
-/// colours of a survey without any.
+/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, colours only
+/// on request. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the
+/// result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for colours of
+/// a survey without any.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& asked, PointExtras extras, const Run& run) {
   asked.validate();

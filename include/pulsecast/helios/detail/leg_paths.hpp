@@ -61,7 +61,7 @@ class LegPaths {
   /// Number for messages, rounded to three digits after the point.
   [[nodiscard]] static std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
-  /// True if a leg goes on along the plan of the leg before.
+  /// True if a leg continues the plan of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
     const auto shares = [&]<class Plan>(const std::shared_ptr<const Plan>& plan) {
       const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);

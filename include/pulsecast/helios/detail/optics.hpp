@@ -54,8 +54,8 @@ namespace detail {
 /// Vertical limits of the pulses of a polygon mirror [rad].
 struct MirrorGate {
   double low = 0, high = 0;
-  bool is_limited = false;  ///< the leg asks for a wider gate than the device has
-  bool is_cut = false;      ///< the leg asks for a gate beyond the sweep of the mirror
+  bool is_limited = false;  ///< the leg requests a wider gate than the device has
+  bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
 /// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the
@@ -209,8 +209,8 @@ struct OpticBuilder {
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
 }
 
-/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as
-/// no beam meets them.
+/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass,
+/// because no beam reaches them.
 inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
@@ -302,8 +302,8 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for;
-/// empty if there is nothing to tell.
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
+/// measured; empty if there is none.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
   return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
@@ -314,9 +314,9 @@ namespace detail {
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
 /// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
-/// ranges. By the library's physics they are timed by their peaks, and where light goes on: between the surface of
-/// water and its bottom a mean range says nothing. Its threshold is that of `WaveformSettings`, unless the scanner has
-/// another than that of HELIOS++, which is less than a photon.
+/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
+/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
+/// the scanner has another than that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;

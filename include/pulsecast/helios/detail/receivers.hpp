@@ -74,8 +74,8 @@ template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
 /// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth
-/// of the pulse. Noise is a sixth of the least power of an echo, so that false echoes are rare though it listens to the
-/// whole gate.
+/// of the pulse. Noise is a sixth of the minimum power of an echo, so that false echoes are rare although the whole
+/// gate is sampled.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

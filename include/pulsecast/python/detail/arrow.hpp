@@ -224,7 +224,7 @@ class ArrowStream {
     return *static_cast<ArrowStream*>(stream->private_data);
   }
 
-  /// Calls `fill`; 0, or an error number of which `get_last_error` tells.
+  /// Calls `fill`; 0, or an error number that `get_last_error` explains.
   template <class Fill>
   [[nodiscard]] int filled(const Fill& fill) noexcept {
     error_ = nullptr;

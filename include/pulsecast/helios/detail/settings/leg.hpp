@@ -36,7 +36,7 @@ struct TrajectorySettings {
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
   bool sync_clock = false;                     ///< start the clock at the time in the file; `syncGPSTime`
-  bool teleports = false;  ///< jump to the start as by a leg without pulses: the optic starts anew. `teleportToStart`
+  bool teleports = false;  ///< jump to the start, like a leg without pulses: the optic restarts. `teleportToStart`
   std::optional<double> start{};  ///< on the clock of the file, default its first sample; `tStart` [s]
   std::optional<double> end{};    ///< on the clock of the file, default its last sample; `tEnd` [s]
 

@@ -21,7 +21,7 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Placement of geometry: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
+/// Placement of geometry: maps each vertex to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
 /// `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
@@ -107,7 +107,7 @@ struct SwapSettings {
   bool operator==(const SwapSettings&) const = default;
 };
 
-/// Named number that the points of a part are told: `<attribute>`, of this library.
+/// Named number of the points of a part: `<attribute>`, of this library.
 struct AttributeSettings {
   std::string name{};  ///< name of the column; `name`
   double value = 0;    ///< number; `value`
@@ -144,7 +144,7 @@ struct PartSettings {
   bool operator==(const PartSettings&) const = default;
 };
 
-/// Light that goes on from smooth surfaces: `<light>`, of this library. As `LightPaths`.
+/// Multi-bounce light from smooth surfaces: `<light>`, of this library. See `LightPaths`.
 struct LightSettings {
   int passages = 8;             ///< greatest number of surfaces that pass light on; `passages`
   double share_min = 1e-4;      ///< least share of a subray that is followed; `leastShare`
@@ -226,7 +226,7 @@ struct MediumSettings {
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
     region(known_wavelength).validate();
   }
-  static constexpr double known_wavelength = 905e-9;  ///< for which all presets are known [m]
+  static constexpr double known_wavelength = 905e-9;  ///< for which all presets are defined [m]
 
   bool operator==(const MediumSettings&) const = default;
 };
@@ -249,7 +249,7 @@ struct SceneSettings {
     for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));
     return Media(std::move(regions));
   }
-  /// True if light goes on from its surfaces.
+  /// True if its surfaces reflect or transmit light further.
   [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
 
   void validate() const {

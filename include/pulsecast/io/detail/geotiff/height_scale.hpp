@@ -105,8 +105,8 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   return 1;
 }
 
-/// Heights of a band, from 1, by all that a file tells. @throws FileError for a scale that is no number, or 0, and as
-/// `metres_by_keys`
+/// Heights of a band, counted from 1, by all tags of a file. @throws FileError for a scale that is no number, or 0, and
+/// as `metres_by_keys`
 [[nodiscard]] inline HeightScale height_scale(TiffFile& file, std::uint16_t band) {
   const auto text = file.tags<char>(geotiff::metadata);
   const std::string_view all(text.data(), text.size());

@@ -32,7 +32,7 @@ enum class LasFormat : std::uint8_t {
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
-  amplitude,    ///< received power of the echo, as of most instruments
+  amplitude,    ///< received power of the echo, as most instruments report it
   /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface
   /// there, but for the air
   range_normalized,

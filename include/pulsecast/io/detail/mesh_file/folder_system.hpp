@@ -30,7 +30,7 @@ class FolderSystem : public Assimp::IOSystem {
   /// First file that was refused, as it is outside; empty if there is none.
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
 
-  /// Files that the importer asked for, there or not.
+  /// Files that the importer requested, existing or not.
   [[nodiscard]] const std::set<std::string>& looked_for() const noexcept { return looked_for_; }
 
   bool Exists(const char* file) const override { return is_open_to(found(file)); }

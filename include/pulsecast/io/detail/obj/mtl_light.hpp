@@ -18,7 +18,7 @@
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/water_types.hpp>
 
-/// Keys of MTL files for light that goes on from a surface.
+/// Keys of MTL files for light reflected or transmitted specularly.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Numbers from the word `first` on, at most `most`; empty if one of them is none, or outside the limits.
@@ -35,7 +35,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return numbers;
 }
 
-/// True for a standard key of light that goes on.
+/// True for a standard key among them.
 [[nodiscard]] inline bool is_light_key(std::string_view key) {
   return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
 }
