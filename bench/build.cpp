@@ -50,7 +50,7 @@ void check(const std::string& name, const Shape& shape, const MeshData& mesh) {
   std::exit(1);
 }
 
-/// On so many threads, if it can be told.
+/// On `threads` threads, if the number can be set.
 template <class Shape>
 Shape build(MeshData mesh, [[maybe_unused]] unsigned threads) {
   if constexpr (std::constructible_from<Shape, MeshData, unsigned>)
@@ -72,7 +72,7 @@ Entrant ours(const std::string& name, const MeshData& mesh, unsigned threads) {
           }};
 }
 
-/// Adds it for one thread, and for all if it can be told.
+/// Adds it for one thread, and for all if the number can be set.
 template <class Shape>
 void add(std::vector<Entrant>& all, const std::string& name, const MeshData& mesh) {
   all.push_back(ours<Shape>(name + "/1", mesh, 1));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of slots that give nothing, on one thread [ns]: a tripod beside a lone tree, in slots that the mirror blocks, in
-// pulses beside the tree's bounds, in pulses inside them that meet nothing, and, to compare, in pulses that give
-// echoes. Rows are named slots/subrays.
+// Cost of empty slots, on one thread [ns]: a tripod beside a lone tree, in slots that the mirror blocks, in pulses
+// beside the tree's bounds, in pulses inside them without hits, and, to compare, in pulses with echoes. Rows are named
+// slots/subrays.
 
 #include <cstddef>
 #include <functional>

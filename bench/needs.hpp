@@ -40,8 +40,8 @@ inline constexpr Scanner laser{
     .laser = {.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad}};
 [[nodiscard]] inline Mount mount() { return {.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})}; }
 
-/// Prints what a pulse takes [ns], by the processor's time of this thread, and the sum of all ranges [m], which tells
-/// whether others did the same work.
+/// Prints the processor time of a pulse on this thread [ns], and the sum of all ranges [m], by which programs are
+/// compared.
 template <class S>
 int go(const S& survey) {
   auto workspace = survey.workspace();

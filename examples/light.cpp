@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Light that goes on. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle show what is
-// not where it seems; a drone over a river, whose green light passes the waves down to the bed. Writes street.las,
-// street.png, river.las and river.png.
+// Multi-bounce light. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle produce ghost
+// points; a drone over a river, whose green light passes the waves down to the bed. Writes street.las, street.png,
+// river.las and river.png.
 
 #include <cmath>
 #include <cstdint>

@@ -25,7 +25,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 struct Results {
   std::vector<std::size_t> first{0};  ///< echo of each pulse, and of the one that would follow the last
   std::vector<Echo> echoes{};
-  std::vector<double> gaps{};  ///< the share of each pulse's energy that meets no plant
+  std::vector<double> gaps{};  ///< the share of each pulse's energy that hits no plant
 
   [[nodiscard]] std::size_t pulses() const noexcept { return first.size() - 1; }
   [[nodiscard]] std::span<const Echo> of(std::size_t pulse) const noexcept {
@@ -119,9 +119,9 @@ struct Mean {
   [[nodiscard]] double deviation() const noexcept { return std::sqrt(std::fmax(rms() * rms() - mean() * mean(), 0)); }
 };
 
-/// What a forester wants to know: how much of the sky or of the ground plants hide, and how high they are.
+/// Quantities of forestry: the share of the sky or of the ground that plants hide, and their height.
 struct Canopy {
-  double gap_fraction = unknown;  ///< energy that meets no plant, of all that is sent [%]
+  double gap_fraction = unknown;  ///< energy that hits no plant, of the energy sent [%]
   std::vector<double> heights{};  ///< of echoes of plants above the ground [m]
 };
 
@@ -155,7 +155,7 @@ inline void compare(const Canopy& reference, const Canopy& found, Errors& errors
   errors.height_99 = difference(0.99);
 }
 
-/// What a preview forecasts: the echoes of every so many pulses, times as many, less those that there are [%].
+/// Error of a preview: n times the number of echoes of every n-th pulse, less the true number [%].
 [[nodiscard]] inline double forecast_error(const Results& found, std::size_t stride) {
   std::size_t echoes = 0;
   for (std::size_t i = 0; i < found.pulses(); i += stride) echoes += found.of(i).size();

@@ -16,8 +16,7 @@ namespace tradeoff {
 
 using namespace pulsecast;
 
-/// Pulses that are known beforehand, so that all settings of a scenario get the same ones, and making them is in
-/// nobody's time.
+/// Pulses made beforehand: all settings of a scenario get the same ones, and no time includes making them.
 class Pulses {
  public:
   Pulses() = default;

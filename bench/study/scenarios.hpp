@@ -55,8 +55,8 @@ template <class S>
   return std::make_shared<const std::remove_cvref_t<S>>(std::forward<S>(scene));
 }
 
-/// The pulses whose beams meet more than one thing: of the rays out to 1.2 radii some differ in what they meet, or by a
-/// hand's breadth.
+/// Pulses whose beams hit more than one object: of the rays out to 1.2 radii some differ in their primitives, or in
+/// range by a hand's breadth.
 template <class AnyScene>
 [[nodiscard]] auto meets_an_edge(const AnyScene& scene, const Laser& laser) {
   return [&scene, &laser, footprint = SunflowerFootprint(37),

@@ -60,7 +60,7 @@ void warn(const std::vector<std::string>& warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-/// What a mesh looks like, and what its points are told.
+/// Appearance of a mesh, and labels of its points.
 struct MeshLooks {
   std::optional<std::array<double, 3>> colour{};
   std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture{};
@@ -341,7 +341,7 @@ void bind_simulation(py::module_& m) {
            "receiver noise. "
            "fixed_incidence: scatter as at normal incidence. library_physics: physics of the library in place of "
            "HELIOS++'s. "
-           "light_paths: light goes on from mirrors, glass and water. "
+           "light_paths: follow light from mirrors, glass and water. "
            "platform_noise, leg_noise: False removes those of the survey. threads: for "
            "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises "
            "SettingError or FileError.")
@@ -366,8 +366,8 @@ void bind_simulation(py::module_& m) {
           [](const Simulation& s) -> py::object {
             const Simulation::Scene scene = s.scene();
             if (scene.empty) return py::none();
-            return py::make_tuple(py::make_tuple(scene.least.x, scene.least.y, scene.least.z),
-                                  py::make_tuple(scene.most.x, scene.most.y, scene.most.z));
+            return py::make_tuple(py::make_tuple(scene.min.x, scene.min.y, scene.min.z),
+                                  py::make_tuple(scene.max.x, scene.max.y, scene.max.z));
           },
           "Two corners of the scene's bounding box [m, world]; None for an empty scene.")
       .def_property_readonly(
@@ -391,7 +391,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_common(m);
   bind_settings(m);
   bind_documents(m);
-  bind_light(m);  // of whose types meshes are told
+  bind_light(m);  // before meshes, which use its types
   bind_mesh(m);
   bind_raycasting_scene(m);
   bind_simulation(m);

@@ -72,7 +72,7 @@ TEST_CASE("each pulse that points down at a plane has one echo on it, on any num
   CHECK(scene.parts == 1);
   CHECK(scene.moving == 0);
   CHECK(scene.triangles == 2);
-  CHECK(scene.most == Vec3{100, 100, 0});
+  CHECK(scene.max == Vec3{100, 100, 0});
   const Cloud cloud = run(*simulation);
   CHECK(cloud.size() == 2000);
   CHECK(farthest_from_plane(cloud) < 0.05);  // obliquely, the echo of a footprint comes from before its middle

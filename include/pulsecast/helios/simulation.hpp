@@ -121,7 +121,7 @@ class Simulation {
 
   /// Size of a loaded scene.
   struct Scene {
-    Vec3 least{}, most{};                              ///< corners of the bounding box, in the world [m]
+    Vec3 min{}, max{};                                 ///< corners of the bounding box, in the world [m]
     std::size_t parts = 0, moving = 0, triangles = 0;  ///< number of parts, of moving ones among them, of triangles
     std::size_t memory = 0;                            ///< memory held; shared data counts once [byte]
     bool empty = true;                                 ///< true: no bounding box

@@ -101,7 +101,7 @@ class PageServer {
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
   /// Sets the progress shown.
-  void tell(const Progress& progress) {
+  void show(const Progress& progress) {
     const std::lock_guard lock(mutex_);
     progress_ = progress;
   }
