@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What making a mesh costs: million triangles a second, by the clock on the wall and by the processor's time, and bytes
-// a triangle, for tree and triangles together; beside it Embree 3, at its medium and its high build quality, by turns
-// in the same run. A row is printed only once the mesh has given the same answers as `Linear` on a sample. Rows are
-// named scene/accelerator/threads. An OBJ file in metres, if one is given, is a scene of its own. Embree's bytes are
-// those of its tree with vertices and corners in single precision; the most it held on the way stands beside them.
+// Cost of building a mesh: million triangles a second, by wall-clock and processor time, and bytes a triangle, for tree
+// and triangles together; beside it Embree 3, at its medium and its high build quality, alternating in the same run. A
+// row is printed only once the mesh has given the same answers as `Linear` on a sample. Rows are named
+// scene/accelerator/threads. An OBJ file in metres, if one is given, is a scene of its own. Embree's bytes are those of
+// its tree with vertices and corners in single precision; its peak memory stands beside them.
 
 #include <concepts>
 #include <cstddef>

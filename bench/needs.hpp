@@ -14,8 +14,7 @@
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
-/// What the programs `needs_*.cpp` share: the same ground, the same flight, one clock. They differ in what they hold
-/// besides.
+/// Common ground, flight and clock of the programs `needs_*.cpp`, which differ in the other types that they contain.
 namespace needs {
 
 using namespace pulsecast;

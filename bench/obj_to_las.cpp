@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What many write first: an OBJ file is scanned from a tripod into a LAS file. `include_cost.sh` compiles it. Usage:
+// Typical first program: an OBJ file is scanned from a tripod into a LAS file. `include_cost.sh` compiles it. Usage:
 // obj_to_las OBJ LAS
 #include <memory>
 #include <utility>

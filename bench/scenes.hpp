@@ -18,7 +18,7 @@
 #include "../examples/street.hpp"
 #include "../examples/tree.hpp"
 
-/// What the benchmarks scan, and with which pulses.
+/// Scenes and pulses of the benchmarks.
 namespace bench {
 
 using namespace pulsecast;

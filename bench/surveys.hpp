@@ -51,7 +51,7 @@ using Mesh = TriangleMesh<>;
   return Scene<Mesh>({{.geometry = std::make_shared<const Mesh>(std::move(mesh))}});
 }
 
-/// What a run hands to its sinks, kept: as one batch.
+/// Sink that keeps the results of a run as one batch.
 struct Recording {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;

@@ -33,13 +33,12 @@ struct Results {
   }
 };
 
-/// Whether a class is of plants: what ASPRS LAS 1.4 R15, table 17, calls low, medium and high vegetation, and 64, here
-/// of wood.
+/// True for a class of plants: low, medium and high vegetation by ASPRS LAS 1.4 R15, table 17, and 64, here of wood.
 [[nodiscard]] inline bool is_plant(std::uint16_t classification) noexcept {
   return (classification >= 3 && classification <= 5) || classification == 64;
 }
 
-/// What a survey with this footprint finds, which it records.
+/// Results of a survey that records the subrays of this footprint.
 template <class AnySurvey>
 [[nodiscard]] Results results_of(const AnySurvey& survey, const Pattern& footprint) {
   Results all;
@@ -56,7 +55,7 @@ template <class AnySurvey>
   return all;
 }
 
-/// How far the echoes of a setting are from those of the reference. Not a number where there is nothing to compare.
+/// Deviations of the echoes of a setting from those of the reference. NaN where there is nothing to compare.
 struct Errors {
   double echoes = unknown;                               ///< their number, less that of the reference [%]
   double missed = unknown, invented = unknown;           ///< echoes, of those of the reference [%]

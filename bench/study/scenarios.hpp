@@ -22,7 +22,7 @@
 #include "pulses.hpp"
 #include "shapes.hpp"
 
-/// What is scanned, from where, and what else could stand for it.
+/// Scenes and platforms of the scenarios, and alternative models of the scenes.
 namespace tradeoff {
 
 using namespace pulsecast::literals;

@@ -126,7 +126,7 @@ auto with_detector(double bin, Width width, double threshold, Function function)
   }
 }
 
-/// What a setting finds. Widths are measured whether it asks for them or not, as they do not change the echoes.
+/// Results of a setting. Widths are always measured, as they do not change the echoes.
 [[nodiscard]] inline Results results_of(const Scenario& scenario, const Setting& setting) {
   const Width width = setting.width == Width::fit ? Width::fit : Width::moments;
   return std::visit(

@@ -27,7 +27,7 @@ using ExactMesh = TriangleMesh<Bvh<double>>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Foliage = VoxelGrid<TransmissiveVoxels>;
 
-/// What a mesh was made from, but for corners that triangles share.
+/// Source data of a mesh, but for corners that triangles share.
 template <class AnyMesh>
 [[nodiscard]] MeshData data_of(const AnyMesh& mesh) {
   MeshData data;

@@ -40,7 +40,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 namespace {
 
-/// Where a platform is, as a row of a NumPy array.
+/// Place of a platform, as a row of a NumPy array.
 struct PoseRow {
   double time, x, y, z, roll, pitch, yaw;
   std::int32_t leg, spare{};

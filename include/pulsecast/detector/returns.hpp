@@ -73,8 +73,8 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   }
 
  private:
-  /// Removes the weakest echoes, the farther one of equals, until `number` are left; `held` at the end stay. A pulse has few
-  /// echoes.
+  /// Removes the weakest echoes, the farther one of equals, until `number` are left; `held` at the end stay. A pulse
+  /// has few echoes.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -98,7 +98,7 @@ SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
 template <Detector Inner>
 SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
 
-/// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
+/// Treatment of echoes that arrive after the next pulse left (multiple pulses in the air).
 enum class RangeAmbiguity : std::uint8_t {
   folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
   resolved,  ///< assigns them to their pulse; those that arrive while another leaves are lost

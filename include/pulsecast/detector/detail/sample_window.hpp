@@ -22,7 +22,7 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width>
 class SampleWindow {
  public:
-  /// What a search needs beside the samples.
+  /// Settings of a search.
   struct Search {
     const WaveformSettings& settings;  ///< of the detector
     const Width& width;                ///< measure of widths

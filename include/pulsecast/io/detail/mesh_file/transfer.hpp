@@ -17,7 +17,7 @@
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 
-/// What a child process has read, handed to its parent.
+/// Transfer of the data read by a child process to its parent.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 inline void hand_over(ChildOutput& to, const RawPicture& picture) {

@@ -40,7 +40,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
 }
 
-/// What is expected of a key's words; null if they are right, or the key is another.
+/// Expected words of a key, for a message; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_of_light_key(std::string_view key,
                                                        const std::vector<std::string_view>& words) {
   const auto is = [&](std::string_view word) { return !words.empty() && words[0] == word; };
