@@ -108,8 +108,8 @@ class Report {
     return only_.empty() || std::any_of(only_.begin(), only_.end(), matches);
   }
 
-  /// Times pieces of work by turns: in a round, each is repeated until its seconds have passed by the clock. What slows
-  /// the machine down for a while slows them all. Gives the seconds that each took for one go, round by round.
+  /// Times alternating pieces of work: in a round, each is repeated until its seconds have passed by the clock. What
+  /// slows the machine down for a while slows them all. Gives the seconds that each took for one go, round by round.
   [[nodiscard]] std::vector<Times> by_turns(const std::vector<std::function<void()>>& works,
                                             double (*clock)() = thread_seconds) const {
     std::vector<Times> times(works.size());

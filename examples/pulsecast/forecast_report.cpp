@@ -210,7 +210,7 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& loa
   chooser.print();
   if (options.verbose)
     std::cout << "forecast in "
-              << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
+              << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading_time)
               << " s\n";
   if (!options.forecast.asks()) return true;
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of
-// one's own are for `bind_survey`; see `own_scanner.cpp`.
+// The Python module `pulsecast`: surveys of documents, run as the survey program runs them. For user-defined pipelines
+// there is `bind_survey`; see `own_scanner.cpp`.
 
 #include <algorithm>
 #include <array>

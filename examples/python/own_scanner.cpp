@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A scanner of one's own for Python: two spinning prisms over a floor, as a class of the module `own_scanner`.
+// A user-defined scanner for Python: two spinning prisms over a floor, as a class of the module `own_scanner`.
 
 #include <memory>
 

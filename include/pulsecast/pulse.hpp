@@ -103,7 +103,7 @@ struct PulseOnPlatform<frame::World> {
 
 }  // namespace detail
 
-/// One laser pulse, in a frame. In the world it has besides `reported`, `scan_angle` and `leg`.
+/// One laser pulse, in a frame. In the world it also has `reported`, `scan_angle` and `leg`.
 template <class Frame>
 struct Pulse : detail::PulseOnPlatform<Frame> {
   Tick tick{};                      ///< emission time, since the survey's start

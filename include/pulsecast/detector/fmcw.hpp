@@ -54,13 +54,13 @@ struct FmcwSettings {
 /// share of the light that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that
 /// both range and radial velocity are known. Beats have a sign, as a receiver of both quadratures measures it. The
 /// spectrum of each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order
-/// of power, and in order of frequency where powers are alike: the latter are wrong if surfaces of different velocities
-/// overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different powers, such as
-/// two peaks that are one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the
-/// middle. The laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in
-/// the mean. Continuous returns, which stand still, are in the spectrum, of which only what is near to surfaces is
-/// searched. It needs a `VelocityTarget`, such as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla &
-/// Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+/// of power, and in order of frequency where powers are similar: the latter are wrong if surfaces of different
+/// velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
+/// powers, such as two peaks that are one in the other sweep. Surfaces do not move from one sweep to the next. The
+/// range is that in the middle. The laser's peak power is its power while it measures. Amplitudes are the powers of
+/// both sweeps' peaks, in the mean. Continuous returns, which stand still, are in the spectrum, of which only what is
+/// near to surfaces is searched. It needs a `VelocityTarget`, such as `Scene` and `MovingScene`. Source: Amann, Bosch,
+/// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   /// @throws SettingError for settings out of range

@@ -19,7 +19,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
-/// Scanners of documents as stages of the library, for platforms, maps and surveys of one's own.
+/// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// State of an instrument beside its settings.

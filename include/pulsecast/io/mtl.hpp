@@ -33,7 +33,7 @@ struct MaterialLibrary {
 /// the material "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
-/// Surface without a description. It scatters alike in all directions, as in HELIOS++, which defined the extra keys.
+/// Surface without a description. It scatters equally in all directions, as in HELIOS++, which defined the extra keys.
 [[nodiscard]] inline Material undescribed(std::string name) {
   return {.name = std::move(name), .scattering = Scattering::direction_independent};
 }

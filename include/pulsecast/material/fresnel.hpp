@@ -48,7 +48,7 @@ struct FresnelSplit {
 /// Light at a pane. All orders of reflection between its faces are counted, each as if it left where the first does.
 struct PaneSplit {
   double reflected = 0;    ///< share reflected
-  double transmitted = 0;  ///< share let through
+  double transmitted = 0;  ///< transmitted share
   double shift = 0;        ///< distance along the normal by which the ray seems to begin nearer to the pane [m]
   double delay = 0;        ///< optical path from face to face, less the path of the shifted ray between them [m]
   double cos_inside = 1;   ///< cosine between the ray inside and the normal

@@ -21,7 +21,7 @@ enum class InterfaceKind : std::uint8_t {
 };
 
 /// Smooth surface that passes light on, for a transport that follows it, as `LightPaths`. What the surface scatters
-/// itself, by `Material::reflectance`, as dirt on a window does, is neither reflected nor let through.
+/// itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
 struct SmoothInterface {
   InterfaceKind kind = InterfaceKind::none;  ///< way in which light is passed on
   double reflectance = 0;                    ///< of a mirror: share of the light that it reflects, in [0, 1]

@@ -215,7 +215,7 @@ class LatticeFootprint {
 static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> &&
               Footprint<LatticeFootprint>);
 
-/// Footprint that hands every subray with its hit on to the sinks (`EchoBatch::subrays`), for studies of footprints:
+/// Footprint that forwards every subray with its hit to the sinks (`EchoBatch::subrays`), for studies of footprints:
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {

@@ -216,7 +216,7 @@ namespace detail {
   return static_cast<std::uint32_t>(nearest);
 }
 
-/// Number that no height of any raster has; empty if there is none, or if their heights are not packed alike.
+/// Number that no height of any raster has; empty if there is none, or if their heights are packed differently.
 [[nodiscard]] inline std::optional<std::uint16_t> number_of_gaps(const std::vector<Raster>& tiles) {
   const PackedHeights& alike = tiles.front().packed;
   if (!std::all_of(tiles.begin(), tiles.end(),

@@ -42,7 +42,7 @@ struct ReceiverGroups {
   }
 
   /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all
-  /// channels of a group may have been changed alike.
+  /// channels of a group may have been changed in the same way.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;

@@ -74,7 +74,7 @@ struct ArrowArrayStream {
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is handed on without copies.
+/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is shared without copies.
 class ArrowTable {
  public:
   /// @throws ValueError for an array of another length, type or layout than Arrow takes

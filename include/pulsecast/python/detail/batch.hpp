@@ -44,7 +44,7 @@ struct Batch {
 struct KeptData {
   bool pulses = true;    ///< true for pulses and waveforms
   bool columns = false;  ///< true for points by column in place of rows
-  PointExtras extras{};  ///< columns besides
+  PointExtras extras{};  ///< further columns
 };
 
 /// Sink that keeps echoes, as rows or by column, and pulses.

@@ -46,8 +46,7 @@ class FolderSystem : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
 
  private:
-  /// Name as it is, or with its percent codes as what they stand for, if there is no such file. Source:
-  /// glTF 2.0, 3.6.1.1 (URIs).
+  /// Name as it is, or with its percent codes decoded, if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
   [[nodiscard]] std::string found(const char* file) const {
     looked_for_.insert(file);
     std::error_code ignored;

@@ -82,7 +82,7 @@ class MaterialRules {
     }
   }
 
-  /// Mirrors and bodies of glass, by the rules of MTL files. What is let through is not scattered.
+  /// Mirrors and bodies of glass, by the rules of MTL files. Transmitted light is not scattered.
   static void clear(const RawOptics& o, Material& made) {
     tinyobj::material_t light{};
     std::fill(std::begin(light.specular), std::end(light.specular), 0.0);
