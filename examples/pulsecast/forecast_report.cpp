@@ -85,7 +85,7 @@ class SettingsChooser {
     return asked_.range_error || asked_.intensity_error ? best(seconds, error) : best(error, seconds);
   }
 
-  /// Forecast with the least violation of the limits.
+  /// Forecast with the smallest violation of the limits.
   [[nodiscard]] const Forecast& nearest() const {
     return *std::min_element(found_.all.begin(), found_.all.end(),
                              [&](const Forecast& a, const Forecast& b) { return worst(a) < worst(b); });

@@ -56,7 +56,7 @@ WritingCosts writing_costs(const pulsecast::helios::Simulation& simulation, cons
 
 /// Resident memory of a process [byte].
 struct Resident {
-  double own = 0, file = 0, peak = 0;  ///< anonymous memory; pages of files; greatest resident memory so far
+  double own = 0, file = 0, peak = 0;  ///< anonymous memory; pages of files; peak resident memory so far
 };
 
 /// Trial of a run: each leg was simulated and written until more points would take no more memory, or processor time

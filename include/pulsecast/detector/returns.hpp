@@ -20,7 +20,7 @@ namespace PULSECAST_NAMESPACE {
 enum class ReturnMode : std::uint8_t {
   first,               ///< the nearest
   last,                ///< the farthest
-  strongest,           ///< that of the greatest amplitude; the nearest of equals
+  strongest,           ///< that of the maximum amplitude; the nearest of equals
   first_and_last,      ///< both; one, if they are the same
   strongest_and_last,  ///< both; if they are the same, that and the second strongest
   n_nearest,           ///< the first `n`

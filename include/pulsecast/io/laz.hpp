@@ -173,7 +173,7 @@ class LazRecords {
 /// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as
 /// LASzip does. Chunks of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the
 /// file are the same for any number. Throws a `SettingError` for another format, or for waveforms. With intensities
-/// scaled to the greatest amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
+/// scaled to the maximum amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError if the file cannot

@@ -114,10 +114,10 @@ struct MpiLasShare {
 }  // namespace detail
 
 /// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError`
-/// for intensities scaled to the greatest amplitude.
+/// for intensities scaled to the maximum amplitude.
 class MpiLas final : public MpiOutput {
  public:
-  /// Collective. @throws SettingError for intensities scaled to the greatest amplitude @throws FileError
+  /// Collective. @throws SettingError for intensities scaled to the maximum amplitude @throws FileError
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
       : MpiOutput(group),
         settings_(detail::mpi_las_settings(std::move(settings))),

@@ -203,7 +203,7 @@ struct OpticBuilder {
   }
 };
 
-/// Least and greatest upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
+/// Minimum and maximum upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
 [[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
   const auto* const mirror = std::get_if<PolygonMirror>(&optic);
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);

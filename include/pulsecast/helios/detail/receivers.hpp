@@ -58,7 +58,7 @@ struct ReceiverGroups {
   return finest;
 }
 
-/// Receiver of a channel for `Survey`. Noise is a quarter of the least power of an echo.
+/// Receiver of a channel for `Survey`. Noise is a quarter of the minimum power of an echo.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, FullWaveform<Width>> survey_receiver_unit(const ChannelSettings& channel,
                                                                                     const WaveformSettings& waveform,

@@ -44,7 +44,7 @@ struct SurveyOptic {
       deflection_error{};  ///< error of the deflection, as a function of the deflection; none if empty [rad]
   std::shared_ptr<const Formula> head_error{};   ///< error of the head angle, as a function of the deflection [rad]
   std::shared_ptr<const Formula> range_error{};  ///< error of the reported range, as a function of the deflection [m]
-  double head_zero_threshold = 0;  ///< least distance of the argument of `head_error` from multiples of pi [rad]
+  double head_zero_threshold = 0;  ///< minimum distance of the argument of `head_error` from multiples of pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);

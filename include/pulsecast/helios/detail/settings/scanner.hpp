@@ -89,7 +89,7 @@ struct FullWaveformSettings {
 struct ErrorFormulas {
   std::string deflection{};        ///< error of the deflection, as a function of it [rad]; `expr` in THETA
   std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
-  double head_zero_threshold = 0;  ///< least distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
+  double head_zero_threshold = 0;  ///< minimum distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
   std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
   std::string
       range_noise{};  ///< factor of range noise, as a function of the range [m]; `distanceMeasurementError` in t

@@ -146,9 +146,9 @@ struct PartSettings {
 
 /// Multi-bounce light from smooth surfaces: `<light>`, of this library. See `LightPaths`.
 struct LightSettings {
-  int passages = 8;             ///< greatest number of surfaces that pass light on; `passages`
-  double share_min = 1e-4;      ///< least share of a subray that is followed; `leastShare`
-  int orders = 1;               ///< greatest number of surfaces that scatter it; `orders`
+  int passages = 8;             ///< maximum number of mirrors and faces on a path; `passages`
+  double share_min = 1e-4;      ///< minimum share of a subray that is followed; `leastShare`
+  int orders = 1;               ///< maximum number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
   double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
 

@@ -20,7 +20,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Returns of a pulse that a sensor reports.
 enum class PacketReturns : std::uint8_t {
-  strongest,  ///< that of the greatest amplitude
+  strongest,  ///< that of the maximum amplitude
   last,       ///< the farthest
   dual        ///< two, of which one is the strongest
 };
