@@ -750,7 +750,7 @@ TEST_CASE("hostile documents are refused at once") {
     FAIL("was read");
   } catch (const XmlFaults& faults) {
     CHECK(contains(faults.what(), "there is no <survey>"));
-    CHECK(faults.warnings().size() == XmlReport::max_told);
+    CHECK(faults.warnings().size() == XmlReport::max_listed);
     CHECK(contains(faults.warnings().back(), "; more than 1000 are not listed"));
   }
   refuses("<document><scene id=\"s\"><part><filter type=\"objloader\">" + params + "</filter></part></scene>" +
