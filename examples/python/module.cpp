@@ -279,7 +279,7 @@ void bind_light(py::module_& m) {
           "Water of a type by Jerlov, from I, the clearest ocean, to III, and from 1C to 9C, coasts, for a laser's "
           "wavelength [m]. Raises "
           "ValueError and SettingError.");
-  py::class_<SmoothInterface>(m, "SmoothInterface", "Smooth surface that passes light on.")
+  py::class_<SmoothInterface>(m, "SmoothInterface", "Surface that reflects or transmits light specularly.")
       .def_static("mirror", &SmoothInterface::mirror, "reflectance"_a = 0.95,
                   "Mirror that reflects a share of the light.")
       .def_static("pane", &SmoothInterface::pane, "thickness"_a = 4e-3, "Pane of clear glass [m].")
@@ -297,7 +297,7 @@ void bind_mesh(py::module_& m) {
           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry "
           "platforms; "
           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
-          "smooth: SmoothInterface that passes light on, in a simulation with light_paths; colour: red, green and blue "
+          "smooth: SmoothInterface with specular light, in a simulation with light_paths; colour: red, green and blue "
           "of its points, in "
           "[0, 1]; picture: array of uint8, shape (rows, columns) or (rows, columns, channels), from the top, by which "
           "texture coordinates "

@@ -10,7 +10,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ways in which a smooth surface passes light on.
+/// Kinds of specular reflection and transmission.
 enum class InterfaceKind : std::uint8_t {
   none,    ///< not at all
   mirror,  ///< reflects a share of it, at any incidence
@@ -20,8 +20,8 @@ enum class InterfaceKind : std::uint8_t {
   water,       ///< the same, of water
 };
 
-/// Smooth surface that passes light on, for a transport that follows it, as `LightPaths`. What the surface scatters
-/// itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
+/// Surface that reflects or transmits light specularly, for a transport that follows it, such as `LightPaths`. What the
+/// surface scatters itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
 struct SmoothInterface {
   InterfaceKind kind = InterfaceKind::none;  ///< way in which light is passed on
   double reflectance = 0;                    ///< of a mirror: share of the light that it reflects, in [0, 1]
