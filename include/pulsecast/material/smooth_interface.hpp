@@ -23,7 +23,7 @@ enum class InterfaceKind : std::uint8_t {
 /// Surface that reflects or transmits light specularly, for a transport that follows it, such as `LightPaths`. What the
 /// surface scatters itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
 struct SmoothInterface {
-  InterfaceKind kind = InterfaceKind::none;  ///< way in which light is passed on
+  InterfaceKind kind = InterfaceKind::none;  ///< kind of reflection and transmission
   double reflectance = 0;                    ///< of a mirror: share of the light that it reflects, in [0, 1]
   double thickness = 0;                      ///< of a pane: distance of its faces [m]
   Medium inside{};                           ///< of panes and bodies: medium beyond the surface, against its normal
