@@ -25,7 +25,7 @@ using namespace pulsecast;
 
 namespace {
 
-/// What there is to know of a struct or enum: made of the header by `describe_settings.py`.
+/// Description of a struct or enum, generated from the header by `describe_settings.py`.
 template <class Settings>
 struct Described;
 #include <settings_members.inc>

@@ -24,8 +24,8 @@ using PrimitiveIndex = std::uint32_t;
 struct BundleOrigin {
   Vec3 origin{};                                         ///< common origin of the rays [m]
   double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
-  double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
-  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
+  double near = 0;                                       ///< hits are farther than this range, at least 0 [m]
+  double far = std::numeric_limits<double>::infinity();  ///< hits are not beyond this range [m]
   std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
 
   double wavelength = 1.064e-6;    ///< wavelength of the light [m]
@@ -46,8 +46,8 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;  ///< one number per ray
 
   alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
-  Vec3 least,
-      most;  ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 directions_min;  ///< minimum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 directions_max;  ///< their maximum
 
   RayBundle() noexcept {}  // leaves the directions unset
   /// Takes the common properties, and leaves the directions unset.
@@ -73,8 +73,8 @@ struct RayBundle : BundleOrigin {
   }
   /// Range that ray j has to be beyond to count [m].
   [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
-  [[nodiscard]] double direction_min(int k) const noexcept { return least[k]; }  ///< component k of `least`
-  [[nodiscard]] double direction_max(int k) const noexcept { return most[k]; }   ///< component k of `most`
+  [[nodiscard]] double direction_min(int k) const noexcept { return directions_min[k]; }
+  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {
@@ -83,8 +83,8 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
-  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and
-  /// `most`. To be called once the directions are set.
+  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds
+  /// `directions_min` and `directions_max`. To be called once the directions are set.
   void pad() noexcept {
     PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
@@ -92,8 +92,8 @@ struct RayBundle : BundleOrigin {
     if (size == 1) {
       const auto number = [](double d, double otherwise) noexcept { return std::isnan(d) ? otherwise : d; };
       constexpr double infinity = std::numeric_limits<double>::infinity();
-      least = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
-      most = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
+      directions_min = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
+      directions_max = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
       return;
     }
     for (int k = 0; k < 3; ++k) {
@@ -103,8 +103,8 @@ struct RayBundle : BundleOrigin {
         low = simd::min(d, low);  // NaN fails every comparison
         high = simd::max(d, high);
       }
-      least[k] = simd::min(low);
-      most[k] = simd::max(high);
+      directions_min[k] = simd::min(low);
+      directions_max[k] = simd::max(high);
     }
   }
 
@@ -115,15 +115,15 @@ struct RayBundle : BundleOrigin {
       y[j] = other.y[j];
       z[j] = other.z[j];
     }
-    least = other.least;
-    most = other.most;
+    directions_min = other.directions_min;
+    directions_max = other.directions_max;
   }
 };
 
-/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less.
-/// Triangles heed the ranges; other shapes may meet a ray before it begins.
+/// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at most their minimum.
+/// Triangles respect the ranges; other shapes may be hit before a ray begins.
 struct StaggeredBundle : RayBundle {
-  alignas(64) Column begin;  ///< ray j meets nothing up to this range; set for `padded_size()` rays [m]
+  alignas(64) Column begin;  ///< ray j has no hits up to this range; set for `padded_size()` rays [m]
 
   StaggeredBundle() noexcept {}
   /// Takes the common properties, and leaves the directions and ranges unset.

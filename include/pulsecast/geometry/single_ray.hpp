@@ -27,7 +27,7 @@ struct SingleRayPacket {
   Vec3 origin{};                   ///< origin [m]
   Vec3 toward = axis::forward;     ///< direction, of length `direction_length`
   double direction_length = 1;     ///< 1 in the world, 1/scale in an instance
-  double near = 0;                 ///< nothing is met at this range or before it, at least 0 [m]
+  double near = 0;                 ///< hits are farther than this range, at least 0 [m]
   Tick tick{};                     ///< time
   std::uint64_t seed = 0;          ///< as in `BundleOrigin`
   PulseIndex pulse = 0;            ///< as in `BundleOrigin`
@@ -66,8 +66,8 @@ struct SingleRayPacket {
 
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
 struct AnyHit {
-  double far;              ///< greatest range that counts [m]; minus infinity once something is met
-  bool found = false;      ///< true once something is met
+  double far;              ///< greatest range that counts [m]; minus infinity after the first hit
+  bool found = false;      ///< true after the first hit
   std::uint64_t part = 0;  ///< part under test, in the upper half
 
   /// Nothing found so far, up to a range [m].
@@ -124,7 +124,7 @@ class AllHits {
     return std::nextafter(last_.range, -std::numeric_limits<double>::infinity());  // others may be at the same range
   }
 
-  /// Adds a hit with a primitive of the current part, if it is among the closest that are asked for.
+  /// Adds a hit with a primitive of the current part, if it is among the closest that are requested.
   void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
     const Entry hit{at, part | primitive};
     if (!(at <= limit_) || !(last_ < hit)) return;
@@ -139,7 +139,7 @@ class AllHits {
     if (full()) limit_ = hits_[capacity - 1].range;
   }
 
-  /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
+  /// Offers the hits of a shape that finds the closest one only: `closest(ray, hit)` from each hit on.
   template <class Closest>
   void offer_chain(SingleRayPacket ray, const Closest& closest) noexcept {
     for (;;) {
@@ -171,7 +171,7 @@ class AllHits {
 
  private:
   double near_, limit_, far_;
-  Entry last_;  ///< the last hit before those that are asked for
+  Entry last_;  ///< the last hit before the requested ones
   std::size_t size_ = 0;
   std::array<Entry, capacity> hits_;
 };

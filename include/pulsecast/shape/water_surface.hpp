@@ -140,7 +140,7 @@ class WaterSurface {
     return span;
   }
 
-  /// Range at which a ray steeper than all waves meets them, before its origin too: Newton's method between bounds.
+  /// Range at which a ray steeper than all waves hits them, before its origin too: Newton's method between bounds.
   [[nodiscard]] double only_root(const detail::WaveProfile& profile, const Line& line) const noexcept {
     const std::size_t all = profile.groups();
     const double sense = line.climb < 0 ? -1 : 1, least = std::fabs(line.climb) - profile.steepest(all);

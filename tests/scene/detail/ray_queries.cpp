@@ -70,7 +70,7 @@ bool in_order(const RayHit& a, const RayHit& b) {
 }
 
 std::shared_ptr<const PartMotion> any_motion(Generator& any) {
-  SteadyMotion m{.velocity = any.point(5), .axis = any.unit(), .rate = any.uniform(-2, 2)};
+  SteadyMotion m{.velocity = any.point(5), .axis = any.unit(), .angular_rate = any.uniform(-2, 2)};
   if (any.coin()) m.centre = any.point(10);
   return std::make_shared<const PartMotion>(m);
 }
@@ -382,7 +382,7 @@ TEST_CASE("the weights of a hit put its point together, and the texture follows 
 TEST_CASE("a moving surface has the velocity of its point") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
   const auto turning =
-      std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .rate = pi / 2, .centre = Vec3{}});
+      std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .angular_rate = pi / 2, .centre = Vec3{}});
   const MovingScene<Mesh> scene(
       {{.geometry = mesh, .motion = turning}, {.geometry = mesh, .placement = {.translation = {0, 0, -9}}}}, {.to = 9});
   const Ray down{

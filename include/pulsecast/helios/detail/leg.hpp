@@ -96,7 +96,7 @@ struct SurveyNoise {
 /// them: by noise of each slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
-  /// `known` is the time for which the path is known, if that ends within the last slot.
+  /// `known` is the end of the known path, if that is within the last slot.
   SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise,
             std::optional<Tick> known = {})
       : truth_(std::move(path), mount, std::move(instrument)),

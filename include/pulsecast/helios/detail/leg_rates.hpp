@@ -19,13 +19,12 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Turning rate of the head in a leg, within the limits of the device [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
-  return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
+  return std::clamp(leg.head_rate, -channel.head_rate_max, channel.head_rate_max);
 }
 
 /// True if the head turns away from its stop angle.
 [[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
-  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) ||
-         (leg.head_speed < 0 && leg.head_stop > leg.head_start);
+  return (leg.head_rate > 0 && leg.head_stop < leg.head_start) || (leg.head_rate < 0 && leg.head_stop > leg.head_start);
 }
 
 /// True if a leg waits for a head that does not turn.

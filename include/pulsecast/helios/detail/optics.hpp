@@ -54,8 +54,8 @@ namespace detail {
 /// Vertical limits of the pulses of a polygon mirror [rad].
 struct MirrorGate {
   double low = 0, high = 0;
-  bool is_limited = false;  ///< the leg asks for a wider gate than the device has
-  bool is_cut = false;      ///< the leg asks for a gate beyond the sweep of the mirror
+  bool is_limited = false;  ///< the leg requests a wider gate than the device has
+  bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
 /// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the
@@ -79,18 +79,18 @@ struct MirrorGate {
 }
 
 [[nodiscard]] inline bool scans_too_slowly(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return leg.scan_frequency < channel.scan_frequency_min;
+  return leg.scan_rate < channel.scan_rate_min;
 }
 
 [[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return channel.scan_frequency_max > 0 && leg.scan_frequency > channel.scan_frequency_max;
+  return channel.scan_rate_max > 0 && leg.scan_rate > channel.scan_rate_max;
 }
 
-inline void require_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  const double f = leg.scan_frequency, most = channel.scan_frequency_max;
+inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  const double f = leg.scan_rate, most = channel.scan_rate_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within the limits of the device, " + text::to_text(channel.scan_frequency_min) + " to " +
+                       "within the limits of the device, " + text::to_text(channel.scan_rate_min) + " to " +
                            (most > 0 ? text::to_text(most) : "any") + " Hz");
 }
 
@@ -99,8 +99,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
 [[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic,
                                              const LegScannerSettings& leg, double pulse_rate) {
   const double angle = scan_angle_of(channel, leg);
-  const double f =
-      angle * leg.scan_frequency > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_frequency;
+  const double f = angle * leg.scan_rate > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_rate;
   const double pulses = std::floor(pulse_rate / f);
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
@@ -115,8 +114,8 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
-  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_frequency > 0) {
-    const double asked = leg.scan_frequency, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
+  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_rate > 0) {
+    const double asked = leg.scan_rate, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
     if (std::fabs(f - asked) > 1e-4 * asked)
       note("scanFreq_hz of " + brief(asked) + " is taken as " + brief(f) +
            (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and"
@@ -124,7 +123,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
            " for a cycle is a whole number of pulses, here " + brief(pulse_rate / f));
   }
   if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic);
-      mirror && leg.scan_frequency > 0 && channel.scan_angle_max > 0) {
+      mirror && leg.scan_rate > 0 && channel.scan_angle_max > 0) {
     const MirrorGate gate = mirror_gate(channel, *mirror, leg);
     const double sweep = channel.scan_angle_max;
     const std::string within =
@@ -138,7 +137,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   if (leg.scan_angle && scan_angle_of(channel, leg) < *leg.scan_angle)
     note("scanAngle_deg is limited to " + brief(degrees(channel.scan_angle_max)));
   if (head_rate(channel, leg) != head_rate(scanner.channels[0], leg))
-    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_speed_max)) +
+    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_rate_max)) +
          ", unlike that of the first channel");
   return notes;
 }
@@ -154,32 +153,30 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
     ahead = active;
-    if (!(leg.scan_frequency > 0))
-      throw SettingError("scanFreq_hz", leg.scan_frequency, "Hz", "greater than 0 for an oscillating mirror");
+    if (!(leg.scan_rate > 0))
+      throw SettingError("scanFreq_hz", leg.scan_rate, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
     return OscillatingMirror{// that turns round in 100 pulses at most
-                             .cycles_per_second = f,
+                             .cycle_rate = f,
                              .half_angle = scan_angle_of(channel, leg),
                              .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
-    const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
+    const double sweep = channel.scan_angle_max, f = leg.scan_rate;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
     const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
-    return PolygonMirror{.lines_per_second = f,
-                         .sweep = std::min(sweep, pi),
-                         .angle_min = std::max(low, -pi),
-                         .angle_max = std::min(high, pi)};
+    return PolygonMirror{
+        .line_rate = f, .sweep = std::min(sweep, pi), .angle_min = std::max(low, -pi), .angle_max = std::min(high, pi)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
     ahead = active;
-    const double f = leg.scan_frequency > 0 ? leg.scan_frequency : channel.scan_frequency_max;
+    const double f = leg.scan_rate > 0 ? leg.scan_rate : channel.scan_rate_max;
     if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for a Palmer mirror");
-    return PalmerMirror{.turns_per_second = f, .half_angle = scan_angle_of(channel, leg)};
+    return PalmerMirror{.rotation_rate = f, .half_angle = scan_angle_of(channel, leg)};
   }
 
   /// Fibres divide the full scan angle evenly, each at the lower end of its share.
@@ -188,7 +185,7 @@ struct OpticBuilder {
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
     tilt = optic.fibers > 1 ? -angle / n : 0;
     return FiberArray{.fibers = static_cast<std::uint32_t>(optic.fibers),
-                      .fibers_per_second = pulse_rate,
+                      .fiber_rate = pulse_rate,
                       .half_angle = angle * (n - 1) / n};
   }
 
@@ -198,7 +195,7 @@ struct OpticBuilder {
     for (const RisleyPrism& p : optic.prisms)
       if (std::fabs(p.angle) > radians(1e-6))
         out.prisms.push_back({.wedge = std::fabs(p.angle),
-                              .turns_per_second = p.rotor_frequency,
+                              .rotation_rate = p.rotation_rate,
                               .refractive_index = p.refractive_index,
                               .inclined_exit = p.angle < 0});
     if (out.prisms.empty()) return FixedBeam{aimed_along(normalize(optic.incident_beam))};
@@ -206,14 +203,14 @@ struct OpticBuilder {
   }
 };
 
-/// Least and greatest upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
+/// Minimum and maximum upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
 [[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
   const auto* const mirror = std::get_if<PolygonMirror>(&optic);
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
 }
 
-/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as
-/// no beam meets them.
+/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass,
+/// because no beam reaches them.
 inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
@@ -233,14 +230,14 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               const OpticClock& clock = {}) {
-  if (leg.active) detail::require_scan_frequency(channel, leg);
+  if (leg.active) detail::require_scan_rate(channel, leg);
   detail::OpticBuilder build{channel, leg, pulse_rate, clock.active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
                  conjugate(boresight) * channel.beam_origin.position};
   const double rate = head_rate(channel, leg);
-  out.head = {.rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
+  out.head = {.angular_rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
   const auto formula = [](const std::string& text) {
     return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA");
   };
@@ -305,8 +302,8 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for;
-/// empty if there is nothing to tell.
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
+/// measured; empty if there is none.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
   return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
@@ -317,9 +314,9 @@ namespace detail {
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
 /// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
-/// ranges. By the library's physics they are timed by their peaks, and where light goes on: between the surface of
-/// water and its bottom a mean range says nothing. Its threshold is that of `WaveformSettings`, unless the scanner has
-/// another than that of HELIOS++, which is less than a photon.
+/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
+/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
+/// the scanner has another than that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;

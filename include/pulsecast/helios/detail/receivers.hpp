@@ -42,7 +42,7 @@ struct ReceiverGroups {
   }
 
   /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all
-  /// channels of a group may have been changed alike.
+  /// channels of a group may have been changed in the same way.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;
@@ -58,7 +58,7 @@ struct ReceiverGroups {
   return finest;
 }
 
-/// Receiver of a channel for `Survey`. Noise is a quarter of the least power of an echo.
+/// Receiver of a channel for `Survey`. Noise is a quarter of the minimum power of an echo.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, FullWaveform<Width>> survey_receiver_unit(const ChannelSettings& channel,
                                                                                     const WaveformSettings& waveform,
@@ -74,8 +74,8 @@ template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
 /// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth
-/// of the pulse. Noise is a sixth of the least power of an echo, so that false echoes are rare though it listens to the
-/// whole gate.
+/// of the pulse. Noise is a sixth of the minimum power of an echo, so that false echoes are rare although the whole
+/// gate is sampled.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

@@ -20,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files in the settings of a scene, in all runs, there or not. Those that these files name are told by
-/// `SceneBuilder::files`.
+/// Files in the settings of a scene, in all runs, existing or not. `SceneBuilder::files` returns those that these files
+/// name.
 [[nodiscard]] std::set<std::filesystem::path> scene_files(const SceneSettings& scene);
 
 /// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for

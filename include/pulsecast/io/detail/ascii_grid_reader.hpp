@@ -59,7 +59,7 @@ class FileWords {
   }
 
   [[nodiscard]] std::size_t line() const noexcept { return line_; }  ///< number of the line of the last word, from 1
-  [[nodiscard]] bool is_open() const noexcept { return is_open_; }   ///< true if the file ended right behind a word
+  [[nodiscard]] bool is_open() const noexcept { return is_open_; }   ///< true if the file ended directly after a word
   [[nodiscard]] const InputFile& file() const noexcept { return file_; }  ///< the file itself
 
   /// Throws a `FileError` about the line of the last word, or another one.

@@ -22,8 +22,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
 
-/// Throws a `SettingError` unless the names of a layout can stand in the header of a file, and its fields be told by
-/// them.
+/// Throws a `SettingError` unless the names of a layout are valid in the header of a file, and unique.
 inline void require_field_names(const PointLayout& layout) {
   for (const PointField& field : layout.fields) {
     require_within("PointField::name (length)", static_cast<double>(field.name.size()), 1, 100, "");

@@ -45,7 +45,7 @@ struct ObjSource {
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
   std::vector<std::filesystem::path>
-      files{};                ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` tell other formats
+      files{};                ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` are other formats
   MaterialSource material{};  ///< that of pixels without a class
   bool mosaic = false;        ///< true: the files are tiles of one raster. `mosaic`
   std::filesystem::path classes{};       ///< raster of classes, which choose materials; empty: none. `classfile`
@@ -109,7 +109,7 @@ struct VoxelSource {
 
 /// Vertical axis of a mesh file: `up`.
 enum class MeshUp : std::uint8_t {
-  file,  ///< by the file, as of `io::read_mesh_file`
+  file,  ///< by the file, see `io::read_mesh_file`
   z,     ///< z
   y,     ///< y
 };

@@ -102,7 +102,7 @@ class XmlInput {
     return std::nullopt;
   }
 
-  /// Reads a number; `low` and `high` are the least and greatest allowed, in the unit of the document.
+  /// Reads a number; `low` and `high` are its limits, in the unit of the document.
   void number(const char* name, double& number, const XmlUnit& unit, double low, double high) {
     if (const auto text = value(name))
       if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);

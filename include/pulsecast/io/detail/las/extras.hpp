@@ -12,7 +12,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Extra value of each point, behind the standard ones.
+/// Extra value of each point, after the standard ones.
 struct LasExtra {
   std::string_view name, description;
   std::uint8_t type,
@@ -26,7 +26,7 @@ inline constexpr std::array las_extras{
     LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
     LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
     LasExtra{"ObjectId", "number of the object met", 5, 4},
-    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless it is asked for
+    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless requested
 };
 
 // sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.

@@ -32,7 +32,7 @@ enum class LasFormat : std::uint8_t {
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
-  amplitude,    ///< received power of the echo, as of most instruments
+  amplitude,    ///< received power of the echo, as most instruments report it
   /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface
   /// there, but for the air
   range_normalized,
@@ -65,8 +65,8 @@ struct LasSettings {
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
   std::optional<double> intensity_full_scale =
-      {};                             ///< value stored as the greatest intensity, 65535, and clipped above;
-                                      ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
+      {};  ///< value stored as the maximum intensity, 65535, and clipped above; if empty, a reflectance of 1, or the
+           ///< maximum amplitude of the file [W]
   double intensity_range = 1;         ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;  ///< reference power of amplitudes in dB [W]
   std::optional<Date> created =
