@@ -44,27 +44,27 @@ class Survey {
   /// Survey with one receiver for all emitters.
   /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the
   /// detector refuses
-  Survey(Source source, Footprint footprint, const Target& map, Receiver receiver, Detector detector,
+  Survey(Source source, Footprint footprint, const Target& target, Receiver receiver, Detector detector,
          std::uint64_t seed = 0)
-      : Survey(std::move(source), std::move(footprint), map, Transport{}, std::move(receiver), std::move(detector),
+      : Survey(std::move(source), std::move(footprint), target, Transport{}, std::move(receiver), std::move(detector),
                seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, Footprint footprint, const Target& map, Transport transport, Receiver receiver,
+  Survey(Source source, Footprint footprint, const Target& target, Transport transport, Receiver receiver,
          Detector detector, std::uint64_t seed = 0)
-      : Survey(std::move(source), {{std::move(footprint), std::move(receiver), std::move(detector)}}, map,
+      : Survey(std::move(source), {{std::move(footprint), std::move(receiver), std::move(detector)}}, target,
                std::move(transport), seed) {}
 
   /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they
   /// are recorded.
   /// @throws SettingError as above, or for an emitter without a receiver
-  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& map,
+  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target,
          std::uint64_t seed = 0)
-      : Survey(std::move(source), std::move(receivers), map, Transport{}, seed) {}
+      : Survey(std::move(source), std::move(receivers), target, Transport{}, seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& map,
+  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target,
          Transport transport, std::uint64_t seed = 0)
       : source_(validated(std::move(source))),
-        map_(&map),
+        target_(&target),
         transport_(validated(std::move(transport))),
         receivers_(std::move(receivers)),
         seed_(seed) {
@@ -303,9 +303,9 @@ class Survey {
                                unit.receiver.gate(),
                                recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
     if constexpr (ReadsVelocity<Detector>)
-      return transport_.template trace<true>(*map_, light, w.transport, w.reflections);
+      return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
     else
-      return transport_.trace(*map_, light, w.transport, w.reflections);
+      return transport_.trace(*target_, light, w.transport, w.reflections);
   }
 
   /// Error of a pulse that may have one: light did not return, the map answered with NaN, or a pose is reported.
@@ -315,7 +315,7 @@ class Survey {
   }
 
   Source source_;
-  const Target* map_;
+  const Target* target_;
   Transport transport_;
   std::vector<Unit> receivers_;
   std::uint64_t seed_;

@@ -26,8 +26,8 @@ class AnyTarget {
 
  public:
   /// Takes a target of one of the types.
-  template <class Map>
-  requires std::constructible_from<std::variant<First, Others...>, Map> AnyTarget(Map target)
+  template <class Target>
+  requires std::constructible_from<std::variant<First, Others...>, Target> AnyTarget(Target target)
       : target_(std::move(target)) {}  // NOLINT(google-explicit-constructor): implicit by purpose
 
   /// Nearest hit of each ray of the bundle, as of the target.

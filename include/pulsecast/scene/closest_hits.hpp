@@ -17,9 +17,9 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Result of `map.closest_hit(ray)`: `std::optional<RayHit>` of a scene, `std::optional<Hit>` of a `RayTarget`.
-template <class Map>
-requires(RayTarget<Map> || SceneQueries<Map>) using ClosestHitOf =
-    decltype(std::declval<const Map&>().closest_hit(std::declval<const Ray&>()));
+template <class Target>
+requires(RayTarget<Target> || SceneQueries<Target>) using ClosestHitOf =
+    decltype(std::declval<const Target&>().closest_hit(std::declval<const Ray&>()));
 
 namespace detail {
 /// Scene that also finds the closest hits of a bundle, equal to those of its rays alone. `deterministic()` is true if
@@ -63,19 +63,19 @@ void trace_bundle(const Scene& scene, std::span<const Ray> rays, std::span<const
 /// Closest hit of each ray, the same as `map.closest_hit` gives, one per ray. Of up to 512 consecutive rays with one
 /// origin, `near` and `far`, those of about one direction are traced together, in whatever order they come; for a
 /// moving scene they need one tick, too. Directions are unit vectors. Allocates nothing.
-template <class Map>
-void closest_hits(const Map& map, std::span<const Ray> rays, std::span<ClosestHitOf<Map>> hits) noexcept {
+template <class Target>
+void closest_hits(const Target& target, std::span<const Ray> rays, std::span<ClosestHitOf<Target>> hits) noexcept {
   std::size_t first = 0;
-  if constexpr (SceneQueries<Map> && detail::TracesBundles<Map>) {
+  if constexpr (SceneQueries<Target> && detail::TracesBundles<Target>) {
     constexpr std::size_t least = 4, most = 32;  // rays of a bundle; two or three cost less alone
     std::array<std::uint64_t, 512> order;        // cell and number
-    while (map.deterministic() && first < rays.size()) {
+    while (target.deterministic() && first < rays.size()) {
       const Ray& one = rays[first];
       std::size_t count = 0;
       for (; count < order.size() && first + count < rays.size(); ++count) {
         const Ray& ray = rays[first + count];
         const bool together = ray.origin == one.origin && ray.near == one.near && ray.far == one.far &&
-                              (!Map::time_dependent || ray.tick == one.tick);
+                              (!Target::time_dependent || ray.tick == one.tick);
         if (!together || !(std::fabs(dot(ray.direction, ray.direction) - 1) < 1e-6)) break;
         order[count] = std::uint64_t{detail::direction_cell(ray.direction)} << 16U | count;
       }
@@ -84,23 +84,23 @@ void closest_hits(const Map& map, std::span<const Ray> rays, std::span<ClosestHi
       for (std::size_t from = 0, to = 0; from < count; from = to) {
         while (to < count && to - from < most && cell(to) == cell(from)) ++to;
         if (to - from >= least) {
-          detail::trace_bundle(map, rays.subspan(first), std::span(order).subspan(from, to - from),
+          detail::trace_bundle(target, rays.subspan(first), std::span(order).subspan(from, to - from),
                                hits.subspan(first));
         } else {
           for (std::size_t k = from; k < to; ++k) {
             const std::size_t number = first + (order[k] & 0xFFFF);
-            hits[number] = map.closest_hit(rays[number]);
+            hits[number] = target.closest_hit(rays[number]);
           }
         }
       }
       first += count;
       if (count == 0) {  // a ray of NaN
-        hits[first] = map.closest_hit(rays[first]);
+        hits[first] = target.closest_hit(rays[first]);
         ++first;
       }
     }
   }
-  for (; first < rays.size(); ++first) hits[first] = map.closest_hit(rays[first]);
+  for (; first < rays.size(); ++first) hits[first] = target.closest_hit(rays[first]);
 }
 
 }  // namespace PULSECAST_NAMESPACE

@@ -11,20 +11,20 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Nearest hit in a target of each ray of a bundle. Sets one hit per ray, of infinite range for a miss.
-template <Target Map>
-void find_hits(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
-  if constexpr (BundleTarget<Map>)
-    map.closest(rays, hits);
+template <Target Target>
+void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits) noexcept {
+  if constexpr (BundleTarget<Target>)
+    target.closest(rays, hits);
   else
-    for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
+    for (std::size_t j = 0; j < rays.size; ++j) hits[j] = target.closest_hit(rays.ray(j)).value_or(Hit{});
 }
 
 namespace detail {
 /// True only if a target that `MissesCones` says so of a cone of rays.
-template <Target Map>
-[[nodiscard]] bool misses_cone(const Map& map, const RayCone& cone) noexcept {
-  static_assert(MissesConesCheck<Map>::passed);
-  if constexpr (MissesCones<Map>) return map.misses_cone(cone);
+template <Target Target>
+[[nodiscard]] bool misses_cone(const Target& target, const RayCone& cone) noexcept {
+  static_assert(MissesConesCheck<Target>::passed);
+  if constexpr (MissesCones<Target>) return target.misses_cone(cone);
   return false;
 }
 }  // namespace detail

@@ -58,8 +58,8 @@ class Layered {
   /// Closest hit of a ray; empty for a miss.
   [[nodiscard]] std::optional<RayHit> closest_hit(Ray ray) const noexcept requires(answers) {
     std::optional<RayHit> nearest;
-    each([&](std::uint32_t i, const auto& map) noexcept {
-      const std::optional<RayHit> hit = map.closest_hit(ray);
+    each([&](std::uint32_t i, const auto& target) noexcept {
+      const std::optional<RayHit> hit = target.closest_hit(ray);
       if (!hit || (nearest && !(hit->range < nearest->range))) return;
       nearest = hit;
       nearest->layer = hit->layer * size + i;  // a layer may be a `Layered` itself
@@ -80,8 +80,8 @@ class Layered {
     SurfaceInteraction surface;
     const std::uint32_t layer = hit.layer % size;
     hit.layer /= size;
-    each([&](std::uint32_t i, const auto& map) noexcept {
-      if (i == layer) surface = map.surface(hit, ray);
+    each([&](std::uint32_t i, const auto& target) noexcept {
+      if (i == layer) surface = target.surface(hit, ray);
     });
     return surface;
   }
@@ -123,17 +123,18 @@ class Layered {
 
  private:
   /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
-  template <class Map>
-  static void add(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
+  template <class Target>
+  static void add(const Target& target, const RayBundle& rays, std::span<Hit> hits) noexcept {
     alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)>
         memory;  // not initialised, as most bundles have one ray
     const std::span<Hit> others(reinterpret_cast<Hit*>(memory.data()), rays.size);
-    find_hits(map, up_to(hits, rays), others);
+    find_hits(target, up_to(hits, rays), others);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (is_nearer(others[j], hits[j])) hits[j] = others[j];
   }
-  template <class Map, class Visitor>
-  static void add(const Map& map, const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) noexcept {
+  template <class Target, class Visitor>
+  static void add(const Target& target, const StaggeredBundle& rays, std::span<Hit> hits,
+                  const Visitor& visit) noexcept {
     std::array<Hit, RayBundle::capacity> others;
     const auto visit_nearer = [&](std::size_t first, std::size_t end, const SurfaceInteraction& surface) noexcept {
       for (std::size_t j = first; j < end; ++j) {
@@ -142,7 +143,7 @@ class Layered {
         visit(j, j + 1, surface);
       }
     };
-    map.closest(up_to(hits, rays), others, visit_nearer);
+    target.closest(up_to(hits, rays), others, visit_nearer);
   }
 
   /// Rays as far as the farthest of their hits.

@@ -41,11 +41,12 @@ template <InstrumentSource Sensor>
 /// its `seed`, it is the key of leaves that are met at random. The ranges do not depend on the number of threads.
 /// Allocates nothing.
 /// @throws SettingError if `ranges` has another size, or for a pose that is not rigid
-template <class Map>
-requires(RayTarget<Map> ||
-         SceneQueries<Map>) void run_batch(const Map& map, std::span<const Pose<frame::Instrument, frame::World>> poses,
-                                           std::span<const Ray> rays, std::span<float> ranges,
-                                           const Workers& workers = {}) {
+template <class Target>
+requires(RayTarget<Target> ||
+         SceneQueries<Target>) void run_batch(const Target& target,
+                                              std::span<const Pose<frame::Instrument, frame::World>> poses,
+                                              std::span<const Ray> rays, std::span<float> ranges,
+                                              const Workers& workers = {}) {
   const double asked = static_cast<double>(poses.size()) * static_cast<double>(rays.size());
   require_within("run_batch: ranges (number)", static_cast<double>(ranges.size()), asked, asked, "");
   for (std::size_t p = 0; p < poses.size(); ++p)
@@ -55,7 +56,7 @@ requires(RayTarget<Map> ||
   constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
   for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
     std::array<Ray, block> asked_rays;
-    std::array<ClosestHitOf<Map>, block> hits;
+    std::array<ClosestHitOf<Target>, block> hits;
     const std::size_t first = b * block, count = std::min(ranges.size() - first, block);
     for (std::size_t k = first; k < first + count;) {
       const std::size_t p = k / rays.size();
@@ -68,7 +69,7 @@ requires(RayTarget<Map> ||
         ray.pulse = k++;
       }
     }
-    closest_hits<Map>(map, std::span(asked_rays).first(count), hits);
+    closest_hits<Target>(target, std::span(asked_rays).first(count), hits);
     for (std::size_t j = 0; j < count; ++j)
       ranges[first + j] = hits[j] ? static_cast<float>(hits[j]->range) : std::numeric_limits<float>::infinity();
   });

@@ -282,8 +282,16 @@ class Scene {
     std::optional<Vec2> texture{};
   };
 
-  Sample sample(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
-    const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept {
+  /// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape sets only what is
+  /// read.
+  struct Sampler {
+    const Part& part;
+    PrimitiveIndex primitive;
+    const RayBundle& local;
+    std::size_t j;
+
+    template <class Shape>
+    [[gnu::always_inline]] Sample operator()(const std::shared_ptr<const Shape>& shape) const noexcept {
       const SurfaceInteraction surface = shape->surface(primitive, local, j);
       Sample found{.normal = surface.normal,
                    .material = &(*part.materials)[surface.material_index],
@@ -297,9 +305,8 @@ class Scene {
               shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
         }
       return found;
-    };
-    return visit_shape(look, part.geometry);
-  }
+    }
+  };
 
   /// Sets the hits of rays and visits their surfaces. `placement_of(i)` returns the placement of part i.
   template <class PlacementOf, class Visitor>
@@ -320,7 +327,8 @@ class Scene {
         const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      const Sample surface = sample(parts_[at], nearest.primitive_of(first), *local, first);
+      const Sample surface =
+          visit_shape(Sampler{parts_[at], nearest.primitive_of(first), *local, first}, parts_[at].geometry);
       while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
         ++end;  // neighbouring rays often hit the same primitive
       const Vec3 n = surface.normal / local->direction_length;

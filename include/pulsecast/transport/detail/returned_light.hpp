@@ -64,13 +64,13 @@ inline void record_subrays(const TransportInput& light, std::size_t first, std::
 }
 
 /// Velocity of the surface that a ray hits, along the ray [m/s].
-template <class Map>
-[[nodiscard]] double radial_velocity(const Map& map, const Ray& ray) noexcept {
-  static_assert(SceneQueries<Map>,
+template <class Target>
+[[nodiscard]] double radial_velocity(const Target& target, const Ray& ray) noexcept {
+  static_assert(SceneQueries<Target>,
                 "the detector reads velocities, which this map does not give: it needs SceneQueries, as Scene");
-  if constexpr (SceneQueries<Map>)
-    if (const std::optional<RayHit> hit = map.closest_hit(ray))
-      return dot(map.surface(*hit, ray).velocity, ray.direction);
+  if constexpr (SceneQueries<Target>)
+    if (const std::optional<RayHit> hit = target.closest_hit(ray))
+      return dot(target.surface(*hit, ray).velocity, ray.direction);
   return 0;
 }
 
