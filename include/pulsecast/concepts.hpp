@@ -52,8 +52,8 @@ concept Head = Motion<H, frame::Instrument, frame::Instrument>;
 template <class T>
 concept Trajectory = Motion<T, frame::Body, frame::World>;
 
-/// Height of the ground [m] at a place [m east, m north]; empty where there is none. Called by planners, before the first pulse, so it need
-/// not be noexcept.
+/// Height of the ground [m] at a place [m east, m north]; empty where there is none. Called by planners, before the
+/// first pulse, so it need not be noexcept.
 template <class G>
 concept Ground = requires(const G ground, Vec2 place) {
   { ground(place) } -> std::convertible_to<std::optional<double>>;
@@ -61,11 +61,13 @@ concept Ground = requires(const G ground, Vec2 place) {
 
 // ----------------------------------------------------------------------------------- pulse sources
 
-/// Pulses by number, in one frame. Slots may be requested in any order, and are empty if an optic blocks the pulse. `duration()` is the
-/// time from the first slot to one past the last. `emitters()` is the table of emitters, at most `max_emitters`, that pulses refer to by
-/// index. Surveys and wrappers ask for it once, when they are made; it may allocate.
-/// Law: pure in i; time does not decrease with i, except between `Legs` with starts of their own; the pose's rotation is unit; the table is always the same and lists the emitter of each
-/// pulse; a wrapper of a source keeps its size, ticks and emitters.
+/// Pulses by number, in one frame. Slots may be requested in any order, and are empty if an optic blocks the pulse.
+/// `duration()` is the time from the first slot to one past the last. `emitters()` is the table of emitters, at most
+/// `max_emitters`, that pulses refer to by index. Surveys and wrappers ask for it once, when they are made; it may
+/// allocate.
+/// Law: pure in i; time does not decrease with i, except between `Legs` with starts of their own; the pose's rotation
+/// is unit; the table is always the same and lists the emitter of each pulse; a wrapper of a source keeps its size,
+/// ticks and emitters.
 template <class S, class Frame>
 concept PulseSource = std::copyable<S> && requires(const S s, PulseIndex i) {
   { s.size() } noexcept -> std::same_as<PulseIndex>;
@@ -89,9 +91,10 @@ struct TestsPrimitives {
 };
 }  // namespace detail
 
-/// Search structure over the boxes of numbered primitives, independent of their kind. `closest` calls `test` with the primitives that a
-/// bundle may meet, and `test` enters hits into `nearest`. Each call gets a subrange of `order()`. `order()` holds every primitive that can
-/// be hit, next to its neighbours, possibly repeated. A test that `PrefetchesPrimitives` may be told some time before.
+/// Search structure over the boxes of numbered primitives, independent of their kind. `closest` calls `test` with the
+/// primitives that a bundle may meet, and `test` enters hits into `nearest`. Each call gets a subrange of `order()`.
+/// `order()` holds every primitive that can be hit, next to its neighbours, possibly repeated. A test that
+/// `PrefetchesPrimitives` may be told some time before.
 /// Law: if primitives are inside their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
 template <class A>
 concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<const Box>> &&
@@ -102,12 +105,13 @@ concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<c
   { a.closest(rays, test, nearest) } noexcept;
 };
 
-/// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes; `material_count()` is the least
-/// length of a part's material table.
-/// `surface(i, rays, j)` is the surface of primitive i at its hit by ray j: normal, material index, foliage. The hit point is not passed; a
-/// curved primitive recomputes it.
+/// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes;
+/// `material_count()` is the least length of a part's material table. `surface(i, rays, j)` is the surface of primitive
+/// i at its hit by ray j: normal, material index, foliage. The hit point is not passed; a curved primitive recomputes
+/// it.
 /// Not required: one surface for all hits of a primitive, as of a `UniformGeometry`.
-/// Law: pure; random draws depend on the bundle's names only; `closest` offers primitives to `nearest` and does nothing else.
+/// Law: pure; random draws depend on the bundle's names only; `closest` offers primitives to `nearest` and does nothing
+/// else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& nearest, PrimitiveIndex i, std::size_t j) {
   { g.bounds() } noexcept -> std::same_as<const Box&>;
@@ -136,15 +140,16 @@ struct TakesSurfaces {
 };
 }  // namespace detail
 
-/// Map that tells the surfaces that rays hit, as `Scene`: light can be followed further there, and its velocity is known. `closest` calls
-/// `visit(first, end, surface)` for rays from `first` up to `end` that hit one surface, after their hits are set; a later call for the same
-/// ray counts. Rays begin at ranges of their own. `surface(hit, ray)` is at a hit of the same ray, `occluded` true if a ray hits anything
-/// beyond `ray.near`, up to a range [m] and to `ray.far`.
+/// Map that tells the surfaces that rays hit, as `Scene`: light can be followed further there, and its velocity is
+/// known. `closest` calls `visit(first, end, surface)` for rays from `first` up to `end` that hit one surface, after
+/// their hits are set; a later call for the same ray counts. Rays begin at ranges of their own. `surface(hit, ray)` is
+/// at a hit of the same ray, `occluded` true if a ray hits anything beyond `ray.near`, up to a range [m] and to
+/// `ray.far`.
 /// Law: hits are those of a `BundleTarget`, but for the ranges at which rays begin; `closest_hit` finds the same.
 /// Not required: all hits of a ray; `position`, `part`, `primitive`, `weights` and `velocity` of what `closest` visits.
 template <class T>
-concept SceneQueries = requires(const T t, const StaggeredBundle& rays, std::span<Hit> hits, const detail::TakesSurfaces& visit,
-                                const Ray& ray, const RayHit& hit, double range) {
+concept SceneQueries = requires(const T t, const StaggeredBundle& rays, std::span<Hit> hits,
+                                const detail::TakesSurfaces& visit, const Ray& ray, const RayHit& hit, double range) {
   { t.closest(rays, hits, visit) } noexcept;
   { t.closest_hit(ray) } noexcept -> std::same_as<std::optional<RayHit>>;
   { t.occluded(ray, range) } noexcept -> std::same_as<bool>;
@@ -157,7 +162,8 @@ concept Target = BundleTarget<T> || RayTarget<T>;
 
 // --------------------------------------------------------------------- from the beam to the echoes
 
-/// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
+/// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along
+/// the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
 /// Not required: a record of all subrays, as of one that `RecordsSubrays`.
 template <class F>
@@ -171,40 +177,47 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
 struct TransportInput;
 
 /// Paths of light from the beam to surfaces and back. Sets the first of `reflections`, in any order. There is room for
-/// `reflections(n)` of a pulse of n subrays. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
-/// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the powers of reflections and continuous
-/// returns, times the pulse length, and at most `scattered`; both are of positive power, from inside the gate; each of
-/// `TransportInput::record` is set.
+/// `reflections(n)` of a pulse of n subrays. Its only writable memory is a `Workspace`, made once per worker by
+/// `workspace(subrays)`.
+/// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the powers of
+/// reflections and continuous returns, times the pulse length, and at most `scattered`; both are of positive power,
+/// from inside the gate; each of `TransportInput::record` is set.
 /// Not required: `trace<true>(...)`, which also sets velocities: `TracesVelocity`.
-template <class T, class Map>
-concept Transport = std::copyable<T> && requires(const T t, const Map& map, const TransportInput& light, std::size_t subrays,
-                                                 decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
+template <class T, class Target>
+concept Transport = std::copyable<T> &&
+    requires(const T t, const Target& target, const TransportInput& light, std::size_t subrays,
+             decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
   { t.reflections(subrays) } noexcept -> std::same_as<std::size_t>;
-  { t.trace(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
+  { t.trace(target, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
 };
 
 /// Transport that also sets `Reflection::velocity`, if the first template argument of `trace` is true.
-template <class T, class Map>
-concept TracesVelocity = Transport<T, Map> && requires(const T t, const Map& map, const TransportInput& light, std::size_t subrays,
-                                                       decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
-  { t.template trace<true>(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
+template <class T, class Target>
+concept TracesVelocity = Transport<T, Target> &&
+    requires(const T t, const Target& target, const TransportInput& light, std::size_t subrays,
+             decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
+  { t.template trace<true>(target, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
 };
 
-/// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by `workspace(n)` for up
-/// to n reflections. Random draws take `input.key` with a `purpose` of the detector's own, as `Purpose{128}`, and any `subray` and `part`.
-/// Law: pure; echoes are sorted by range. Unless it `RunsWithoutReflections`, nothing heard gives no echo, and the echoes' energy does not exceed
-/// that received.
-/// Not required: use of all reflections; randomness; waveforms, as of one that `SamplesWaveforms`; limits of the laser, as of one that
-/// `ValidatesLaser`; velocities, as of one that `ReadsVelocity`.
+/// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by
+/// `workspace(n)` for up to n reflections. Random draws take `input.key` with a `purpose` of the detector's own, as
+/// `Purpose{128}`, and any `subray` and `part`.
+/// Law: pure; echoes are sorted by range. Unless it `RunsWithoutReflections`, nothing heard gives no echo, and the
+/// echoes' energy does not exceed that received.
+/// Not required: use of all reflections; randomness; waveforms, as of one that `SamplesWaveforms`; limits of the laser,
+/// as of one that `ValidatesLaser`; velocities, as of one that `ReadsVelocity`.
 template <class D>
 concept Detector = std::copyable<D> &&
-    requires(const D d, const DetectorInput& input, std::size_t reflections, decltype(d.workspace(reflections))& workspace) {
+    requires(const D d, const DetectorInput& input, std::size_t reflections,
+             decltype(d.workspace(reflections))& workspace) {
   { d.detect(input, workspace) } noexcept -> std::same_as<Detection>;
 };
 
-/// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
-/// neighbouring echoes, every `interval` [s]. The result is a standard deviation in time [s], or NaN if none is found.
-/// Not required: a width from moments, as of a `MomentWidthMeasure`; a limit of the tail, as of a `TruncatedWidthMeasure`.
+/// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the
+/// valleys to the neighbouring echoes, every `interval` [s]. The result is a standard deviation in time [s], or NaN if
+/// none is found.
+/// Not required: a width from moments, as of a `MomentWidthMeasure`; a limit of the tail, as of a
+/// `TruncatedWidthMeasure`.
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
   { w.width(samples, interval) } noexcept -> std::same_as<double>;
@@ -212,8 +225,9 @@ concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const doub
 
 // ----------------------------------------------------------------------------------------- the run
 
-/// Simulation as `run` takes it: from a pulse slot to its outcome. `Survey` models it. A worker's only writable memory is a workspace.
-/// `sample_interval()` is the sample spacing of waveforms, or 0 [s]. `subrays()` and `recorded_subrays()` are counts per pulse.
+/// Simulation as `run` takes it: from a pulse slot to its outcome. `Survey` models it. A worker's only writable memory
+/// is a workspace. `sample_interval()` is the sample spacing of waveforms, or 0 [s]. `subrays()` and
+/// `recorded_subrays()` are counts per pulse.
 /// Law: pure; the same slot gives the same outcome, in any order, with any workspace of the survey.
 /// Not required: workspaces that can be moved or copied. For threads of one's own see `Executor` in base/parallel.hpp.
 template <class S>

@@ -21,6 +21,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
+#include <pulsecast/scene/detail/surface_sample.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -272,42 +273,6 @@ class Scene {
     visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
-  /// Members of a surface that all its hits need, in the part's frame: less to set than a `SurfaceInteraction`.
-  struct Sample {
-    Vec3 normal{};
-    const Material* material = nullptr;
-    std::uint32_t material_index = 0;
-    bool foliage = false;
-    bool uniform = false;  ///< same for every ray that hits the primitive
-    std::optional<Vec2> texture{};
-  };
-
-  /// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape sets only what is
-  /// read.
-  struct Sampler {
-    const Part& part;
-    PrimitiveIndex primitive;
-    const RayBundle& local;
-    std::size_t j;
-
-    template <class Shape>
-    [[gnu::always_inline]] Sample operator()(const std::shared_ptr<const Shape>& shape) const noexcept {
-      const SurfaceInteraction surface = shape->surface(primitive, local, j);
-      Sample found{.normal = surface.normal,
-                   .material = &(*part.materials)[surface.material_index],
-                   .material_index = surface.material_index,
-                   .foliage = surface.foliage,
-                   .uniform = UniformGeometry<Shape>};
-      if constexpr (Textured<Shape>)
-        if (found.material->reflectance_map) [[unlikely]] {
-          found.uniform = false;
-          found.texture =
-              shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
-        }
-      return found;
-    }
-  };
-
   /// Sets the hits of rays and visits their surfaces. `placement_of(i)` returns the placement of part i.
   template <class PlacementOf, class Visitor>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
@@ -327,8 +292,8 @@ class Scene {
         const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      const Sample surface =
-          visit_shape(Sampler{parts_[at], nearest.primitive_of(first), *local, first}, parts_[at].geometry);
+      const detail::SurfaceSample surface = visit_shape(
+          detail::SurfaceSampler<Part>{parts_[at], nearest.primitive_of(first), *local, first}, parts_[at].geometry);
       while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
         ++end;  // neighbouring rays often hit the same primitive
       const Vec3 n = surface.normal / local->direction_length;
