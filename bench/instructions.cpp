@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
@@ -116,6 +117,6 @@ int main() {
   std::printf("simple_scene %.9g\n", budget_simple_scene(scene_of(plane, {})));
   std::printf("single_rays %.9g\n", budget_single_rays(town, rays_of_a_robot(6'000)));
   std::printf("matt_surfaces %.9g\n", budget_matt_surfaces(scene_of(ground, {})));
-  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.5, .specular_exponent = 10};
+  const Material glossy{.law = Phong{0.5, 10}};
   std::printf("glossy_surfaces %.9g\n", budget_glossy_surfaces(scene_of(ground, glossy)));
 }

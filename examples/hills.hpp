@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
@@ -38,12 +39,7 @@ enum MaterialIndex : std::uint32_t { meadow, field, water, asphalt, wall, roof }
   std::vector<Material> all(6);
   all[meadow] = {.name = "meadow", .reflectance = 0.3, .classification = 3, .ground = true};
   all[field] = {.name = "field", .reflectance = 0.4, .classification = 2, .ground = true};
-  all[water] = {.name = "water",
-                .reflectance = 0.3,
-                .scattering = pulsecast::Scattering::phong,
-                .specular_share = 1,
-                .specular_exponent = 60,
-                .classification = 9};
+  all[water] = {.name = "water", .reflectance = 0.3, .law = pulsecast::Phong{1, 60}, .classification = 9};
   all[asphalt] = {.name = "asphalt", .reflectance = 0.18, .classification = 11, .ground = true};
   all[wall] = {.name = "wall", .reflectance = 0.55, .classification = 6};
   all[roof] = {.name = "roof", .reflectance = 0.45, .classification = 6};

@@ -16,6 +16,7 @@
 #include <pulsecast/deflector/palmer_mirror.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
+#include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/material/water_types.hpp>
 #include <pulsecast/material/weather.hpp>
 #include <pulsecast/platform/multicopter.hpp>
@@ -53,10 +54,7 @@ MaterialTable materials(double wavelength) {
   all.push_back({.name = "mirror", .reflectance = 0.01, .classification = 64, .smooth = SmoothInterface::mirror(0.9)});
   all.push_back({.name = "prismatic sheet",
                  .reflectance = 0.1,
-                 .scattering = Scattering::retroreflective,
-                 .retroreflection = 500,
-                 .retroreflector = RetroreflectorKind::prisms,
-                 .retroreflection_width = 4_mrad,
+                 .law = Retroreflector<CubeCorners>{.coefficient = 500, .half_angle = 4_mrad, .optics = {.index = 1.5}},
                  .classification = 65});
   all.push_back({.name = "puddle",
                  .reflectance = 0.002,

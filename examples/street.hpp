@@ -14,6 +14,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
@@ -52,27 +53,16 @@ enum MaterialIndex : std::uint32_t {
 /// Reflectances at 905 nm, chosen to stand apart; glass shines only when met head-on. Classes: ASPRS LAS 1.4 R15, table
 /// 17; from 64 on they are its users' own, here for cars and for posts.
 [[nodiscard]] inline std::vector<Material> materials() {
-  using enum pulsecast::Scattering;
   std::vector<Material> all(13);
   all[asphalt] = {.name = "asphalt", .reflectance = 0.17, .classification = 11, .ground = true};
   all[paving] = {.name = "paving", .reflectance = 0.35, .classification = 2, .ground = true};
   all[plaster] = {.name = "plaster", .reflectance = 0.65, .classification = 6};
   all[brick] = {.name = "brick", .reflectance = 0.4, .classification = 6};
   all[tiles] = {.name = "tiles", .reflectance = 0.3, .classification = 6};
-  all[glass] = {.name = "glass",
-                .reflectance = 0.2,
-                .scattering = phong,
-                .specular_share = 0.9,
-                .specular_exponent = 60,
-                .classification = 6};
+  all[glass] = {.name = "glass", .reflectance = 0.2, .law = pulsecast::Phong{0.9, 60}, .classification = 6};
   all[frame] = {.name = "frame", .reflectance = 0.75, .classification = 6};
   all[door] = {.name = "door", .reflectance = 0.25, .classification = 6};
-  all[paint] = {.name = "paint",
-                .reflectance = 0.5,
-                .scattering = phong,
-                .specular_share = 0.3,
-                .specular_exponent = 20,
-                .classification = 64};
+  all[paint] = {.name = "paint", .reflectance = 0.5, .law = pulsecast::Phong{0.3, 20}, .classification = 64};
   all[rubber] = {.name = "rubber", .reflectance = 0.06, .classification = 64};
   all[metal] = {.name = "metal", .reflectance = 0.45, .classification = 65};
   all[bark] = {.name = "bark", .reflectance = 0.35, .classification = 5};

@@ -35,7 +35,7 @@ struct MaterialLibrary {
 
 /// Surface without a description. It scatters equally in all directions, as in HELIOS++, which defined the extra keys.
 [[nodiscard]] inline Material undescribed(std::string name) {
-  return {.name = std::move(name), .scattering = Scattering::direction_independent};
+  return {.name = std::move(name), .law = DirectionIndependent{}};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -27,6 +27,11 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/microfacet.hpp>
+#include <pulsecast/material/normalized_phong.hpp>
+#include <pulsecast/material/phong.hpp>
+#include <pulsecast/material/retroreflector.hpp>
+#include <pulsecast/material/tabulated.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/version.hpp>
@@ -53,6 +58,20 @@ template <class G>
 concept Archived = Geometry<G> && detail::Restorable<G>;
 
 namespace detail {
+/// Laws that a cache keeps.
+using KnownLaw = std::variant<Lambert, DirectionIndependent, Phong, NormalizedPhong, Retroreflector<Beads>,
+                              Retroreflector<CubeCorners>, Tabulated, Microfacet>;
+
+/// A law as one of them; empty for a user-defined one.
+[[nodiscard]] inline std::optional<KnownLaw> known_law(const SurfaceLaw& law) {
+  std::optional<KnownLaw> known;
+  if (!law.model()) return law.even_share() > 0 ? KnownLaw(DirectionIndependent{}) : KnownLaw();
+  [&]<class... Laws>(const std::variant<Laws...>*) {
+    ((law.get<Laws>() ? void(known = *law.get<Laws>()) : void()), ...);
+  }(static_cast<const KnownLaw*>(nullptr));
+  return known;
+}
+
 template <Archived... Shapes>
 void require_archived(std::span<const Part<Shapes...>> parts);
 }  // namespace detail
@@ -108,14 +127,25 @@ template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further);
 
+/// Lists the rows of a measured law.
+template <class Archive>
+void list_members(Archive& a, Tabulated& law) {
+  a(law.rows);
+}
+/// Lists a law, one of the library's own.
+template <class Archive>
+void list_members(Archive& a, SurfaceLaw& law) {
+  detail::KnownLaw known;
+  if constexpr (std::same_as<Archive, ArchiveWriter>) known = detail::known_law(law).value();
+  a(known);
+  if constexpr (std::same_as<Archive, ArchiveReader>)
+    law = std::visit([](const auto& is) -> SurfaceLaw { return is; }, known);
+}
 /// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
-  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector,
-         prism_index, width, roughness, table, classification, ground, spectrum, smooth, colour, picture,
-         reflectance_map] = m;
-  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector,
-    prism_index, width, roughness, table, classification, ground, spectrum, colour, picture, reflectance_map);
+  auto& [name, reflectance, law, classification, ground, spectrum, smooth, colour, picture, reflectance_map] = m;
+  a(name, reflectance, law, classification, ground, spectrum, colour, picture, reflectance_map);
   auto& [kind, mirrored, thickness, inside] = smooth;
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
@@ -152,7 +182,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 8;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 9;          ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;
@@ -240,6 +270,10 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   for (const typename S::Part& part : parts) {
     if (part.motion && !detail::Restorable<PartMotion>)
       throw FileError(path.string(), "", "cannot be written: motions of parts are not supported");
+    for (const Material& material : *part.materials)
+      if (!detail::known_law(material.law))
+        throw FileError(path.string(), "",
+                        "cannot be written: the material '" + material.name + "' has a user-defined law of scattering");
     writer(part);
   }
   header.program = detail::program_of<typename S::Part>();

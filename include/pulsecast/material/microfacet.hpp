@@ -5,9 +5,11 @@
 
 #include <cmath>
 
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/fresnel.hpp>
+#include <pulsecast/material/lambert.hpp>
 
 /// Contract: closed forms of light at a rough surface of small smooth facets, whose slopes are Gaussian.
 namespace PULSECAST_NAMESPACE {
@@ -55,6 +57,31 @@ struct Microfacets {
     return reflected(dot(facet, from)) * density(dot(facet, normal)) / (4 * in * (1 + hidden(in) + hidden(out)));
   }
 };
+
+/// Light reflected by rough facets, and Lambert's law for the rest: varnish, wet ground, rippled water. The facets have
+/// the refractive index of the material's body, or 1.5.
+struct Microfacet {
+  static constexpr bool reflects_interface = true;  ///< as the concept ReflectsInterface describes
+
+  double slope = 0.3;  ///< root mean square of the slope of the facets, both axes together, from 1e-3 to 2
+
+  /// @throws SettingError for values out of range
+  void validate() const { require_within("Microfacet::slope", slope, 1e-3, 2, ""); }
+  double backscatter(double cosine, const SurfaceLight& light) const noexcept {
+    const Microfacets facets{slope, light.relative_index};
+    return facets.backscatter(cosine) + (1 - facets.reflected(cosine)) * light.reflectance * cosine;
+  }
+  double scattered_share(double cosine, const SurfaceLight& light) const noexcept {
+    const double by_facets = fresnel_split(cosine, light.relative_index).reflected;
+    return by_facets + (1 - by_facets) * Lambert{}.scattered_share(cosine, light);
+  }
+  double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, const SurfaceLight& light) const noexcept {
+    const Microfacets facets{slope, light.relative_index};
+    return pi * facets.scattered(in, out, normal) +
+           (1 - facets.reflected(dot(in, normal))) * Lambert{}.scattered(in, out, normal, light);
+  }
+};
+static_assert(ScattersBetween<Microfacet> && ReflectsInterface<Microfacet>);
 
 }  // namespace PULSECAST_NAMESPACE
 

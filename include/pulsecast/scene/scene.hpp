@@ -306,9 +306,7 @@ class Scene {
         const simd::Doubles projections =
             simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
         const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
-        simd::Doubles values = law.reflectance * (law.cosine * cosines + law.even);
-        if (law.lobe != 0) [[unlikely]]
-          values = law.glossy(cosines);
+        const simd::Doubles values = law(cosines);
         for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
           hits[k] = {nearest.range[k], cosines[k - j], values[k - j], object, classification};
       }

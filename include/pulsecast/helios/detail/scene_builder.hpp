@@ -222,7 +222,7 @@ PULSECAST_INLINE Material SceneBuilder::material(const MaterialSource& source) {
 
 PULSECAST_INLINE MaterialTable SceneBuilder::table(std::vector<Material> materials) const {
   if (options_.fixed_incidence)
-    for (Material& m : materials) m.scattering = Scattering::direction_independent;
+    for (Material& m : materials) m.law = DirectionIndependent{};
   return material_table(std::move(materials));
 }
 

@@ -23,9 +23,9 @@ struct PathState {
 /// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by
 /// that of a lobe much wider than it; 1 without a width.
 inline double aperture_fraction(const LinkBudget& budget, const Material& material, double range) noexcept {
-  if (!(material.retroreflection_width > 0)) return 1;
-  const double apertures = budget.aperture_radius() / (material.retroreflection_width * range),
-               x = 2 * apertures * apertures;
+  const double half_angle = material.law.returned_half_angle();
+  if (!(half_angle > 0)) return 1;
+  const double apertures = budget.aperture_radius() / (half_angle * range), x = 2 * apertures * apertures;
   return x > 0 ? -std::expm1(-x) / x : 1;
 }
 

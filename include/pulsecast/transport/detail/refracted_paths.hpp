@@ -60,9 +60,9 @@ class RefractedPaths {
     Face face{towards(at.normal, path.ray.direction)};
     if (at.normal != Vec3{}) face.cosine = std::min(1.0, -dot(face.normal, path.ray.direction));
     face.relative = path.behind(*at.material).index / path.medium().index;
-    face.scattered =
-        at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine, at.texture,
-                                     at.material->smooth.passes_light() ? face.relative : at.material->facets().index);
+    SurfaceLight light = at.material->light(light_.emitter.laser.wavelength, at.texture);
+    if (at.material->smooth.passes_light()) light.relative_index = face.relative;
+    face.scattered = at.material->scattered_share(light, face.cosine);
     return face;
   }
 
@@ -125,7 +125,7 @@ class RefractedPaths {
       return true;
     }
     const FresnelSplit split = fresnel_split(face.cosine, face.relative);
-    const bool rough = at.material->scattering == Scattering::microfacet;  // what it reflects is scattered
+    const bool rough = at.material->law.reflects_interface();  // what it reflects is scattered
     if (split.reflected >= 1) {
       if (rough) return false;
       reflect(path, reaching);

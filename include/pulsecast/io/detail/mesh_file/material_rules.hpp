@@ -23,6 +23,8 @@
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/microfacet.hpp>
+#include <pulsecast/material/phong.hpp>
 
 /// Materials of mesh files.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -73,12 +75,9 @@ class MaterialRules {
     const double specular = within(o.specular[0], 0, 1) + within(o.specular[1], 0, 1) + within(o.specular[2], 0, 1);
     const double diffuse = within(o.colour[0], 0, 1) + within(o.colour[1], 0, 1) + within(o.colour[2], 0, 1);
     if (specular > 0 && o.shininess > 0) {
-      made.scattering = Scattering::phong;
-      made.specular_share = specular / (diffuse + specular);
-      made.specular_exponent = within(o.shininess, 0, 1e6);
+      made.law = Phong{specular / (diffuse + specular), within(o.shininess, 0, 1e6)};
     } else if (o.linear && o.roughness >= 0 && o.roughness < 1 && !(o.metallic > 0)) {
-      made.scattering = Scattering::microfacet;
-      made.roughness = std::clamp(static_cast<double>(o.roughness) * static_cast<double>(o.roughness), 1e-3, 2.0);
+      made.law = Microfacet{std::clamp(static_cast<double>(o.roughness) * static_cast<double>(o.roughness), 1e-3, 2.0)};
     }
   }
 
@@ -98,7 +97,7 @@ class MaterialRules {
       light.metallic = within(o.metallic, 0, 1);
     }
     (void)set_standard_light(made, light);
-    if (made.scattering == Scattering::microfacet && o.index > 1 && o.index <= 4 && !made.smooth.passes_light())
+    if (made.law.reflects_interface() && o.index > 1 && o.index <= 4 && !made.smooth.passes_light())
       made.smooth.inside.index = static_cast<double>(o.index);
   }
 

@@ -16,6 +16,8 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/microfacet.hpp>
+#include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/material/water_types.hpp>
 
 /// Keys of MTL files for light reflected or transmitted specularly.
@@ -130,19 +132,20 @@ void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& 
   const double transmission = (m.transmittance[0] + m.transmittance[1] + m.transmittance[2]) / 3;
   if (made.smooth.kind == InterfaceKind::pane && made.smooth.thickness > 0 && transmission > 0 && transmission < 1)
     made.smooth.inside.absorption = -std::log(transmission) / made.smooth.thickness;
-  if (const auto words = words_of("pulsecast_roughness"); !words.empty()) {
-    made.scattering = Scattering::microfacet;
-    made.roughness = number(words[0]);
-  }
-  if (const auto words = words_of("pulsecast_retroreflector"); !words.empty()) {
-    const bool prisms = words[0] == "prisms";
-    made.retroreflector = prisms                     ? RetroreflectorKind::prisms
-                          : words[0] == "cubeCorner" ? RetroreflectorKind::cube_corner
-                                                     : RetroreflectorKind::beads;
-    if (prisms) made.retroreflection_index = number(words[1]);
+  if (const auto words = words_of("pulsecast_retroreflection"); !words.empty()) {
+    const double coefficient = number(words[0]);
+    const auto kind = words_of("pulsecast_retroreflector");
+    const bool prisms = !kind.empty() && kind[0] == "prisms",
+               corners = prisms || (!kind.empty() && kind[0] == "cubeCorner");
     const std::size_t width = prisms ? 2 : 1;
-    if (words.size() > width) made.retroreflection_width = number(words[width]);
+    const double half_angle = kind.size() > width ? number(kind[width]) : 0;
+    if (corners)
+      made.law = Retroreflector<CubeCorners>{coefficient, half_angle, {prisms ? number(kind[1]) : 1}};
+    else
+      made.law =
+          Retroreflector<Beads>{coefficient, half_angle, words.size() > 1 ? Beads{radians(number(words[1]))} : Beads{}};
   }
+  if (const auto words = words_of("pulsecast_roughness"); !words.empty()) made.law = Microfacet{number(words[0])};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

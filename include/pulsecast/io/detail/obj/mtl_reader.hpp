@@ -25,6 +25,8 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/normalized_phong.hpp>
+#include <pulsecast/material/phong.hpp>
 
 /// Reading of MTL files.
 namespace PULSECAST_NAMESPACE::io {
@@ -53,7 +55,7 @@ class MtlReader : private StatementBuffer {
  private:
   void check(std::string& ready) override {
     // tinyobjloader drops keys before the first name, and its default exponent is 1
-    static const std::string exponent = "\nNs " + text::to_text(Material{}.specular_exponent) + "\n";
+    static const std::string exponent = "\nNs " + text::to_text(Phong{}.exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
     if (keyword() == "newmtl") current_ = rest();
     if (keyword() == "newmtl") repeated_ = lines_.contains({current_, "newmtl"});
@@ -160,23 +162,14 @@ class MtlReader : private StatementBuffer {
     Material made = undescribed(m.name);
     const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2],
                  specular = m.specular[0] + m.specular[1] + m.specular[2];
-    if (specular > 0) {
-      made.scattering = Scattering::phong;
-      made.specular_share = specular / (diffuse + specular);
-    } else if (diffuse > 0) {
-      made.scattering = Scattering::lambert;
-    }
+    const double share = specular / (diffuse + specular);
+    if (specular > 0 && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
+      made.law = NormalizedPhong{share, m.shininess};
+    else if (specular > 0)
+      made.law = Phong{share, m.shininess};
+    else if (diffuse > 0)
+      made.law = Lambert{};
     for (int k = 0; diffuse > 0 && k < 3; ++k) made.colour[k] = std::min(m.diffuse[k], 1.0);
-    made.specular_exponent = m.shininess;
-    if (made.scattering == Scattering::phong && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
-      made.scattering = Scattering::normalized_phong;
-    if (const std::string text = extra("pulsecast_retroreflection"); !text.empty()) {
-      const std::string_view all = text::trimmed(text), first = all.substr(0, all.find_first_of(text::blanks));
-      made.scattering = Scattering::retroreflective;
-      made.retroreflection = *number_in<double>(first);
-      if (first.size() < all.size())
-        made.retroreflection_half_angle = radians(*number_in<double>(text::trimmed(all.substr(first.size()))));
-    }
     const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);

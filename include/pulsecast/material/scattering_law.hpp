@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_SCATTERING_LAW_HPP
+#define PULSECAST_MATERIAL_SCATTERING_LAW_HPP
+
+#include <concepts>
+
+#include <pulsecast/base/simd.hpp>
+#include <pulsecast/base/vector.hpp>
+
+/// Contract of surfaces: what a law of scattered light models. Beside the laws of this folder, any type may.
+// clang-format off
+// version 14 breaks up compound requirements
+namespace PULSECAST_NAMESPACE {
+
+/// Light at a place of a surface. A law that needs no more than the wavelength takes a `double` in its place.
+struct SurfaceLight {
+  double wavelength;      ///< [m]
+  double reflectance;     ///< of the material there, by its spectrum and map, in [0, 1]
+  double relative_index;  ///< refractive index behind the surface by that before it; 1.5 if its material has none
+
+  /// Light of a wavelength [m], by default at a white surface.
+  constexpr SurfaceLight(double w, double r = 1, double index = 1.5) noexcept  // NOLINT(google-explicit-constructor)
+      : wavelength(w), reflectance(r), relative_index(index) {}
+};
+
+/// Law of the light that a surface scatters. `backscatter(cosine, wavelength)` is the light returned to its source at a
+/// cosine of incidence in [0, 1], by that of a white Lambertian surface at normal incidence;
+/// `scattered_share(cosine, wavelength)` is the share of the light that is scattered, into all directions. A law may
+/// take a `SurfaceLight` in place of the wavelength [m]: it then knows the reflectance of the material. One that takes
+/// cosines as `simd::Doubles`, too, is evaluated in SIMD batches.
+/// Law: pure; neither is negative; a share is at most 1.
+/// Not required: light into other directions, as of a law that `ScattersBetween`; `validate()`.
+template <class L>
+concept ScatteringLaw = std::copyable<L> && requires(const L law, double cosine, double wavelength) {
+  { law.backscatter(cosine, wavelength) } noexcept -> std::convertible_to<double>;
+  { law.scattered_share(cosine, wavelength) } noexcept -> std::convertible_to<double>;
+};
+
+/// Law that takes a `SurfaceLight`.
+template <class L>
+concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
+
+/// Light as a law takes it.
+template <ScatteringLaw L>
+[[nodiscard]] const auto& taken_by(const SurfaceLight& light) noexcept {
+  if constexpr (TakesSurfaceLight<L>) return light;
+  else return light.wavelength;
+}
+
+/// Law that is evaluated in SIMD batches.
+template <class L>
+concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::Doubles& cosines, const SurfaceLight& light) {
+  { law.backscatter(cosines, taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
+};
+
+/// Law of the light from one direction towards another, without which `MultipleScattering` refuses a material. `in` and
+/// `out` are unit vectors away from the surface, on the side of its unit normal; the result is by the light of a white
+/// Lambertian surface towards its normal.
+/// Law: reciprocal: `scattered(in, out) / dot(out, normal)` stays the same if they are exchanged; the integral of
+/// `scattered / pi` over all `out` is the share. `scattered(in, in)` is the backscatter, but for laws with a peak towards
+/// the source that others directions do not see.
+template <class L>
+concept ScattersBetween = ScatteringLaw<L> && requires(const L law, const Vec3& in, const Vec3& out, const Vec3& normal, double wavelength) {
+  { law.scattered(in, out, normal, wavelength) } noexcept -> std::convertible_to<double>;
+};
+
+/// Direction drawn by a law, with its density.
+struct SampledDirection {
+  Vec3 direction{};    ///< unit vector away from the surface
+  double density = 0;  ///< [1/sr]
+};
+
+/// Law that draws directions by importance, for two numbers that are uniform in [0, 1). Others are sampled by the cosine.
+/// Law: the density integrates to 1 over the directions.
+template <class L>
+concept SamplesDirections = ScattersBetween<L> && requires(const L law, const Vec3& in, const Vec3& normal, double u, double v) {
+  { law.sample(in, normal, u, v) } noexcept -> std::same_as<SampledDirection>;
+};
+
+/// Law with light that returns to its source in a narrow cone, as of retroreflectors.
+template <class L>
+concept Retroreflects = ScatteringLaw<L> && requires(const L law) {
+  { law.returned_share() } noexcept -> std::same_as<double>;  ///< share of the light along the normal in the cone
+  { law.returned_half_angle() } noexcept -> std::same_as<double>;  ///< of the cone at 1/e^2; 0: wide against the aperture [rad]
+};
+
+/// Law that also reflects what the face of a body would mirror, as rough facets do: `reflects_interface` is true.
+template <class L>
+concept ReflectsInterface = ScatteringLaw<L> && L::reflects_interface;
+
+}  // namespace PULSECAST_NAMESPACE
+// clang-format on
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_SURFACE_LAW_HPP
+#define PULSECAST_MATERIAL_SURFACE_LAW_HPP
+
+#include <concepts>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/material/lambert.hpp>
+#include <pulsecast/material/scattering_law.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Any law of scattered light as a value; copies share it. A program holds the code of those laws alone that it makes.
+/// The default is Lambert's; that and `DirectionIndependent` are linear in the cosine, and cost no call.
+class SurfaceLaw {
+ public:
+  /// Law behind a table of functions. Members are those of the concepts; what a law has not has their defaults.
+  class Model {
+   public:
+    virtual ~Model() = default;
+    virtual void validate() const {}
+    virtual simd::Doubles backscatter(const simd::Doubles& cosines, const SurfaceLight& light) const noexcept = 0;
+    virtual double scattered_share(double cosine, const SurfaceLight& light) const noexcept = 0;
+    virtual double scattered(const Vec3&, const Vec3&, const Vec3&, const SurfaceLight&) const noexcept { return 0; }
+    virtual std::optional<SampledDirection> sample(const Vec3&, const Vec3&, double, double) const noexcept {
+      return std::nullopt;
+    }
+
+    double returned_share = 0, returned_half_angle = 0;         ///< of a law that `Retroreflects`
+    bool reflects_interface = false, scatters_between = false;  ///< true for a law that models the concept
+  };
+
+  SurfaceLaw() = default;
+  SurfaceLaw(Lambert) noexcept {}  // NOLINT(google-explicit-constructor): implicit by purpose, as the next two
+  SurfaceLaw(DirectionIndependent) noexcept : cosine_(0), even_(1) {}  // NOLINT(google-explicit-constructor)
+  template <class Law>
+  requires(!std::same_as<Law, SurfaceLaw> && ScatteringLaw<Law>)
+      SurfaceLaw(Law law)  // NOLINT(google-explicit-constructor)
+      : model_(std::make_shared<const ModelOf<Law>>(std::move(law))) {}
+
+  /// @throws SettingError as `validate()` of the law
+  void validate() const {
+    if (model_) model_->validate();
+  }
+
+  /// Law of a type, if it is one; of those that are linear, Lambert's alone is told apart from none.
+  template <class Law>
+  [[nodiscard]] const Law* get() const noexcept {
+    const auto* of = dynamic_cast<const ModelOf<Law>*>(model_.get());
+    return of ? &of->law : nullptr;
+  }
+  /// Law of the backscatter: `reflectance * (cosine_share * cosine + even_share)` if there is no model.
+  [[nodiscard]] const Model* model() const noexcept { return model_.get(); }
+  [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1 for Lambert's law, or 0
+  [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 1 for `DirectionIndependent`, or 0
+  /// True of a law that `ReflectsInterface`.
+  [[nodiscard]] bool reflects_interface() const noexcept { return model_ && model_->reflects_interface; }
+  /// As of a law that `Retroreflects`; 0 of others.
+  [[nodiscard]] double returned_share() const noexcept { return model_ ? model_->returned_share : 0; }
+  [[nodiscard]] double returned_half_angle() const noexcept { return model_ ? model_->returned_half_angle : 0; }
+
+ private:
+  template <class Law>
+  struct ModelOf final : Model {
+    explicit ModelOf(Law l) : law(std::move(l)) {
+      this->scatters_between = ScattersBetween<Law>;
+      if constexpr (Retroreflects<Law>) {
+        this->returned_share = law.returned_share();
+        this->returned_half_angle = law.returned_half_angle();
+      }
+      if constexpr (ReflectsInterface<Law>) this->reflects_interface = true;
+    }
+
+    void validate() const override {
+      if constexpr (Validated<Law>) law.validate();
+    }
+    simd::Doubles backscatter(const simd::Doubles& cosines, const SurfaceLight& light) const noexcept override {
+      if constexpr (ScattersInLanes<Law>)
+        return law.backscatter(cosines, taken_by<Law>(light));
+      else
+        return simd::generate([&](std::size_t lane) { return law.backscatter(cosines[lane], taken_by<Law>(light)); });
+    }
+    double scattered_share(double cosine, const SurfaceLight& light) const noexcept override {
+      return law.scattered_share(cosine, taken_by<Law>(light));
+    }
+    double scattered(const Vec3& in, const Vec3& out, const Vec3& normal,
+                     const SurfaceLight& light) const noexcept override {
+      if constexpr (ScattersBetween<Law>) return law.scattered(in, out, normal, taken_by<Law>(light));
+      return 0;
+    }
+    std::optional<SampledDirection> sample(const Vec3& in, const Vec3& normal, double u,
+                                           double v) const noexcept override {
+      if constexpr (SamplesDirections<Law>) return law.sample(in, normal, u, v);
+      return std::nullopt;
+    }
+
+    Law law;
+  };
+
+  std::shared_ptr<const Model> model_{};
+  double cosine_ = 1, even_ = 0;
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

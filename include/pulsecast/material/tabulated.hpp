@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_MATERIAL_TABULATED_HPP
+#define PULSECAST_MATERIAL_TABULATED_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/material/lambert.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Row of a table of backscatter.
+struct BackscatterAtIncidence {
+  double incidence = 0;    ///< angle between light and normal, from 0 to pi/2 [rad]
+  double backscatter = 0;  ///< by that of a white Lambertian surface at normal incidence, per unit of the reflectance
+};
+
+/// Measured backscatter. Light into other directions is that of Lambert's law.
+struct Tabulated {
+  /// Backscatter by incidence: linear between rows, constant beyond them; angles ascend.
+  SharedArray<BackscatterAtIncidence> rows{};
+
+  /// @throws SettingError for an empty table, or rows out of range
+  void validate() const {
+    require_within("Tabulated::rows (number)", static_cast<double>(rows.size()), 1, 1e6, "");
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      require_within("Tabulated::rows (incidence)", rows[i].incidence, 0, pi / 2 * (1 + 1e-6), "rad");
+      require_not_negative("Tabulated::rows (backscatter)", rows[i].backscatter, "");
+      if (i > 0)
+        require_positive("Tabulated::rows (from incidence to incidence)", rows[i].incidence - rows[i - 1].incidence,
+                         "rad");
+    }
+  }
+  double backscatter(double cosine, const SurfaceLight& light) const noexcept {
+    if (rows.empty()) return 0;
+    return light.reflectance * detail::interpolated(rows, std::acos(std::clamp(cosine, -1.0, 1.0)),
+                                                    &BackscatterAtIncidence::incidence,
+                                                    &BackscatterAtIncidence::backscatter);
+  }
+  double scattered_share(double cosine, const SurfaceLight& light) const noexcept {
+    return Lambert{}.scattered_share(cosine, light);
+  }
+  double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, const SurfaceLight& light) const noexcept {
+    return Lambert{}.scattered(in, out, normal, light);
+  }
+};
+static_assert(ScattersBetween<Tabulated>);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
