@@ -336,7 +336,7 @@ TEST_CASE("materials of glTF: colour, glass, mirrors, facets, and a reflectance 
   const auto pbr = [](const std::string& members) { return ",\"pbrMetallicRoughness\":{" + members + "}"; };
   const Material plain = material(pbr(R"("baseColorFactor":[1,0.5,0,1],"metallicFactor":0)"));
   CHECK(plain.reflectance == 0.5);
-  CHECK(plain.scattering == Scattering::lambert);
+  CHECK(plain.law.get<Lambert>());
   CHECK_FALSE(plain.smooth.passes_light());
   CHECK(plain.colour.x == doctest::Approx(1));
   CHECK(plain.colour.y == doctest::Approx(0.735357).epsilon(1e-5));  // sRGB of 0.5
@@ -345,8 +345,8 @@ TEST_CASE("materials of glTF: colour, glass, mirrors, facets, and a reflectance 
         doctest::Approx(0.2126 + 0.5 * 0.7152).epsilon(1e-6));
 
   const Material rough = material(pbr(R"("metallicFactor":0,"roughnessFactor":0.5)"));
-  CHECK(rough.scattering == Scattering::microfacet);
-  CHECK(rough.roughness == doctest::Approx(0.25));
+  CHECK(rough.law.get<Microfacet>());
+  CHECK(rough.law.get<Microfacet>()->slope == doctest::Approx(0.25));
 
   const Material chrome = material(pbr(R"("metallicFactor":1,"roughnessFactor":0.05)"));
   CHECK(chrome.smooth.kind == InterfaceKind::mirror);

@@ -42,9 +42,9 @@ TEST_CASE("every key of an MTL file that counts is read") {
   const Material& wall = library.materials.at("wall");
   CHECK(wall.name == "wall");
   CHECK(wall.reflectance == 0.3);
-  CHECK(wall.scattering == Scattering::phong);
-  CHECK(wall.specular_share == doctest::Approx(0.125));
-  CHECK(wall.specular_exponent == 20);
+  CHECK(wall.law.get<Phong>());
+  CHECK(wall.law.get<Phong>()->share == doctest::Approx(0.125));
+  CHECK(wall.law.get<Phong>()->exponent == 20);
   CHECK(wall.classification == 6);
   CHECK(wall.ground);
 }
@@ -65,16 +65,15 @@ TEST_CASE("the colours decide the angular law, material by material") {
           "newmtl specular\nKs 0 0 0.5\n"
           "newmtl black with blanks\nKd 0 0 0\nKs 0 0 0\nKa 1 1 1\nmap_Kd x.png\n");
   const auto& m = library.materials;
-  CHECK(m.at("both").scattering == Scattering::phong);
-  CHECK(m.at("both").specular_share == doctest::Approx(0.25));
-  CHECK(m.at("diffuse").scattering == Scattering::lambert);
-  CHECK(m.at("diffuse").specular_share == 0);
-  CHECK(m.at("neither").scattering == Scattering::direction_independent);
-  CHECK(m.at("specular").scattering == Scattering::phong);
-  CHECK(m.at("specular").specular_share == 1);
-  CHECK(m.at("black with blanks").scattering == Scattering::direction_independent);
+  CHECK(m.at("both").law.get<Phong>());
+  CHECK(m.at("both").law.get<Phong>()->share == doctest::Approx(0.25));
+  CHECK(m.at("diffuse").law.get<Lambert>());
+  CHECK(m.at("neither").law.get<DirectionIndependent>());
+  CHECK(m.at("specular").law.get<Phong>());
+  CHECK(m.at("specular").law.get<Phong>()->share == 1);
+  CHECK(m.at("black with blanks").law.get<DirectionIndependent>());
   CHECK(m.at("diffuse").reflectance == 0.5);
-  CHECK(m.at("specular").specular_exponent == 10);
+  CHECK(m.at("specular").law.get<Phong>()->exponent == 10);
   CHECK_FALSE(m.at("diffuse").ground);
   for (const auto& [name, material] : m) CHECK_NOTHROW(material.validate());
 }
@@ -84,13 +83,13 @@ TEST_CASE("laws of the library's own have keys of its own") {
       mtl("newmtl gloss\nKd 0.3\nKs 0.1\nNs 20\npulsecast_normalizedPhong true\n"
           "newmtl plain\nKd 0.3\nKs 0.1\npulsecast_normalizedPhong false\n"
           "newmtl sign\nKd 0.3\npulsecast_retroreflection 70\nnewmtl mark\npulsecast_retroreflection 300.5 45\n");
-  CHECK(library.materials.at("gloss").scattering == Scattering::normalized_phong);
-  CHECK(library.materials.at("plain").scattering == Scattering::phong);
-  CHECK(library.materials.at("sign").scattering == Scattering::retroreflective);
-  CHECK(library.materials.at("sign").retroreflection == 70);
-  CHECK(library.materials.at("sign").retroreflection_half_angle == support::relative(pi / 6, 1e-12));
-  CHECK(library.materials.at("mark").retroreflection == 300.5);
-  CHECK(library.materials.at("mark").retroreflection_half_angle == support::relative(pi / 4, 1e-12));
+  CHECK(library.materials.at("gloss").law.get<NormalizedPhong>());
+  CHECK(library.materials.at("plain").law.get<Phong>());
+  CHECK(library.materials.at("sign").law.get<Retroreflector<>>());
+  CHECK(library.materials.at("sign").law.get<Retroreflector<>>()->coefficient == 70);
+  CHECK(library.materials.at("sign").law.get<Retroreflector<>>()->optics.half_angle == support::relative(pi / 6, 1e-12));
+  CHECK(library.materials.at("mark").law.get<Retroreflector<>>()->coefficient == 300.5);
+  CHECK(library.materials.at("mark").law.get<Retroreflector<>>()->optics.half_angle == support::relative(pi / 4, 1e-12));
   for (const char* wrong :
        {"pulsecast_retroreflection -1", "pulsecast_retroreflection 70 0", "pulsecast_retroreflection 70 30 5",
         "pulsecast_retroreflection", "pulsecast_normalizedPhong maybe"})
@@ -124,12 +123,14 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
   CHECK(m.at("lake").smooth.kind == InterfaceKind::water);
   CHECK(m.at("lake").smooth.inside.scattering == 0.2);
   CHECK(m.at("lake").smooth.inside.backscatter == 0.01);
-  CHECK(m.at("wet").scattering == Scattering::microfacet);
-  CHECK(m.at("wet").roughness == 0.25);
-  CHECK(m.at("sign").retroreflector == RetroreflectorKind::prisms);
-  CHECK(m.at("sign").retroreflection_index == 1.58);
-  CHECK(m.at("sign").retroreflection_width == 0.02);
-  CHECK(m.at("corner").retroreflector == RetroreflectorKind::cube_corner);
+  CHECK(m.at("wet").law.get<Microfacet>());
+  CHECK(m.at("wet").law.get<Microfacet>()->slope == 0.25);
+  const auto* sign = m.at("sign").law.get<Retroreflector<CubeCorners>>();
+  REQUIRE(sign);
+  CHECK(sign->optics.index == 1.58);
+  CHECK(sign->half_angle == 0.02);
+  REQUIRE(m.at("corner").law.get<Retroreflector<CubeCorners>>());
+  CHECK(m.at("corner").law.get<Retroreflector<CubeCorners>>()->optics.index == 1);
   CHECK(m.at("mirror").smooth.reflectance == 0.9);
   for (const char* wrong :
        {"pulsecast_interface", "pulsecast_interface mirror", "pulsecast_interface mirror 1.1",
@@ -192,7 +193,7 @@ TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one
   std::ofstream(path, std::ios::binary) << text;
   const MaterialLibrary library = read_mtl(path, spectra);
   CHECK(library.materials.at("a").spectrum == birch);
-  CHECK(library.materials.at("a").scattering == Scattering::lambert);
+  CHECK(library.materials.at("a").law.get<Lambert>());
   CHECK(library.materials.at("a").reflectance_at(1.5e-6) == 0.6);
   CHECK(library.materials.at("b").spectrum == nullptr);
   CHECK(library.materials.at("b").reflectance_at(1.5e-6) == 0.2);
@@ -218,9 +219,9 @@ TEST_CASE("of a name that comes twice the first counts, and what has no name is 
 
 TEST_CASE("a colour of one number is grey, and a texture is no colour") {
   const MaterialLibrary library = mtl("newmtl a\nKd 0.3\nKs 0.1 0.1 0.1\nnewmtl b\nmap_Kd x.png\n");
-  CHECK(library.materials.at("a").specular_share == doctest::Approx(0.25));
-  CHECK(library.materials.at("b").scattering == Scattering::direction_independent);
-  CHECK(mtl("newmtl a\nmap_Kd x.png\n").materials.at("a").scattering == Scattering::direction_independent);
+  CHECK(library.materials.at("a").law.get<Phong>()->share == doctest::Approx(0.25));
+  CHECK(library.materials.at("b").law.get<DirectionIndependent>());
+  CHECK(mtl("newmtl a\nmap_Kd x.png\n").materials.at("a").law.get<DirectionIndependent>());
 }
 
 TEST_CASE("names may have blanks and signs of comments") {
@@ -280,7 +281,7 @@ TEST_CASE("standard keys are limited or ignored with a note, and never refuse a 
     CHECK(contains(library.warnings[0], c.note));
     CHECK(contains(library.warnings[0], ", line "));
     CHECK(max_norm(library.materials.at("a").colour - c.colour) < 1e-12);
-    CHECK(library.materials.at("a").specular_exponent == c.exponent);
+    CHECK(library.materials.at("a").law.get<Phong>()->exponent == c.exponent);
     CHECK(library.pictures.empty());
     CHECK_NOTHROW(library.materials.at("a").validate());
   }

@@ -150,8 +150,8 @@ TEST_CASE("numbers are the same in every locale") {
   std::locale::global(before);
   REQUIRE(model.materials.size() == 1);
   CHECK(model.mesh.vertices[0] == Vec3{1.5, 2.25, 1000.5});
-  CHECK(model.materials[0].specular_share == 0.75);
-  CHECK(model.materials[0].specular_exponent == 12.5);
+  CHECK(model.materials[0].law.get<Phong>()->share == 0.75);
+  CHECK(model.materials[0].law.get<Phong>()->exponent == 12.5);
   CHECK(model.materials[0].reflectance == 0.125);
   CHECK(model.materials[0].classification == 1234);
 }
@@ -279,18 +279,17 @@ TEST_CASE("an MTL file gives reflectance, class, ground and angular law") {
   CHECK(ground.reflectance == 0.5);
   CHECK(ground.ground);
   CHECK(ground.classification == 2);
-  CHECK(ground.scattering == Scattering::lambert);
+  CHECK(ground.law.get<Lambert>());
   CHECK(wall.name == "wall");
   CHECK(wall.reflectance == 0.3);
   CHECK_FALSE(wall.ground);
   CHECK(wall.classification == 6);
   CHECK(shiny.name == "shiny");
-  CHECK(shiny.scattering == Scattering::phong);
-  CHECK(shiny.specular_share == 0.5);
-  CHECK(shiny.specular_exponent == 20);
+  CHECK(shiny.law.get<Phong>());
+  CHECK(shiny.law.get<Phong>()->share == 0.5);
+  CHECK(shiny.law.get<Phong>()->exponent == 20);
   CHECK(leaves.name == "leaves");
-  CHECK(leaves.specular_share == 0);
-  CHECK(leaves.specular_exponent == 10);
+  CHECK_FALSE(leaves.law.get<Phong>());
   CHECK(model.mesh.materials == std::vector<std::uint32_t>{0, 0, 1, 2, 2, 1, 3});
 }
 
@@ -302,7 +301,7 @@ TEST_CASE("a material that no MTL file describes is a default one, with one warn
   CHECK(model.materials[1].name == "nowhere");
   for (const Material& m : model.materials) {
     CHECK(m.reflectance == 0.5);
-    CHECK(m.scattering == Scattering::direction_independent);
+    CHECK(m.law.get<DirectionIndependent>());
   }
   REQUIRE(model.warnings.size() == 1);
   CHECK(contains(model.warnings[0], "nowhere"));

@@ -74,7 +74,7 @@ TEST_CASE("maps out of range are refused") {
 TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a bundle and alone") {
   MeshData wall{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   wall.texture = {{{{0, 0}, {1, 0}, {1, 1}}}, {{{0, 0}, {1, 1}, {0, 1}}}};
-  Material paint{.reflectance = 0.3, .scattering = Scattering::lambert};
+  Material paint{.reflectance = 0.3, .law = Lambert{}};
   paint.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap{.image = two_pixels(188, 188, 188)});
   const Scene<TriangleMesh<>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<>>(wall), .materials = material_table({paint})}});
@@ -101,10 +101,9 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
 }
 
 TEST_CASE("a map leaves to a retroreflector and a mirror their shares") {
-  Material sign{.reflectance = 0.1, .scattering = Scattering::retroreflective, .retroreflection = 100};
-  sign.retroreflection_width = 0.05;
+  Material sign{.reflectance = 0.1, .law = Retroreflector<>{.coefficient = 100, .half_angle = 0.05}};
   sign.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap{.image = two_pixels(255, 255, 255)});
   sign.validate();
-  CHECK(sign.reflectance_at(1e-6, left) == doctest::Approx(1 - sign.retroreflected_share()));
+  CHECK(sign.reflectance_at(1e-6, left) == doctest::Approx(1 - sign.law.returned_share()));
   CHECK(sign.scattered_share(1e-6, 1, left) == doctest::Approx(1));
 }

@@ -16,7 +16,7 @@ using namespace pulsecast::support;
 
 TEST_CASE("variants fill the range evenly, keep the rest of the material, and can be made again") {
   const Material leaf{
-      .name = "leaf", .reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.2, .classification = 5};
+      .name = "leaf", .reflectance = 0.5, .law = Phong{0.2}, .classification = 5};
   const std::vector<Material> variants = vary_reflectance(leaf, 10'000, 0.2, 7);
   REQUIRE(variants.size() == 10'000);
   CHECK(variants[0].name == "leaf 1");
@@ -26,8 +26,8 @@ TEST_CASE("variants fill the range evenly, keep the rest of the material, and ca
     REQUIRE(std::fabs(m.reflectance - 0.5) <= 0.2);
     sum += m.reflectance;
     squares += (m.reflectance - 0.5) * (m.reflectance - 0.5);
-    REQUIRE(m.scattering == Scattering::phong);
-    REQUIRE(m.specular_share == 0.2);
+    REQUIRE(m.law.get<Phong>());
+    REQUIRE(m.law.get<Phong>()->share == 0.2);
     REQUIRE(m.classification == 5);
   }
   const double deviation =

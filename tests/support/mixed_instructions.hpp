@@ -42,7 +42,7 @@ namespace {
     if (i > 0)
       ridge.triangles.insert(ridge.triangles.end(), {{2 * i - 2, 2 * i, 2 * i - 1}, {2 * i - 1, 2 * i, 2 * i + 1}});
   }
-  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 12.5};
+  const Material glossy{.law = Phong{0.4, 12.5}};
   const Scene<Mesh> scene({{.geometry = std::make_shared<const Mesh>(ridge), .materials = material_table({glossy})}});
   const Laser laser{.wavelength = 1.064e-6, .peak_power = 50, .pulse_length = 4e-9, .divergence = 5e-3};
   const Platform airplane{StraightLine{.from = {-40, 0, 100}, .to = {40, 3, 101}, .speed = 30},

@@ -348,12 +348,9 @@ TEST_CASE("dirt on glass scatters, and is not passed on") {
 
 TEST_CASE("an aperture catches no more of a narrow retroreflector's light than there is, also through a body") {
   const Material sign{.reflectance = 0,
-                      .scattering = Scattering::retroreflective,
-                      .retroreflection = 700,
-                      .retroreflector = RetroreflectorKind::prisms,
-                      .retroreflection_width = 2e-3};
+                      .law = Retroreflector<CubeCorners>{.coefficient = 700, .half_angle = 2e-3, .optics = {1.5}}};
   Material wide = sign;
-  wide.retroreflection_width = 0;
+  wide.law = Retroreflector<CubeCorners>{.coefficient = 700, .optics = {1.5}};
   const SmoothInterface of_air{.kind = InterfaceKind::dielectric, .inside = {}};  // what a body of it does is nothing
   for (const double y : {10.0, 40.0, 160.0}) {
     CAPTURE(y);

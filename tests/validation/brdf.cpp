@@ -47,7 +47,7 @@ TEST_CASE("Lambert against incidence") {
 
 TEST_CASE("Phong against incidence") {
   const Material phong{
-      .reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.3, .specular_exponent = 10};
+      .reflectance = 0.5, .law = Phong{0.3, 10}};
   for (const double angle_deg : {0.0, 20.0, 45.0, 60.0, 80.0}) {
     const double a = radians(angle_deg);
     // Source: Jutzi & Gross 2009; the lobe ends 90 degrees from the mirror direction
@@ -57,7 +57,7 @@ TEST_CASE("Phong against incidence") {
 }
 
 TEST_CASE("a surface that is the same from everywhere") {
-  const Material same{.reflectance = 0.5, .scattering = Scattering::direction_independent};
+  const Material same{.reflectance = 0.5, .law = DirectionIndependent{}};
   for (const double angle_deg : {0.0, 60.0})
     row("direction independent, reflectance 0.5, " + at(angle_deg), 0.5, measured(same, radians(angle_deg)), 1e-6);
 }

@@ -72,7 +72,7 @@ TEST_CASE("the peer's received power, without its factor of pi, with its extinct
 
 TEST_CASE("the peer's Phong, as far as its lobe reaches") {
   const Material phong{
-      .reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.3, .specular_exponent = 10};
+      .reflectance = 0.5, .law = Phong{0.3, 10}};
   struct Case {
     double angle_deg, factor;
   };

@@ -65,7 +65,6 @@ using KnownLaw = std::variant<Lambert, DirectionIndependent, Phong, NormalizedPh
 /// A law as one of them; empty for a user-defined one.
 [[nodiscard]] inline std::optional<KnownLaw> known_law(const SurfaceLaw& law) {
   std::optional<KnownLaw> known;
-  if (!law.model()) return law.even_share() > 0 ? KnownLaw(DirectionIndependent{}) : KnownLaw();
   [&]<class... Laws>(const std::variant<Laws...>*) {
     ((law.get<Laws>() ? void(known = *law.get<Laws>()) : void()), ...);
   }(static_cast<const KnownLaw*>(nullptr));

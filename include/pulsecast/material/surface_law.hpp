@@ -51,11 +51,17 @@ class SurfaceLaw {
     if (model_) model_->validate();
   }
 
-  /// Law of a type, if it is one; of those that are linear, Lambert's alone is told apart from none.
+  /// The law, if it is of a type; null otherwise.
   template <class Law>
   [[nodiscard]] const Law* get() const noexcept {
-    const auto* of = dynamic_cast<const ModelOf<Law>*>(model_.get());
-    return of ? &of->law : nullptr;
+    static constexpr bool linear = std::same_as<Law, Lambert> || std::same_as<Law, DirectionIndependent>;
+    if constexpr (linear) {
+      static constexpr Law law{};
+      return !model_ && (cosine_ > 0) == std::same_as<Law, Lambert> ? &law : nullptr;
+    } else {
+      const auto* of = dynamic_cast<const ModelOf<Law>*>(model_.get());
+      return of ? &of->law : nullptr;
+    }
   }
   /// Law of the backscatter: `reflectance * (cosine_share * cosine + even_share)` if there is no model.
   [[nodiscard]] const Model* model() const noexcept { return model_.get(); }
