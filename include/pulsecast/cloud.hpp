@@ -3,7 +3,6 @@
 #ifndef PULSECAST_CLOUD_HPP
 #define PULSECAST_CLOUD_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/echo.hpp>

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <condition_variable>  // includes the steady clock: <chrono> would add a calendar, a tenth of this header's cost
-#include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -102,8 +100,7 @@ struct ResultChunk : ResultBuffer {
   }
 
  private:
-  template <class Count>
-  [[nodiscard]] std::size_t bytes_of(const Count& count) const noexcept {
+  [[nodiscard]] std::size_t bytes_of(const auto& count) const noexcept {
     return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) +
            count(subrays) * sizeof(SubrayRecord);
   }
@@ -177,8 +174,7 @@ class ReorderBuffer {
   }
 
   /// Takes back a finished chunk, and delivers all that are due unless another worker is delivering.
-  template <class Deliver>
-  void finish(ResultChunk& chunk, const Deliver& deliver) {
+  void finish(ResultChunk& chunk, const auto& deliver) {
     std::unique_lock lock(mutex_);
     finished_bytes_ += chunk.bytes();
     place(chunk.number) = &chunk;

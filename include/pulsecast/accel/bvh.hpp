@@ -7,8 +7,6 @@
 #include <array>
 #include <bit>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -48,10 +46,7 @@ class Bvh {
   }
 
   explicit Bvh(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, centre_, depth_, nodes_, primitives_);
-  }
+  void archive(auto& a) { a(bounds_, centre_, depth_, nodes_, primitives_); }
 
   /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
@@ -146,8 +141,7 @@ class Bvh {
   };
   static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< sentinel in place of a size
 
-  template <class Interval, class Rays, class Test, class Hits>
-  void descend(const Interval& interval, const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  void descend(const auto& interval, const auto& rays, const auto& test, auto& nearest) const noexcept {
     std::array<StackEntry, (places - 1) * detail::max_depth + 1> stack;
     std::size_t stack_size = 0;
     Real limit = interval.limit(rays, nearest);
@@ -195,8 +189,7 @@ class Bvh {
   };
 
   /// As `descend`, for a single ray.
-  template <class Rays, class Test, class Hits>
-  void descend_alone(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  void descend_alone(const auto& rays, const auto& test, auto& nearest) const noexcept {
     using Interval = RayInterval<Real>;
     const auto size_of = [](typename Interval::Key key) noexcept { return static_cast<std::uint32_t>(key & 7); };
     const Interval interval(rays, bounds_, centre_);

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -41,10 +39,7 @@ class KdTree {
   }
 
   explicit KdTree(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, centre_, cell_, depth_, nodes_, order_);
-  }
+  void archive(auto& a) { a(bounds_, centre_, cell_, depth_, nodes_, order_); }
 
   /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,10 +31,7 @@ class Linear {
   }
 
   explicit Linear(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, primitives_);
-  }
+  void archive(auto& a) { a(bounds_, primitives_); }
   /// True if all archived indices are below `primitives`.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const noexcept {
     return std::all_of(primitives_.begin(), primitives_.end(), [&](PrimitiveIndex i) { return i < primitives; });

@@ -73,8 +73,7 @@ class SettingError : public std::invalid_argument {
 };
 
 /// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there already.
-template <class Function>
-decltype(auto) naming(const std::string& name, const Function& function) {
+decltype(auto) naming(const std::string& name, const auto& function) {
   try {
     return function();
   } catch (const SettingError& error) {

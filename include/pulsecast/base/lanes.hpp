@@ -3,9 +3,6 @@
 #ifndef PULSECAST_BASE_LANES_HPP
 #define PULSECAST_BASE_LANES_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>

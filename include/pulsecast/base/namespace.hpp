@@ -3,7 +3,8 @@
 #ifndef PULSECAST_BASE_NAMESPACE_HPP
 #define PULSECAST_BASE_NAMESPACE_HPP
 
-#include <cstddef>  // with the macros of the standard library
+#include <cstddef>  // for all headers; with the macros of the standard library
+#include <cstdint>  // for all headers
 
 /// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones
 /// by macros that change the layout of types or the meaning of their constructors. Files of one program may thus be

@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_THREAD_POOL_HPP
 
 #include <condition_variable>
-#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <thread>

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <compare>
-#include <cstdint>
 
 #include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>

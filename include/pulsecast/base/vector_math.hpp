@@ -5,8 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -42,8 +40,7 @@ template <class V>
 }
 /// True if a comparison holds in any lane.
 [[nodiscard]] inline bool any(bool mask) noexcept { return mask; }
-template <class M>
-[[nodiscard, gnu::always_inline]] inline bool any(const M& mask) noexcept {
+[[nodiscard, gnu::always_inline]] inline bool any(const auto& mask) noexcept {
   std::int64_t set = 0;
   for (std::size_t lane = 0; lane < sizeof mask / sizeof mask[0]; ++lane) set |= mask[lane];
   return set != 0;

@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_CYCLE_HPP
 
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/base/tick.hpp>
 

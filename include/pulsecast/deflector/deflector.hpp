@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>

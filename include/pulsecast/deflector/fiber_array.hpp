@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 #define PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>

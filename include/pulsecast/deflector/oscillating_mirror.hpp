@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
 #define PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
 
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>

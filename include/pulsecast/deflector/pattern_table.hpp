@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 #define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

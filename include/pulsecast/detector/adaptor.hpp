@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/require.hpp>
@@ -56,8 +54,7 @@ struct DetectorAdaptor {
   [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }
 
   /// Echoes of the detector inside.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& workspace) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
     return inner.detect(input, workspace);
   }
 };

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_FIRST_HIT_HPP
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
-#include <cstddef>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -226,8 +224,7 @@ class Fmcw {
     RandomKey key;                              ///< of the speckle
 
     /// Calls `visit(period, power)` for the periods within 8 of a frequency that have power [W].
-    template <class Visit>
-    void visit_near(double beat, const Visit& visit) const noexcept {
+    void visit_near(double beat, const auto& visit) const noexcept {
       if (returns.empty()) return;
       for (double period = std::ceil(beat - 8); period <= beat + 8; ++period) {
         const double from = (period - 0.5) * resolution, to = (period + 0.5) * resolution;

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <utility>
@@ -91,8 +90,7 @@ class FullWaveform {
   /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold,
   /// whose pulse arrives at the place k of `places` between two samples [s]; the last place is the next sample.
   /// Records, if any, hold the whole pulse.
-  template <class Visit>
-  void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
+  void visit_flat_targets(const Laser& laser, std::size_t places, const auto& visit) const {
     FullWaveform quiet = *this;
     quiet.receiver_.silence();
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;

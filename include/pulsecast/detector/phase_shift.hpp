@@ -4,8 +4,6 @@
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -208,8 +206,7 @@ class PhotonCounting {
 
   /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back:
   /// one Poisson process along all of them, whose place in a return is that of the quantile of its density.
-  template <class Enter>
-  static void draw_continuous(const DetectorInput& input, double per_watt, const Enter& enter, Draws& draws) noexcept {
+  static void draw_continuous(const DetectorInput& input, double per_watt, const auto& enter, Draws& draws) noexcept {
     if (input.continuous.empty()) return;
     double next = draws.exponential();
     for (std::size_t k = 0; k < input.continuous.size(); ++k) {

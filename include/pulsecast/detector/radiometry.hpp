@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>

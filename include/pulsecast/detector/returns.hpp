@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -39,8 +37,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   }
 
   /// Selected echoes of the detector inside.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     const std::size_t n = d.echoes.size();
     if (n < 2) return d;
@@ -124,8 +121,7 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
   /// Echoes of the detector inside, without those in blind zones.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(),
                                      [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });

@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
 
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/detector/detail/kept_returns.hpp>

@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/base/random.hpp>

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -174,8 +172,7 @@ class AllHits {
   }
 
   /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
-  template <class Closest>
-  void offer_chain(SingleRayPacket ray, const Closest& closest) noexcept {
+  void offer_chain(SingleRayPacket ray, const auto& closest) noexcept {
     for (;;) {
       ClosestHit next(limit_);
       next.part = part;
@@ -187,8 +184,7 @@ class AllHits {
   }
 
   /// Offers the closest hit alone, of a shape whose hits are drawn at random from the ray's beginning on.
-  template <class Closest>
-  void offer_first(SingleRayPacket ray, const Closest& closest) noexcept {
+  void offer_first(SingleRayPacket ray, const auto& closest) noexcept {
     ray.near = near_;
     ClosestHit first(limit_);
     first.part = part;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -86,8 +85,7 @@ class Media {
 
   /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium,
   /// in their order.
-  template <class Visitor>
-  void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
+  void along(const Vec3& origin, const Vec3& direction, double near, double far, const auto& visit) const noexcept {
     if (empty()) return;
     if (uniform_) return near < far ? visit(near, far, regions_->front(), 1.0) : void();
     for (double from = near; from < far;) {
@@ -137,9 +135,8 @@ class Media {
   }
 
   /// Visits the cells of a region between two ranges inside it.
-  template <class Visitor>
   static void along_cells(const Vec3& origin, const Vec3& direction, double from, double to, const MediumRegion& region,
-                          const Visitor& visit) noexcept {
+                          const auto& visit) noexcept {
     std::array<std::size_t, 3> cell{};
     std::array<double, 3> edge{};
     const Vec3 start = origin + from * direction;

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SPECTRUM_HPP
 #define PULSECAST_MATERIAL_SPECTRUM_HPP
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,10 +41,7 @@ class Spectrum {
   }
 
   explicit Spectrum(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(samples_);
-  }
+  void archive(auto& a) { a(samples_); }
   [[nodiscard]] bool is_consistent() const noexcept { return !samples_.empty(); }
 
   /// Samples in ascending order of wavelength.

@@ -4,8 +4,6 @@
 #define PULSECAST_PLATFORM_LEGS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>

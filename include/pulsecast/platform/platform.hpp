@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>

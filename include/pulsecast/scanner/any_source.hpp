@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <variant>

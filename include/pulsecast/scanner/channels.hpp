@@ -4,8 +4,6 @@
 #define PULSECAST_SCANNER_CHANNELS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>

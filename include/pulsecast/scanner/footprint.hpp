@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <utility>
 #include <vector>
@@ -273,8 +271,7 @@ class SubrayDirections {
   /// Beam without subrays.
   SubrayDirections() = default;
   /// Takes a valid footprint and emitter.
-  template <Footprint Pattern>
-  SubrayDirections(const Pattern& footprint, const Emitter& emitter)
+  SubrayDirections(const Footprint auto& footprint, const Emitter& emitter)
       : SubrayDirections(footprint.size(), emitter.laser) {
     assign(footprint.size(), emitter, [&](std::size_t j) noexcept {
       return Subray{footprint.offset(j), footprint.share(j)};
@@ -289,8 +286,7 @@ class SubrayDirections {
     double share;  ///< of the pulse's energy, without unit
   };
   /// Replaces the subrays by `subray(j)`, of which there must be room for `size`. Changes all copies.
-  template <class SubrayOf>
-  void assign(std::size_t size, const Emitter& emitter, const SubrayOf& subray) noexcept {
+  void assign(std::size_t size, const Emitter& emitter, const auto& subray) noexcept {
     PULSECAST_ASSERT(size + RayBundle::lanes <= padded_);
     exits = emitter.laser.from_a_point() ? nullptr : exits_.data();
     spread = share_sum = 0;

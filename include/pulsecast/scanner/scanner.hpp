@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCANNER_SCANNER_HPP
 #define PULSECAST_SCANNER_SCANNER_HPP
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 

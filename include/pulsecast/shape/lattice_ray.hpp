@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>
@@ -36,8 +34,7 @@ struct Crossing {
 class LatticeRay {
  public:
   /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
-  template <class Rays>
-  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept
+  LatticeRay(const Vec3& corner, double edge, const auto& rays, std::size_t j) noexcept
       : edge_(edge), per_edge_(1 / edge) {
     const Vec3 direction = rays.direction(j);
     for (int k = 0; k < 3; ++k) {

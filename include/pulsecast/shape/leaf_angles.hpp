@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,10 +102,7 @@ class LeafAngles {
   /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return table_.memory(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(chi_, half_surface_, upright_, table_);
-  }
+  void archive(auto& a) { a(chi_, half_surface_, upright_, table_); }
 
  private:
   /// Zenith intervals of the table of G: linear interpolation is within 2e-7 of the integral.

@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_MASK_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -76,10 +74,7 @@ class MaskTable {
     bits_ = bits;
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(frames_, bits_);
-  }
+  void archive(auto& a) { a(frames_, bits_); }
   [[nodiscard]] bool is_consistent() const {
     return std::all_of(frames_.begin(), frames_.end(), [&](const Frame& frame) {
       const std::size_t words = (std::size_t{frame.width} * frame.height + 63) / 64;

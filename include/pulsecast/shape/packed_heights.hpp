@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -96,10 +94,7 @@ class PixelHeights {
     numbers_ = std::move(packed.numbers);
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(heights_, numbers_);
-  }
+  void archive(auto& a) { a(heights_, numbers_); }
   /// True if there are `size` pixels, each with a height or a place in the table.
   [[nodiscard]] bool is_consistent(std::size_t size) const noexcept {
     if (!is_packed()) return heights_.size() == size;
@@ -115,10 +110,7 @@ class PixelHeights {
   [[nodiscard]] PackedPixels packed() const noexcept { return {numbers_.data(), heights_.data()}; }
 
   /// Calls `work` with what gives the height of a pixel by its index: `const float*` or `PackedPixels`.
-  template <class Work>
-  decltype(auto) read(const Work& work) const {
-    return is_packed() ? work(packed()) : work(floats());
-  }
+  decltype(auto) read(const auto& work) const { return is_packed() ? work(packed()) : work(floats()); }
 
  private:
   SharedArray<float> heights_;          ///< of the pixels, or the table

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -48,8 +46,7 @@ struct TransmissiveVoxels {
     require_within("TransmissiveVoxels::clumping", clumping, 0.01, 10, "");
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     leaf_angles.archive(a);
     a(tilted_leaves, leaf_area, clumping);
   }
@@ -140,9 +137,8 @@ struct TransmissiveVoxels {
       return {*this, settings, rays, j, nearest};
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (!settings.tilted_leaves) return {};
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
@@ -158,10 +154,7 @@ struct TransmissiveVoxels {
       return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(densities_);
-    }
+    void archive(auto& a) { a(densities_); }
 
    private:
     SharedArray<float> densities_;

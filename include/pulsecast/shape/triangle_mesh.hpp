@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,8 +63,7 @@ class TriangleMesh {
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(corners_, first_corners_, triangles_, places_, materials8_, materials_, texture_, masks_, index_,
       material_count_);
   }
@@ -142,8 +139,7 @@ class TriangleMesh {
     return at;
   }
 
-  template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const auto&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, material(i)};
   }
@@ -155,8 +151,7 @@ class TriangleMesh {
     return !materials8_.empty() ? materials8_[i] : !materials_.empty() ? materials_[i] : 0;
   }
   /// True if ray j meets a triangle outside the holes of its material.
-  template <class Rays>
-  [[nodiscard]] bool solid(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] bool solid(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     const std::uint32_t masked = material(i);
     return !masks_.covers(masked) ||
            masks_.solid(masked, *texture(i, triangle(i).weights(rays.origin, rays.direction(j))));
@@ -204,9 +199,8 @@ class TriangleMesh {
       test(primitives, triangle_of, SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
-    template <class TriangleOf, class Solid>
-    [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of,
-                                     const Solid& solid) const noexcept {
+    [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
+                                     const auto& solid) const noexcept {
       if (!alone()) return intersect(primitives, triangle_of, rays, nearest, solid);
       const TrianglePacket packet(primitives.size(), triangle_of);
       if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -74,18 +72,14 @@ struct VoxelData {
   }
 
  private:
-  template <class Column>
-  static double count(const Column& column) noexcept {
-    return static_cast<double>(column.size());
-  }
+  static double count(const auto& column) noexcept { return static_cast<double>(column.size()); }
 
   [[noreturn]] static void reject(const char* field, double value, std::string allowed, std::size_t cell) {
     throw SettingError(std::string("VoxelData::") + field, value, "",
                        std::move(allowed) + "; see entry " + std::to_string(cell));
   }
 
-  template <class Column>
-  void require_entries(const char* field, const Column& column) const {
+  void require_entries(const char* field, const auto& column) const {
     if (column.empty() || column.size() == cells.size()) return;
     throw SettingError(std::string("VoxelData::") + field, count(column), "",
                        "as many as cells, " + std::to_string(cells.size()) + ", or none");

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -40,10 +38,7 @@ enum class Incidence : std::uint8_t {
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(incidence);
-  }
+  void archive(auto& a) { a(incidence); }
 
   /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
@@ -60,15 +55,13 @@ struct OpaqueVoxels {
       return {in, out};
     }
 
-    template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
-                               Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const auto& rays, std::size_t j,
+                               auto& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       if (settings.incidence == Incidence::normal && !normals_.empty()) {
         const Vec3 kept = normals_[number].unpacked();
@@ -78,10 +71,7 @@ struct OpaqueVoxels {
       return detail::face_normal(ray, ray.through(index.cell(number)), rays.near);
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(normals_);
-    }
+    void archive(auto& a) { a(normals_); }
 
    private:
     SharedArray<detail::PackedVector> normals_;
@@ -93,10 +83,7 @@ struct OpaqueVoxels {
 struct ScaledVoxels {
   Incidence incidence = Incidence::face;  ///< surface direction of all voxels
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(incidence);
-  }
+  void archive(auto& a) { a(incidence); }
 
   /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
@@ -126,24 +113,19 @@ struct ScaledVoxels {
       return ray.through(low, high);
     }
 
-    template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
-                               Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const auto& rays, std::size_t j,
+                               auto& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       const LatticeRay ray = index.ray(rays, j);
       return detail::face_normal(ray, passage(ray, number, index.cell(number), {}, {}), rays.near);
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(scales_, shifts_);
-    }
+    void archive(auto& a) { a(scales_, shifts_); }
 
    private:
     SharedArray<float> scales_;
@@ -205,13 +187,11 @@ class VoxelGrid {
       hits.offer_chain(ray, [this](const SingleRayPacket& from, ClosestHit& next) noexcept { closest(from, next); });
   }
 
-  template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     index_.archive(a);
     filling_.archive(a);
     columns_.archive(a);

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -61,15 +59,11 @@ class VoxelIndex {
   }
 
   /// Ray j in the lattice, relative to the lower corner of the bounds.
-  template <class Rays>
-  [[nodiscard]] LatticeRay ray(const Rays& rays, std::size_t j) const noexcept {
-    return {corner_, edge_, rays, j};
-  }
+  [[nodiscard]] LatticeRay ray(const auto& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
 
   /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order.
   /// Stops at a cell beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
-  template <class Visit>
-  void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
+  void walk(const LatticeRay& ray, double near, double limit, auto visit) const noexcept {
     detail::LatticeWalker at(ray, near, extent_);
     if (!at.inside) return;
     Place place;
@@ -96,8 +90,7 @@ class VoxelIndex {
     }
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(bounds_, corner_, edge_, extent_, size_, height_, levels_, level_count_);
     a(keys_, slots_, block_masks_, block_first_, brick_masks_, brick_first_, pyramid_);
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -90,8 +89,7 @@ class WaterSurface {
   }
 
   /// The normal is upwards. `i` is the primitive that the ray's hit was offered with.
-  template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     if (waves_.empty()) return {axis::up, 0};
     const Vec3 direction = rays.direction(j);
     const double at = span_of(rays.origin, direction).at_share(i);
@@ -161,9 +159,8 @@ class WaterSurface {
   }
 
   /// Offers each place where a ray passes the surface, in order, up to the end of its span and to a limit [m].
-  template <class Offer>
   void find_roots(const detail::WaveProfile& profile, const Line& line, const Span& span, double limit,
-                  const Offer& offer) const noexcept {
+                  const auto& offer) const noexcept {
     double t = span.begin, side = 0;
     while (true) {
       const double z = line.at(t);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -67,8 +66,7 @@ class WaveSum {
 
 /// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it
 /// belongs to.
-template <class Add>
-[[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const Add& add) noexcept {
+[[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const auto& add) noexcept {
   // unrolled, so that the sums stay in registers
   const auto each_part = [&]<std::size_t... part>(std::size_t i, std::index_sequence<part...>) noexcept {
     (add(i + part * simd::lane_count, part), ...);

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -223,8 +221,7 @@ class KdTreeBuilder {
   }
 
   /// Calls act(pieces, step) for the pieces of each node.
-  template <class Act>
-  void for_each_step(std::vector<Piece>& pieces, const Act& act) {
+  void for_each_step(std::vector<Piece>& pieces, const auto& act) {
     for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
       while (end < pieces.size() && pieces[end].step == pieces[begin].step) ++end;
       act(std::span(pieces).subspan(begin, end - begin), steps_[pieces[begin].step]);

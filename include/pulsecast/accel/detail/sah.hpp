@@ -8,8 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -173,8 +171,7 @@ inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
 [[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept {
   return (count + chunk_size - 1) / chunk_size;
 }
-template <class Act>
-void for_each_chunk(std::size_t count, const Workers& workers, const Act& act) {
+void for_each_chunk(std::size_t count, const Workers& workers, const auto& act) {
   for_each_index(chunk_count(count), workers,
                  [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
@@ -198,8 +195,7 @@ class BoxRangeRef {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// Calls act(i, box) for the non-empty boxes of a chunk.
-  template <class Act>
-  void for_each(std::size_t begin, std::size_t end, const Act& act) const {
+  void for_each(std::size_t begin, std::size_t end, const auto& act) const {
     constexpr std::size_t at_once = 64;
     std::array<Box, at_once> some;
     for (; begin < end; begin += at_once) {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

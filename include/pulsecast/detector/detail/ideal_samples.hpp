@@ -4,8 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>

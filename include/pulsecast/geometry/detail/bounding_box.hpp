@@ -7,8 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <type_traits>

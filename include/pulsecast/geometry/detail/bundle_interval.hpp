@@ -8,8 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -34,8 +32,7 @@ class BundleInterval {
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
-  template <class Rays>
-  BundleInterval(const Rays& rays, const Box& bounds, const Vec3& centre) noexcept
+  BundleInterval(const auto& rays, const Box& bounds, const Vec3& centre) noexcept
       : near_(round_down<Real>(rays.near)) {
     // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
@@ -61,8 +58,7 @@ class BundleInterval {
   }
 
   /// Largest range at which any ray can still find a closer hit.
-  template <class Rays, class Hits>
-  [[nodiscard]] Real limit(const Rays& rays, const Hits& nearest) const noexcept {
+  [[nodiscard]] Real limit(const auto& rays, const auto& nearest) const noexcept {
     return round_up<Real>(nearest.limit(rays));
   }
 
@@ -128,8 +124,7 @@ class BundleInterval {
     simd::Packet<Real> low, high;
   };
 
-  template <class WallsOf>
-  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const WallsOf& walls_of) const noexcept {
+  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const auto& walls_of) const noexcept {
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
       simd::Packet<Real> entry = simd::Packet<Real>{} + near_,
@@ -194,8 +189,7 @@ class RayInterval {
   [[nodiscard]] static Key last_key(Real limit) noexcept { return std::bit_cast<Key>(limit) | 7; }
 
   /// Of the only ray of a bundle. `bounds` of the accelerator; its boxes are relative to `centre`.
-  template <class Rays>
-  RayInterval(const Rays& ray, const Box& bounds, const Vec3& centre) noexcept {
+  RayInterval(const auto& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min),
@@ -222,8 +216,7 @@ class RayInterval {
   }
 
   /// Largest range at which the ray can still find a closer hit.
-  template <class Rays, class Hits>
-  [[nodiscard]] Real limit(const Rays&, const Hits& nearest) const noexcept {
+  [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
     return static_cast<Real>(std::min(nearest.limit_of(0) * (1 + tolerance), max_limit));
   }
 

@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_LATTICE_WALKER_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/shape/detail/voxel_keys.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_LEAF_COLUMNS_HPP
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/base/vector.hpp>

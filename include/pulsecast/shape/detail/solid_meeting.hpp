@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_SOLID_MEETING_HPP
 #define PULSECAST_SHAPE_DETAIL_SOLID_MEETING_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_VOXEL_KEYS_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/shape/lattice_ray.hpp>
 
