@@ -37,13 +37,12 @@ struct Divergence {
 /// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. The ranges keep
 /// received powers, down to 10^-30 of the power sent, and their squares within a double's range.
 struct Laser {
-  double wavelength = 1.064e-6;  ///< wavelength, from 10 nm to 1 cm [m]
-  double peak_power = 4;         ///< peak power of a pulse, from 1e-20 to 1e20 [W]
-  double pulse_length = 4e-9;    ///< full width at half maximum, from 1 fs to 1 s [s]
-  Divergence divergence =
-      0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]
-  double waist_diameter = 0;  ///< waist at 1/e^2, across; up in proportion to the divergences [m]
-  double waist_range = 0;     ///< distance of the waist from the exit; a focus if positive [m]
+  double wavelength = 1.064e-6;    ///< wavelength, from 10 nm to 1 cm [m]
+  double peak_power = 4;           ///< peak power of a pulse, from 1e-20 to 1e20 [W]
+  double pulse_length = 4e-9;      ///< full width at half maximum, from 1 fs to 1 s [s]
+  Divergence divergence = 0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 [rad]
+  double waist_diameter = 0;       ///< waist at 1/e^2, across; up in proportion to the divergences [m]
+  double waist_range = 0;          ///< distance of the waist from the exit; a focus if positive [m]
 
   /// Energy of a pulse: peak power times pulse length [J].
   [[nodiscard]] double energy() const noexcept { return peak_power * pulse_length; }

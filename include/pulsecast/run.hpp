@@ -14,7 +14,6 @@
 #include <stop_token>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/progress.hpp>
@@ -70,9 +69,8 @@ namespace detail {
 struct ResultChunk : ResultBuffer {
   std::uint64_t number = 0;
   ResultChunk* next_free = nullptr;
-  PulseError error =
-      PulseError::none;  ///< of the slot after the last; ends the run once all slots before it are delivered
-  Shot wrong{};          ///< that slot
+  PulseError error = PulseError::none;  ///< of the slot after the last; ends the run after all slots before it
+  Shot wrong{};                         ///< that slot
 
   /// Appends the result of a slot, or notes its error.
   void add(const Outcome& outcome, bool empty_shots) {
@@ -287,8 +285,7 @@ template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
-  const PulseIndex most =
-      std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // fewer in a short run, for all workers
+  const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // few in a short run
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, most);
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;

@@ -123,10 +123,9 @@ class Bvh {
 
   struct alignas(64) Node {
     QuantizedBox8<Real> boxes;
-    std::uint32_t children = 0;    ///< index of the first child node; the others follow it
-    std::uint32_t primitives = 0;  ///< index of the first leaf primitive; the others follow it
-    std::uint8_t kinds[places] =
-        {};  ///< per child: leaf size in the lower three bits, 0 for a node; above, offset from the first
+    std::uint32_t children = 0;       ///< index of the first child node; the others follow it
+    std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
+    std::uint8_t kinds[places] = {};  ///< by child: leaf size in the lower three bits, 0 for a node; above, its offset
 
     [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
     [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {

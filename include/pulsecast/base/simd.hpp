@@ -7,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
 /// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set

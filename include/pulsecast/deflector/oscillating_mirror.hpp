@@ -22,7 +22,7 @@ struct OscillatingMirror {
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
   Swing swing = Swing::triangle;  ///< motion from end to end
   double turning_time =
-      0;  ///< duration of a reversal, half before the end, half after; triangle: at most half a cycle, sine: 0 [s]
+      0;  ///< duration of a reversal, half of it on either side; at most half a cycle, 0 for a sine [s]
 
   void validate() const {
     require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
@@ -49,11 +49,9 @@ struct OscillatingMirror {
     const simd::Doubles phase = t.phase(cycles_per_second);
     if (swing == Swing::sine) return -half_angle * simd::cos(simd::Doubles(2 * pi * phase));
     const double turn = turning_time * cycles_per_second;  // [cycles]
-    const double rate =
-        4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
-    const simd::Doubles after =
-        phase < 0.5 ? phase : 1.0 - phase;     // since the lower end; the second half mirrors the first [cycles]
-    const simd::Doubles before = 0.5 - after;  // until the upper end [cycles]
+    const double rate = 4 * half_angle / (1 - turn);       // between parabolas that end at the half angle [rad/cycle]
+    const simd::Doubles after = phase < 0.5 ? phase : 1.0 - phase;  // since the lower end, in either half [cycles]
+    const simd::Doubles before = 0.5 - after;                       // until the upper end [cycles]
     const simd::Doubles lower = rate * after * after / turn - half_angle,
                         upper = half_angle - rate * before * before / turn;
     return after < 0.5 * turn ? lower : (before < 0.5 * turn ? upper : rate * (after - 0.25));

@@ -18,7 +18,7 @@ struct PalmerMirror {
   double turns_per_second = 50;  ///< rate of turns around the cone, at most 1e12 [Hz]
   double half_angle = pi / 9;    ///< half angle of the cone, upwards and downwards [rad]
   std::optional<double>
-      half_angle_across{};  ///< half angle of the cone to the right and left; circular cone if empty [rad]
+      half_angle_across{};  ///< half angle of the cone to the right and left; that above if empty [rad]
 
   void validate() const {
     require_rate("PalmerMirror::turns_per_second", turns_per_second);
@@ -34,8 +34,7 @@ struct PalmerMirror {
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(turns_per_second)));
     const simd::Doubles across = half_angle_across.value_or(half_angle) * turn.sin, upwards = half_angle * turn.cos;
-    const simd::Doubles off =
-        simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // angle from forward [rad]
+    const simd::Doubles off = simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // from forward [rad]
     const auto tilt = simd::sincos(off);
     const simd::Doubles aside = off > 0.0 ? tilt.sin / off : simd::Doubles{} + 1.0;
     poses = aimed_along(Vec3Lanes{aside * across, tilt.cos, aside * upwards});

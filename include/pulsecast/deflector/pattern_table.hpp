@@ -8,7 +8,6 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/cycle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

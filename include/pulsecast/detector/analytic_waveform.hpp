@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>

@@ -127,7 +127,7 @@ class Fmcw {
   using Line = Workspace::Line;
   static constexpr double reach = 2;  ///< half the main lobe of the window [periods in a sweep]
   static constexpr double grid =
-      0.25;  ///< spacing of the spectrum, of four times as many samples by zeros added [periods in a sweep]
+      0.25;  ///< spacing of the spectrum, of samples padded to four times as many [periods in a sweep]
 
   /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
   struct Noise {

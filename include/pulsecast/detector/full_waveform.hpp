@@ -272,8 +272,7 @@ class FullWaveform {
   [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape,
                                                 TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
-    const double before =
-        std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
+    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau,
                  step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;

@@ -58,8 +58,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     Detection d = this->inner.detect(input, w.inner);
     const auto* wave = waves_.find(input.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
-    const double apart =
-        0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
+    const double apart = 0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes without overlap [m]
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;

@@ -108,8 +108,7 @@ struct GaussianFit {
   }
 
  private:
-  static constexpr double small_enough =
-      1e-3;  ///< tolerance of the last step, relative to amplitude and width; the error left is far smaller
+  static constexpr double small_enough = 1e-3;  ///< last step, by amplitude and width; the error left is far smaller
 
   /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared
   /// residuals.

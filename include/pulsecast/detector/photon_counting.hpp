@@ -29,7 +29,7 @@ struct PhotonCountingSettings {
   double background = 0;    ///< received sunlight [W]
   std::size_t pixels = 1;   ///< detectors that share the light evenly, at most 4096
   double dead_time =
-      20e-9;  ///< time after a detection in which a pixel is blind; infinite for one detection a shot: Geiger mode [s]
+      20e-9;              ///< time after a detection in which a pixel is blind; infinite in Geiger mode, one a shot [s]
   double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
   double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
   double jitter = 0;                              ///< standard deviation of a detection's time [s]

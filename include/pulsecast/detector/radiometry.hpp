@@ -14,7 +14,6 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -33,13 +32,11 @@ struct RangeErrors {
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
   bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
-  double deviation_at_watt =
-      0;  ///< further deviation of an echo of an amplitude of 1 W, added [m]. Source: Wujanz et al. 2018
-  double power_exponent = -0.5;  ///< exponent of the amplitude in that deviation, from -4 to 0
+  double deviation_at_watt = 0;       ///< further deviation of an echo of 1 W, added [m]. Source: Wujanz et al. 2018
+  double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
-  SharedArray<double>
-      channel_biases{};  ///< further bias by number of the channel, as in `Emitter`; 0 for channels beyond [m]
+  SharedArray<double> channel_biases{};  ///< further bias by channel, as in `Emitter`; 0 for channels beyond [m]
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");

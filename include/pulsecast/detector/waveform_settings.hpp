@@ -28,7 +28,7 @@ namespace PULSECAST_NAMESPACE {
 /// except for moments of `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
   double sample_interval =
-      0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+      0.25e-9;                   ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length, if sampled [s]
   double threshold = 1e-9;       ///< least power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
   double separation = 0;         ///< closer peaks merge, with the greater height [s]
   double prominence = 0;         ///< least rise of the lower of two peaks above the valley between them [W]
@@ -39,8 +39,7 @@ struct WaveformSettings {
   EchoTiming timing = EchoTiming::peak;           ///< definition of an echo's range
   double fraction = 0.5;     ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
   double record_length = 0;  ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor =
-      PulseShape::divisor;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double shape_divisor = PulseShape::divisor;  ///< full width at half maximum by tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");

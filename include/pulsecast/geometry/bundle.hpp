@@ -8,7 +8,6 @@
 #include <concepts>
 #include <limits>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/ray.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_PURE_WATER_HPP
 
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include <pulsecast/base/require.hpp>
@@ -15,8 +14,7 @@ namespace PULSECAST_NAMESPACE {
 /// Temperature and salinity of water at atmospheric pressure.
 struct WaterState {
   double temperature_celsius = 20;  ///< temperature, from 0 to 30 [degrees Celsius]
-  double salinity_permille =
-      35;  ///< grams of salt per kilogram, from 0 to 35; 0 for fresh water, 35 for the mean of the oceans
+  double salinity_permille = 35;    ///< salt, from 0 (fresh water) to 35 (mean of the oceans) [g/kg]
 
   void validate() const {
     require_within("WaterState::temperature_celsius", temperature_celsius, 0, 30, "degrees Celsius");

@@ -112,7 +112,7 @@ struct Precipitation {
   double lidar_ratio = 20;  ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
   double absorption = 0;    ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
   double reflectance =
-      0;  ///< share of the light reflected by the front of a particle at normal incidence, at most 8 pi / lidar_ratio
+      0;  ///< share reflected by the front of a particle at normal incidence, at most 8 pi / lidar_ratio
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
@@ -172,12 +172,10 @@ struct Precipitation {
   }
 
  private:
-  [[nodiscard]] double front() const noexcept {
-    return reflectance / (4 * std::numbers::pi);
-  }  ///< by the shadow [1/sr]
-  [[nodiscard]] double inside() const noexcept {
-    return 2 / lidar_ratio - front();
-  }  ///< by the shadow, if nothing is absorbed [1/sr]
+  /// By the shadow [1/sr].
+  [[nodiscard]] double front() const noexcept { return reflectance / (4 * std::numbers::pi); }
+  /// By the shadow, if nothing is absorbed [1/sr].
+  [[nodiscard]] double inside() const noexcept { return 2 / lidar_ratio - front(); }
 };
 
 /// Rain of a rate from 0.1 to 300 mm/h, for a wavelength from 0.4 to 1.6 um [m]: drops from 0.1 to 6 mm by Marshall &

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <limits>
 #include <optional>
 #include <span>
@@ -26,17 +25,15 @@ namespace PULSECAST_NAMESPACE {
 
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
-  double speed = 10;  ///< maximum [m/s]
-  double acceleration =
-      2;            ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
-  double jerk = 2;  ///< maximum change of acceleration along the path [m/s^3]
+  double speed = 10;            ///< maximum [m/s]
+  double acceleration = 2;      ///< maximum along and across the path combined, as on level ground [m/s^2]
+  double jerk = 2;              ///< maximum change of acceleration along the path [m/s^3]
   double turn_radius = 5.5;     ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
   double wheelbase = 2.7;       ///< distance from the rear to the front axle [m]
   double track = 1.6;           ///< distance from the left to the right wheels [m]
   double wheel_radius = 0.316;  ///< [m]; source: tyre 205/55 R16 by ISO 4000-1, half of 16 inches and 55 % of 205 mm
   double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
-  double start_height =
-      std::numeric_limits<double>::infinity();    ///< the drive begins on the ground nearest to it: on the highest [m]
+  double start_height = std::numeric_limits<double>::infinity();  ///< the drive begins on the ground nearest to it [m]
   std::optional<double> height_without_ground{};  ///< height where there is no ground, which is an error if empty [m]
 
   void validate() const {
@@ -181,8 +178,7 @@ class FootingFinder {
       footing.height += rear;
       footing.ahead = std::clamp(footing.ahead + pitch / s_.wheelbase, -tilt_max, tilt_max);
       footing.aside = std::clamp(footing.aside + roll / s_.track, -tilt_max, tilt_max);
-      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height)))
-        break;  // rounding errors
+      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height))) break;
     }
     gaps_ += gap ? 1 : 0;
     return before_ = footing;
@@ -294,8 +290,7 @@ class FootingFinder {
 /// Speed limits on a piece of the path. In a curve, acceleration along and across have equal shares of the maximum.
 [[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
   const double bend = std::fabs(path.curvature), share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
-  const double speed =
-      bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
+  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal: v^2 / r
   return {speed, share, share, s.jerk};
 }
 

@@ -19,8 +19,7 @@ namespace PULSECAST_NAMESPACE {
 /// a mask and its complement may both answer it.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
-  std::vector<std::uint64_t>
-      bits{};  ///< of the pixels, row by row from the top left; the first is the lowest bit of the first word
+  std::vector<std::uint64_t> bits{};  ///< of the pixels, row by row from the top left, from the lowest bit of a word up
 
   /// Pixels of a picture whose channel, by number, is at least a share of its full value, in [0, 1].
   [[nodiscard]] static Mask of(const Image& image, std::uint32_t channel, double cutoff = 0.5) {

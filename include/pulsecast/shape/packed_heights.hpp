@@ -4,7 +4,6 @@
 #define PULSECAST_SHAPE_PACKED_HEIGHTS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -19,11 +18,10 @@ namespace PULSECAST_NAMESPACE {
 /// Heights as whole numbers of 16 bits, which take half of the memory of `float`: the height of number n is
 /// `offset` + `scale` (n - `zero`), rounded to `float`.
 struct PackedHeights {
-  std::vector<std::uint16_t>
-      numbers{};           ///< one a pixel, row by row from the north; empty if the heights are not packed
-  double scale = 1;        ///< height of one step [m]
-  double offset = 0;       ///< height of the number `zero` [m]
-  std::uint16_t zero = 0;  ///< 32768 where the numbers are signed ones with 32768 added
+  std::vector<std::uint16_t> numbers{};    ///< one a pixel, row by row from the north; empty if heights are not packed
+  double scale = 1;                        ///< height of one step [m]
+  double offset = 0;                       ///< height of the number `zero` [m]
+  std::uint16_t zero = 0;                  ///< 32768 where the numbers are signed ones with 32768 added
   std::optional<std::uint16_t> missing{};  ///< number of missing heights
 
   void validate() const {

@@ -38,8 +38,7 @@ struct TransmissiveVoxels {
   LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
   bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
   double leaf_area = 0;  ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
-  double clumping =
-      1;  ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; from 0.01 to 10
+  double clumping = 1;   ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; 0.01 to 10
 
   void validate() const {
     require_within("TransmissiveVoxels::leaf_area", leaf_area, 0, 100, "m^2");

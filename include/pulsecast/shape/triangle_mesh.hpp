@@ -5,17 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
@@ -273,8 +270,7 @@ class TriangleMesh {
   /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, const Workers& workers) {
     const auto order = index_.order();
-    const bool once =
-        order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last one wins
+    const bool once = order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (!once) {
       std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit

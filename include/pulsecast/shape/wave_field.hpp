@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -32,8 +32,7 @@ struct SineWave {
   double amplitude = 0;   ///< half of the height from trough to crest [m], from 0 to 100
   double wavelength = 1;  ///< distance between crests [m], from 1 mm to 1000 km
   double toward = 0;      ///< direction that the wave travels to, from east towards north [rad]
-  double phase =
-      0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter of a wavelength ahead
+  double phase = 0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter wavelength ahead
 
   void validate() const {
     require_within("SineWave::amplitude", amplitude, 0, 100, "m");
@@ -153,9 +152,8 @@ class WaveField {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if the surface is flat
   [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of the magnitude of heights [m]
   [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of the magnitude of slopes
-  [[nodiscard]] std::size_t memory() const noexcept {
-    return columns_.memory() + rest_.memory();
-  }  ///< memory held [byte]
+  /// Memory held [byte].
+  [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }
 
   /// Height above the mean level at a place [m east, m north] [m].
   [[nodiscard]] double height(const Vec2& place, const Tick& t) const noexcept {
@@ -251,9 +249,8 @@ class WaveProfile {
 
   [[nodiscard]] std::size_t groups() const noexcept { return groups_; }                           ///< number of groups
   [[nodiscard]] double steepest(std::size_t groups) const noexcept { return steepest_[groups]; }  ///< bound of |rate|
-  [[nodiscard]] double curviest(std::size_t groups) const noexcept {
-    return curviest_[groups];
-  }  ///< bound of |second derivative|
+  /// Bound of |second derivative|.
+  [[nodiscard]] double curviest(std::size_t groups) const noexcept { return curviest_[groups]; }
 
   /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of the distance of the
   /// sum from `z` [m].

@@ -4,7 +4,6 @@
 #define PULSECAST_SHAPE_WIND_WAVES_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>

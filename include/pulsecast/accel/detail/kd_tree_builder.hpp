@@ -53,7 +53,7 @@ class KdTreeBuilder {
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
   static constexpr double empty_bonus =
-      0.8;  ///< cost factor for a split with an empty side. Source: Wald & Havran 2006, sec. 3.2
+      0.8;  ///< factor for a split with an empty side. Source: Wald & Havran 2006, 3.2
 
   /// Node to be made.
   struct Task {

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
@@ -220,8 +219,7 @@ struct BuildInput {
   SharedBuffer<Boxed<Real>> primitives;
 
   explicit BuildInput(const BoxRangeRef& boxes, const Workers& workers = 1) {
-    constexpr std::size_t most =
-        std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
+    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // the next is `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
     struct ChunkBounds {

@@ -88,9 +88,8 @@ class BandLimitedSamples {
   [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }   ///< shape of the pulses of these samples
   [[nodiscard]] double start() const noexcept { return start_; }           ///< number of the first sample
   [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }  ///< of a pulse's maximum in the samples [s]
-  [[nodiscard]] double background() const noexcept {
-    return chain_.background;
-  }                                                                        ///< mean that is not in the samples [W]
+  /// Mean that is not in the samples [W].
+  [[nodiscard]] double background() const noexcept { return chain_.background; }
   [[nodiscard]] bool independent_noise() const noexcept { return false; }  ///< noise is filtered
 
   /// Begins the next section; false if there is none.
@@ -188,8 +187,8 @@ class BandLimitedSamples {
     }
     const std::size_t size = w_.sums.size();
     std::size_t at = static_cast<std::size_t>(static_cast<std::int64_t>(first)) & (size - 1);
-    auto k = static_cast<std::size_t>(
-        std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples that are gone
+    auto k =
+        static_cast<std::size_t>(std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples gone
     at = (at + k) & (size - 1);
     for (std::size_t end; k < pulse.stride(); k = end, at = 0) {
       end = std::min(pulse.stride(), k + (size - at));

@@ -52,9 +52,8 @@ class IdealSamples {
 
   [[nodiscard]] double delay() const noexcept { return 0; }                 ///< of a pulse's maximum in the samples [s]
   [[nodiscard]] double background() const noexcept { return background_; }  ///< mean that is not in the samples [W]
-  [[nodiscard]] bool independent_noise() const noexcept {
-    return noisy();
-  }  ///< true if samples have noise of their own each
+  /// True if samples have noise of their own each.
+  [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {

@@ -27,9 +27,8 @@ class SampleWindow {
     const Width& width;                ///< measure of widths
     double min_separation = 0;         ///< closer peaks merge [s]
     double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
-    bool by_sample =
-        false;         ///< true if the highest sample must reach the threshold, rather than the maximum between samples
-    double reach = 0;  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
+    bool by_sample = false;  ///< true if the highest sample must reach the threshold, not the maximum between samples
+    double reach = 0;        ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
   };
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/namespace.hpp>
@@ -46,9 +45,8 @@ class SystemWaveform {
   [[nodiscard]] double rise() const noexcept { return rise_; }                    ///< time of the first thousandth [s]
   [[nodiscard]] double fall() const noexcept { return fall_; }                    ///< time of the last thousandth [s]
   [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< least variance in use [s^2]
-  [[nodiscard]] double most_added() const noexcept {
-    return 0.999 * added(levels_.size() - 1);
-  }  ///< greatest variance in use [s^2]
+  /// Greatest variance in use [s^2].
+  [[nodiscard]] double most_added() const noexcept { return 0.999 * added(levels_.size() - 1); }
 
   /// Place between two tables.
   struct Blend {

@@ -10,7 +10,6 @@
 #include <concepts>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -210,7 +209,7 @@ class RayInterval {
       entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
     const Axes both = o + direction;
     const bool is_valid =
-        std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
+        std::isfinite(both[0] + both[1] + both[2]);  // sums keep infinity and NaN; an invalid ray misses
     near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
                      : std::numeric_limits<Real>::infinity();  // no -0
   }
