@@ -221,10 +221,15 @@ template <class From, class To>
   return true;
 }
 
-/// Pose at one tick of a motion that `MovesInLanes`: its register of one.
+namespace detail {
 template <class From, class To, class Motion>
-[[nodiscard]] Pose<From, To> pose_in_lanes(const Motion& motion, Tick t) noexcept {
-  PoseLanes<From, To> poses;
+PoseLanes<From, To> lanes_of(simd::Mask (Motion::*poses)(const TickLanes&, PoseLanes<From, To>&) const noexcept);
+}
+
+/// Pose at one tick of a motion that `MovesInLanes`: its register of one.
+template <class Motion>
+[[nodiscard]] auto pose_in_lanes(const Motion& motion, Tick t) noexcept {
+  decltype(detail::lanes_of(&Motion::poses)) poses;
   motion.poses(TickLanes(t), poses);
   return poses[0];
 }

@@ -34,9 +34,7 @@ struct OscillatingMirror {
   /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {

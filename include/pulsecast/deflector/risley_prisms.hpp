@@ -72,9 +72,7 @@ struct RisleyPrisms {
   [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
 
   /// Forward at total reflection.
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {

@@ -89,12 +89,8 @@ class MeasuredPulse {
 
   /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double) const noexcept {
-    const std::size_t after =
-        detail::first_not(samples_.size(), [&](std::size_t i) noexcept { return samples_[i].time <= time; });
-    if (after == 0 || after == samples_.size())
-      return after > 0 && time == samples_.back().time ? samples_.back().power : 0;
-    const PulseSample &a = samples_[after - 1], &b = samples_[after];
-    return a.power + (b.power - a.power) * (time - a.time) / (b.time - a.time);
+    if (!(time >= samples_.front().time && time <= samples_.back().time)) return 0;
+    return detail::interpolated(samples_, time, &PulseSample::time, &PulseSample::power);
   }
   [[nodiscard]] double begin(double) const noexcept { return samples_.front().time; }
   [[nodiscard]] double end(double) const noexcept { return samples_.back().time; }

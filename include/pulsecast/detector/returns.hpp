@@ -88,13 +88,6 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   std::size_t number_;
 };
 
-/// Takes the type of the detector inside.
-template <Detector Inner>
-SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
-/// As above, with a number of returns.
-template <Detector Inner>
-SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
-
 /// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
 enum class RangeAmbiguity : std::uint8_t {
   folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
@@ -137,16 +130,6 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   double ambiguity_, blind_;
   RangeAmbiguity in_air_;
 };
-
-/// Takes the type of the detector inside.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner) -> MultiplePulsesInAir<Inner>;
-/// As above, with a range that is blind.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner, double) -> MultiplePulsesInAir<Inner>;
-/// As above, with what becomes of ranges.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner, double, RangeAmbiguity) -> MultiplePulsesInAir<Inner>;
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -111,8 +111,7 @@ struct Precipitation {
   double most = 6e-3;       ///< greatest diameter [m]
   double lidar_ratio = 20;  ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
   double absorption = 0;    ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
-  double reflectance =
-      0;  ///< share reflected by the front of a particle at normal incidence, at most 8 pi / lidar_ratio
+  double reflectance = 0;   ///< share reflected by a particle's front at normal incidence, at most 8 pi / lidar_ratio
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
@@ -128,20 +127,12 @@ struct Precipitation {
   [[nodiscard]] double number() const noexcept {
     return density / slope * std::exp(-slope * least) * detail::lower_gamma<1>(slope * (most - least));
   }
-  /// Share of the particles up to a diameter between `least` and `most` [m].
-  [[nodiscard]] double cumulative(double diameter) const noexcept {
-    return detail::lower_gamma<1>(slope * (diameter - least)) / detail::lower_gamma<1>(slope * (most - least));
-  }
-  /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of `cumulative`.
+  /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of the cumulative distribution.
   [[nodiscard]] double diameter(double uniform) const noexcept {
     return std::clamp(least - std::log1p(-uniform * detail::lower_gamma<1>(slope * (most - least))) / slope, least,
                       most);
   }
 
-  /// Area that a particle of a diameter [m] takes out of a beam [m^2].
-  [[nodiscard]] static double extinction_cross_section(double diameter) noexcept {
-    return std::numbers::pi / 2 * diameter * diameter;
-  }
   /// Differential cross section for scattering straight back of a particle of a diameter [m] [m^2/sr]: by the shadow,
   /// of its front, reflectance / (4 pi), as of a mirror sphere; of its inside, what brings both to `lidar_ratio`,
   /// weakened by absorption.
@@ -158,12 +149,6 @@ struct Precipitation {
     return std::numbers::pi / 4 * density *
            (front() * detail::second_moment(slope, least, most) +
             inside() * detail::second_moment(slope + absorption, least, most));
-  }
-  /// Mean of `backscatter_cross_section` over the particles [m^2/sr].
-  [[nodiscard]] double mean_backscatter_cross_section() const noexcept {
-    Precipitation unit = *this;
-    unit.density = 1;
-    return unit.backscatter() / unit.number();
   }
 
   /// Air with the mean of the particles, without their grain.

@@ -57,9 +57,7 @@ class Waypoints {
   /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Body, frame::World>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
