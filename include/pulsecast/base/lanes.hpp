@@ -74,7 +74,6 @@ struct TickLanes {
   [[nodiscard]] Tick operator[](std::size_t lane) const noexcept {
     return {static_cast<std::int64_t>(second[lane]), fraction[lane]};
   }
-  /// Sets the time of a lane.
   void set(std::size_t lane, const Tick& t) noexcept {
     second[lane] = static_cast<double>(t.second);
     fraction[lane] = t.fraction;
@@ -116,7 +115,6 @@ struct Vec3Lanes {
   explicit Vec3Lanes(const Vec3& v) noexcept : x(in_all_lanes(v.x)), y(in_all_lanes(v.y)), z(in_all_lanes(v.z)) {}
 
   [[nodiscard]] Vec3 operator[](std::size_t lane) const noexcept { return {x[lane], y[lane], z[lane]}; }
-  /// Sets the vector of a lane.
   void set(std::size_t lane, const Vec3& v) noexcept {
     x[lane] = v.x;
     y[lane] = v.y;
@@ -162,7 +160,6 @@ struct RotationLanes {
   [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept {
     return detail::rotation_wxyz(w[lane], x[lane], y[lane], z[lane]);
   }
-  /// Sets the rotation of a lane.
   void set(std::size_t lane, const Rotation& r) noexcept {
     w[lane] = r.w;
     x[lane] = r.x;
@@ -199,7 +196,6 @@ struct PoseLanes {
   explicit PoseLanes(const Pose<From, To>& p) noexcept : rotation(p.rotation), position(p.position) {}
 
   [[nodiscard]] Pose<From, To> operator[](std::size_t lane) const noexcept { return {rotation[lane], position[lane]}; }
-  /// Sets the pose of a lane.
   void set(std::size_t lane, const Pose<From, To>& p) noexcept {
     rotation.set(lane, p.rotation);
     position.set(lane, p.position);

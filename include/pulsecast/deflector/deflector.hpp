@@ -40,7 +40,6 @@ class Deflector {
     return pulse_lanes(i, 1)[0];
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(source_, i, count);
     detail::PosesOf<Moving> poses;
@@ -51,10 +50,8 @@ class Deflector {
     return out;
   }
 
-  /// As the concept FindsSlots requires.
   [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return source_.slot_from(t); }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires foresees || SkipsBlocked<Source> {
     if constexpr (SkipsBlocked<Source>) i = source_.next_pulse(i);
     if constexpr (foresees)

@@ -28,7 +28,6 @@ struct PalmerMirror {
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(turns_per_second)));
     const simd::Doubles across = half_angle_across.value_or(half_angle) * turn.sin, upwards = half_angle * turn.cos;

@@ -63,7 +63,6 @@ struct PolygonMirror {
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = angles(t);
     poses = aimed_above(angle);

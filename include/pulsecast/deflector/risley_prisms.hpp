@@ -74,7 +74,6 @@ struct RisleyPrisms {
   /// Forward at total reflection.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     Vec3Lanes light;
     const simd::Mask passes = directions(t, light);

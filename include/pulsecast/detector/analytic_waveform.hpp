@@ -52,7 +52,6 @@ class AnalyticWaveform {
                          "true_range or peak");
   }
 
-  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -78,7 +77,6 @@ class AnalyticWaveform {
     }
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     std::vector<Peak> peaks;           ///< peaks of the current pulse
     std::vector<double> samples;       ///< samples of one echo, for a fitted width [W]
@@ -87,7 +85,6 @@ class AnalyticWaveform {
     SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
-  /// Scratch memory for pulses of up to `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
     w.peaks.reserve(reflections + 64);  // some of continuous returns

@@ -40,7 +40,6 @@ class BandLimitedReceiver {
   explicit BandLimitedReceiver(ReceiverChain settings, Form form = {})
       : chain_(validated(settings)), form_(std::move(form)) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: noise is heard without light

@@ -14,7 +14,6 @@ struct FirstHit {
 
   void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     Echo echo;  ///< echo of the current pulse
   };

@@ -32,7 +32,6 @@ struct FmcwSettings {
   bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
   std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 
-  /// @throws SettingError
   void validate() const {
     require_within("FmcwSettings::bandwidth", bandwidth, 1e6, 1e12, "Hz");
     require_within("FmcwSettings::sweep_time", sweep_time, 1e-8, 1, "s");
@@ -66,7 +65,6 @@ class Fmcw {
 
   static constexpr bool reads_velocity = true;  ///< as the concept ReadsVelocity describes
 
-  /// Settings, as validated.
   [[nodiscard]] const FmcwSettings& settings() const noexcept { return s_; }
 
   /// Peak of a spectrum.
@@ -76,7 +74,6 @@ class Fmcw {
     const Reflection* strongest = nullptr;  ///< strongest reflection near it
   };
 
-  /// Scratch memory of one worker.
   struct Workspace {
     /// Light of one frequency.
     struct Line {
@@ -88,7 +85,6 @@ class Fmcw {
     std::array<std::vector<Peak>, 2> peaks;  ///< of the sweeps
     std::vector<Echo> echoes;                ///< of the pulse
   };
-  /// Scratch memory for so many reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w;
     w.lines.reserve(reflections);

@@ -72,7 +72,6 @@ class FullWaveform {
 
   static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as of the receiver
 
-  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -111,7 +110,6 @@ class FullWaveform {
     return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     SampleWindow<Width> window;               ///< current samples [W]
     std::vector<Peak> peaks;                  ///< peaks of the current pulse

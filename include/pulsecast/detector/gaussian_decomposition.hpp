@@ -41,12 +41,10 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     if (this->inner.settings().record_length > 0 && !waves_.find(laser)) waves_.add(laser, wave_of(laser));
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     typename Inner::Workspace inner;  ///< of the detector inside
     std::vector<Echo> echoes;         ///< echoes of the current pulse
   };
-  /// Scratch memory for pulses of up to `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{this->inner.workspace(reflections), {}};
     w.echoes.reserve(this->inner.settings().returns_max);

@@ -38,7 +38,6 @@ struct GaussianFit {
     if (!(share >= 0 && share < 1)) throw SettingError("GaussianFit::share", share, "", "at least 0 and less than 1");
   }
 
-  /// As the concept EchoWidth describes.
   [[nodiscard]] double min_share() const noexcept { return share; }
 
   /// Fitted Gaussian, with its convergence.

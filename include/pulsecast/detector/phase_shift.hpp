@@ -25,7 +25,6 @@ struct PhaseShiftSettings {
   double threshold = 1e-12;  ///< least modulated power of an echo at the finest frequency [W]
   double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
 
-  /// @throws SettingError
   void validate() const {
     require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
@@ -55,14 +54,11 @@ class PhaseShift {
   /// @throws SettingError for settings out of range
   explicit PhaseShift(PhaseShiftSettings settings = {}) : s_(validated(std::move(settings))) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const PhaseShiftSettings& settings() const noexcept { return s_; }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     Echo echo;  ///< the only echo
   };
-  /// Scratch memory for any number of reflections.
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
   /// The echo of all reflections. Noise is drawn from the seed and pulse of `input.key`.

@@ -39,7 +39,6 @@ struct PhotonCountingSettings {
   std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
-  /// @throws SettingError
   void validate() const {
     require_positive("PhotonCountingSettings::efficiency", efficiency, "");
     require_within("PhotonCountingSettings::efficiency", efficiency, 0, 1, "");
@@ -73,7 +72,6 @@ class PhotonCounting {
   explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {})
       : s_(validated(settings)), form_(std::move(form)) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: sunlight and dark counts need no reflection
@@ -89,14 +87,12 @@ class PhotonCounting {
     std::uint32_t pixel;  ///< number of the pixel
     std::uint32_t label;  ///< index of the reflection, that of the continuous return behind all reflections, or `none`
   };
-  /// Scratch memory of one worker.
   struct Workspace {
     std::vector<Count> shot;    ///< photoelectrons of a shot
     std::vector<Count> counts;  ///< detections of all shots
     std::vector<double> blind;  ///< end of the dead time of each pixel [s]
     std::vector<Echo> echoes;   ///< echoes of the current pulse
   };
-  /// Scratch memory for any number of reflections.
   [[nodiscard]] Workspace workspace(std::size_t) const {
     Workspace w{{}, {}, std::vector<double>(s_.pixels), {}};
     w.shot.reserve(counts_max);

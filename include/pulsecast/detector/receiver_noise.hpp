@@ -40,7 +40,6 @@ struct ReceiverNoise {
   }
 
   static constexpr bool runs_without_reflections = false;  ///< false: it is asked for pulses with reflections only
-  /// Scratch memory: none.
   struct Workspace {};
   [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
 

@@ -53,7 +53,6 @@ struct ReflectanceMap {
     return map;
   }
 
-  /// @throws SettingError for values out of range
   void validate() const {
     image.validate();
     for (const double wavelength : wavelengths)

@@ -65,7 +65,6 @@ class Legs {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const std::size_t k = leg_of(i);
     const PulseIndex slot = i - starts_[k].pulse, left = legs_[k].size() - slot;
@@ -76,7 +75,6 @@ class Legs {
     return p;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<P> {
     const std::size_t k = leg_of(i);
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);

@@ -65,7 +65,6 @@ class WithPoseErrors {
   /// Platform without errors.
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);
   }
@@ -81,7 +80,6 @@ class WithPoseErrors {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(truth_.source(), i, count);
     auto out = truth_.placed(jittered(inner, i));

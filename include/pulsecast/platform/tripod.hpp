@@ -23,7 +23,6 @@ struct Tripod {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     poses = PoseLanes(at(t[0]));
     return all_lanes();

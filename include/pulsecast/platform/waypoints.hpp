@@ -59,7 +59,6 @@ class Waypoints {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const simd::Doubles t = ticks.seconds();
     const auto about = neighbours_of(t[0]);

@@ -61,7 +61,6 @@ class Channels {
     return pulse_lanes(i, 1)[0];
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const std::size_t n = channels_.size();
     if (n == 1) return find_pulses(channels_[0], i, count);
@@ -73,7 +72,6 @@ class Channels {
     return all;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     const PulseIndex n = channels_.size(), most = size();
     PulseIndex next = most;
@@ -82,7 +80,6 @@ class Channels {
     return std::min(next, most);
   }
 
-  /// As the concept MeasuresBeam requires.
   [[nodiscard]] auto measured(PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }

@@ -46,7 +46,6 @@ struct SpinningSensor {
   double range_max = 100;             ///< longest range that is told [m]
   double range_deviation = 0;         ///< standard deviation of told ranges [m]
 
-  /// @throws SettingError for settings out of range
   void validate() const {
     require_within("SpinningSensor::lasers (number)", static_cast<double>(lasers.size()), 1, max_emitters, "");
     require_within("SpinningSensor::sequence_rate", sequence_rate, 1, 1e9, "Hz");

@@ -85,7 +85,6 @@ class HeightField {
     return corners(cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;

@@ -98,7 +98,6 @@ class LeafAngles {
     return mean > 0 ? std::min(mean_square / mean, 1.0) : 1;
   }
 
-  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return table_.memory(); }
 
   void archive(auto& a) { a(chi_, half_surface_, upright_, table_); }

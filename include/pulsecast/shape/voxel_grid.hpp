@@ -160,7 +160,6 @@ class VoxelGrid {
     return {low, low + Vec3(index_.edge())};
   }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();

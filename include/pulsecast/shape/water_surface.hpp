@@ -56,7 +56,6 @@ class WaterSurface {
   [[nodiscard]] std::size_t memory() const noexcept { return waves_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     bool prepared = false;

@@ -152,7 +152,6 @@ class WaveField {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if the surface is flat
   [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of the magnitude of heights [m]
   [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of the magnitude of slopes
-  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }
 
   /// Height above the mean level at a place [m east, m north] [m].
