@@ -98,6 +98,18 @@ struct PulseOnPlatform<frame::World> {
   std::uint16_t leg = 0;   ///< number of its leg, from 0
 };
 
+/// Data of pulses in lanes that no stage before the platform knows.
+template <class Frame>
+struct LanesOnPlatform {};
+
+template <>
+struct LanesOnPlatform<frame::World> {
+  simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
+  PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
+  std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
+  std::array<std::uint16_t, simd::lane_count> leg{};     ///< as in `Pulse`
+};
+
 }  // namespace detail
 
 /// One laser pulse, in a frame. In the world it has besides `reported`, `scan_angle` and `leg`.
@@ -119,22 +131,6 @@ struct Pulse : detail::PulseOnPlatform<Frame> {
   /// Unit vector along the beam.
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
 };
-
-namespace detail {
-
-/// Data of pulses in lanes that no stage before the platform knows.
-template <class Frame>
-struct LanesOnPlatform {};
-
-template <>
-struct LanesOnPlatform<frame::World> {
-  simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
-  PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
-  std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
-  std::array<std::uint16_t, simd::lane_count> leg{};     ///< as in `Pulse`
-};
-
-}  // namespace detail
 
 /// Pulses of consecutive slots, one in each lane of a register, in a frame.
 template <class Frame>

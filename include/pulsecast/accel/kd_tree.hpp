@@ -32,10 +32,10 @@ class KdTree {
     centre_ = input.centre;
     if (input.primitives.empty()) return;
     const detail::KdTreeBuilder<Real, Node> builder(input.primitives, workers);
-    cell_ = builder.cell();
-    depth_ = builder.depth();
-    nodes_ = builder.nodes();
-    order_ = builder.order();
+    cell_ = builder.cell;
+    depth_ = builder.depth;
+    nodes_ = builder.nodes;
+    order_ = builder.order;
   }
 
   explicit KdTree(DeserializeTag) {}

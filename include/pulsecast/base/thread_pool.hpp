@@ -70,7 +70,6 @@ class ThreadPool {
     Job* jobs = nullptr;  ///< linked list, on the stacks of the callers
     bool ending = false;
 
-    /// Work of a thread of the pool.
     void help() noexcept {
       std::unique_lock lock(mutex);
       for (;;) {

@@ -162,7 +162,6 @@ class AnalyticWaveform {
     double since = 0;             ///< time from its valley to the current edge [tau]
     bool rising = false, met = false;
 
-    /// Ends the current peak.
     void finish(double end) noexcept {
       peak.end = end;
       if (!met || peak.height < detector.s_.threshold) return;
@@ -170,7 +169,6 @@ class AnalyticWaveform {
       last.add(m, (peak.begin - peaks.back().begin) / shape.tau);
       if constexpr (by_moments) peaks.back().width = shape.tau * detector.width_.width(last);
     }
-    /// Begins the next peak at a valley.
     void begin(double valley) noexcept {
       finish(valley);
       peak = {.begin = valley};
@@ -179,7 +177,6 @@ class AnalyticWaveform {
       met = false;
       rising = true;
     }
-    /// Enters the maximum of the current peak.
     void enter(double time, double height) noexcept {
       peak.time = peak.mark = time;
       peak.height = height;
@@ -187,7 +184,6 @@ class AnalyticWaveform {
       rising = false;
     }
 
-    /// Finds the maxima of reflections.
     void find(std::span<const Reflection> reflections) noexcept {
       const double per_metre = 2 / (speed_of_light * shape.tau);
       for (std::size_t k = 0; k < reflections.size(); ++k) {
@@ -253,7 +249,6 @@ class AnalyticWaveform {
       }
     };
 
-    /// Finds the maxima of reflections and continuous returns.
     void find(std::span<const Reflection> reflections, std::span<const ContinuousReturn> continuous) noexcept {
       detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
       const double to_edge = PulseShape::peak * shape.tau;

@@ -220,15 +220,12 @@ class WhiteTarget {
  public:
   /// Power received from a range [m] by the link budget, always the same one [W].
   [[nodiscard]] double power(const LinkBudget& budget, double range) noexcept {
-    if (range != range_) *this = WhiteTarget(range, budget.power(1, 1, range));
+    if (range != range_) power_ = budget.power(1, 1, range);
+    range_ = range;
     return power_;
   }
 
-  WhiteTarget() = default;
-
  private:
-  WhiteTarget(double range, double power) noexcept : range_(range), power_(power) {}
-
   double range_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet [m]
   double power_ = 0;                                         ///< [W]
 };

@@ -43,8 +43,7 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;  ///< one number per ray
 
   alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
-  Vec3 least,
-      most;  ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 least, most;            ///< extremes of the directions by component, without NaN; infinite if none is left
 
   RayBundle() noexcept {}  // leaves the directions unset
   /// Takes the common properties, and leaves the directions unset.

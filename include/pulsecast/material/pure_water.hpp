@@ -44,7 +44,6 @@ inline void require_water(double wavelength, const WaterState& state) {
   state.validate();
 }
 
-/// Row of a table of absorption.
 struct AbsorptiveIndex {
   double micrometres;  ///< wavelength [um]
   double kappa;        ///< imaginary part of the index of refraction

@@ -83,7 +83,6 @@ struct ReflectanceMap {
   }
 
  private:
-  /// Channel of red, green or blue.
   [[nodiscard]] std::size_t channel(std::size_t k) const noexcept { return image.channels < 3 ? 0 : k; }
 };
 

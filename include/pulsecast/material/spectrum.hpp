@@ -35,9 +35,7 @@ class Spectrum {
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
                            "greater than that of the previous sample, " + text::to_text(samples[i - 1].wavelength));
     }
-    const SharedBuffer<SpectralSample> copy(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) copy[i] = samples[i];
-    samples_ = copy;
+    samples_ = samples;
   }
 
   explicit Spectrum(DeserializeTag) {}

@@ -27,6 +27,29 @@ namespace detail {
           .backscatter = extinction / lidar_ratio};
 }
 
+/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive terms for small y, else
+/// its closed form.
+template <int order>
+[[nodiscard]] double lower_gamma(double y) noexcept {
+  if constexpr (order == 1) return -std::expm1(-y);
+  if (y > 1) return order == 2 ? 1 - std::exp(-y) * (1 + y) : 2 - std::exp(-y) * (2 + y * (2 + y));
+  double term = std::pow(y, order) * std::exp(-y) / order;
+  double sum = 0;
+  for (int k = order + 1; term > sum * 1e-17; ++k) {
+    sum += term;
+    term *= y / k;
+  }
+  return sum;
+}
+
+/// Integral of D^2 exp(-slope D) over diameters D from `least` to `most` [m^3]; `slope` is positive [1/m].
+[[nodiscard]] inline double second_moment(double slope, double least, double most) noexcept {
+  const double y = slope * (most - least);
+  const double shifted =
+      least * least * lower_gamma<1>(y) + 2 * least / slope * lower_gamma<2>(y) + lower_gamma<3>(y) / (slope * slope);
+  return std::exp(-slope * least) / slope * shifted;
+}
+
 }  // namespace detail
 
 /// Fog of a visibility, from 1 m to 1 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
@@ -72,33 +95,6 @@ namespace detail {
   require_within("smoke (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
   return detail::hazy_air(extinction(wavelength, visibility), 0.92, 70);
 }
-
-namespace detail {
-
-/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive terms for small y, else
-/// its closed form.
-template <int order>
-[[nodiscard]] double lower_gamma(double y) noexcept {
-  if constexpr (order == 1) return -std::expm1(-y);
-  if (y > 1) return order == 2 ? 1 - std::exp(-y) * (1 + y) : 2 - std::exp(-y) * (2 + y * (2 + y));
-  double term = std::pow(y, order) * std::exp(-y) / order;
-  double sum = 0;
-  for (int k = order + 1; term > sum * 1e-17; ++k) {
-    sum += term;
-    term *= y / k;
-  }
-  return sum;
-}
-
-/// Integral of D^2 exp(-slope D) over diameters D from `least` to `most` [m^3]; `slope` is positive [1/m].
-[[nodiscard]] inline double second_moment(double slope, double least, double most) noexcept {
-  const double y = slope * (most - least);
-  const double shifted =
-      least * least * lower_gamma<1>(y) + 2 * least / slope * lower_gamma<2>(y) + lower_gamma<3>(y) / (slope * slope);
-  return std::exp(-slope * least) / slope * shifted;
-}
-
-}  // namespace detail
 
 /// Falling particles, in number per volume and diameter D: N(D) = density exp(-slope D) between two diameters, none
 /// beyond. Much larger than the wavelength: each takes twice its shadow pi/4 D^2 out of the beam, half of it by

@@ -179,7 +179,6 @@ class HeightField {
       if (taken + 2 > triangles.size()) test();
     }
 
-    /// Tests the batch.
     void test() noexcept {
       if (taken == 0) return;
       const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
@@ -209,7 +208,6 @@ class HeightField {
     return heights_.read([&](const auto& all) { return detail::RasterCell(grid_, all, column, row); });
   }
 
-  /// Slab between two heights.
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
   /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be
@@ -278,7 +276,6 @@ class HeightField {
     return bits;
   }
 
-  /// Sets the walls of a node's children.
   void put_walls(Box8<float>& boxes, const auto& walk, const Level& own, std::uint32_t column,
                  std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0],

@@ -157,7 +157,6 @@ class TriangleMesh {
   using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
   static_assert(3 * detail::chunk_size < 0xFFFF);
 
-  /// Corners of the block of a triangle.
   [[nodiscard]] const Vec3* block_corners(std::size_t place) const noexcept {
     return corners_.data() + first_corners_[place / detail::chunk_size];
   }

@@ -81,10 +81,8 @@ class BinarySahTree {
     return range.middle == 0 ? primitives_[range.begin].box : nodes_[range.middle].box;
   }
 
-  /// True if the collapsed tree has a leaf here.
   [[nodiscard]] bool leaf(const Range& range) const noexcept { return range.middle == 0 || nodes_[range.middle].leaf; }
 
-  /// Children of a node of the collapsed tree.
   struct Children {
     std::array<Range, places> ranges;
     std::size_t count = 0;
@@ -169,10 +167,8 @@ class BinarySahTree {
     return bounds;
   }
 
-  /// Array that holds the primitives of a task.
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
-  /// Builds and plans a subtree.
   Sums build(const Task& task, const SharedBuffer<ChunkBins>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
@@ -313,7 +309,6 @@ class BinarySahTree {
   [[nodiscard]] Range first(const Range& r) const noexcept { return {r.begin, r.middle, nodes_[r.middle].first}; }
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
-  /// Plans a node from the costs and sizes of its halves.
   Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second,
             std::size_t in_second) const noexcept {
     Sums sums;

@@ -88,7 +88,6 @@ class Slices {
     per_width_ = simd::Vec4<Real>::from(per_width[0]);
   }
 
-  /// Slices per axis.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
   /// True if the box is long enough along axis k to be sliced.

@@ -42,7 +42,6 @@ struct ReceivedPulses {
 /// section: the range gate, up to the last reflection if it has no end, and of 1e7 samples at most.
 class BandLimitedSamples {
  public:
-  /// Scratch memory.
   struct Workspace {
     std::vector<double> sums;    ///< sums of pulses in the next samples, in a ring
     std::vector<double> phases;  ///< powers by phase, of reflections between two samples [W]
@@ -92,7 +91,6 @@ class BandLimitedSamples {
   [[nodiscard]] double background() const noexcept { return chain_.background; }
   [[nodiscard]] bool independent_noise() const noexcept { return false; }  ///< noise is filtered
 
-  /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
     if (noisy_ ? begun_ || !(number_ <= end_ || !reflections_.empty()) : !std::isfinite(first_of_section()))
       return false;
@@ -108,7 +106,6 @@ class BandLimitedSamples {
     return true;
   }
 
-  /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return number_; }
 
   /// Next sample [W]; sets `more` if the section goes on behind it.
@@ -128,7 +125,6 @@ class BandLimitedSamples {
     return power;
   }
 
-  /// Continuous returns in a peak, as `echo_of` takes them.
   [[nodiscard]] auto continuous() const noexcept { return continuous_.sources(pulses_.pulse.peak()); }
 
  private:
@@ -162,7 +158,6 @@ class BandLimitedSamples {
     const double late = before(std::floor(continuous_.first_peak() / interval_));
     return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }
-  /// True if continuous returns may rise in the next samples.
   [[nodiscard]] bool may_rise() noexcept {
     continuous_.pass((number_ + margin) * interval_);
     const double settled = continuous_.until() / interval_ + margin - static_cast<double>(pulses_.first_tap);

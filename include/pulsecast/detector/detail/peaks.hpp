@@ -113,7 +113,6 @@ struct OnlyPeak {
 
 /// No continuous returns, for `echo_of`.
 struct NoContinuous {
-  /// False: nothing is to be added up.
   [[nodiscard]] static bool needs_sum() noexcept { return false; }
   [[nodiscard]] const ContinuousReturn* operator()(const Peak&, double, bool) const noexcept { return nullptr; }
 };

@@ -33,10 +33,8 @@ class SampleWindow {
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
 
-  /// Allocates the memory.
   SampleWindow() { samples_.reserve(capacity); }
 
-  /// Forgets all samples.
   void clear() noexcept { samples_.clear(); }
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
@@ -62,7 +60,6 @@ class SampleWindow {
     return y.size() - 2;
   }
 
-  /// Last of equal samples from index i on.
   [[nodiscard]] std::size_t last_of_plateau(std::size_t i) const noexcept {
     while (i + 1 < samples_.size() && samples_[i + 1] == samples_[i]) ++i;
     return i;
@@ -102,9 +99,9 @@ class SampleWindow {
       Peak peak{.time = time(i) + top.offset * s.sample_interval,
                 .height = top.height,
                 .begin = valley(from),
-                .end = valley(to)};
-      peak.before = y[from];
-      peak.after = y[to];
+                .end = valley(to),
+                .before = y[from],
+                .after = y[to]};
       peak.mark = peak.time;
       if (s.timing > EchoTiming::peak)
         peak.mark =

@@ -11,9 +11,7 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-namespace PULSECAST_NAMESPACE {
-
-namespace detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian about it, as tables:
 /// one for each of some variances, interpolated by cubics in time and in the variance. As the convolution with a
@@ -136,7 +134,6 @@ class WaveformSum {
  public:
   static constexpr std::size_t most = 6;  ///< parts
 
-  /// One of the waveforms.
   struct Part {
     double power = 0, arrival = 0;  ///< power of a flat target [W], and arrival [s]
     double added = 0;               ///< variance beyond that of a flat target [s^2]
@@ -178,7 +175,6 @@ class WaveformSum {
     });
   }
 
-  /// The same sum of flat parts.
   [[nodiscard]] WaveformSum flattened() const noexcept {
     WaveformSum sum = *this;
     for (Part& p : sum.parts) {
@@ -188,7 +184,6 @@ class WaveformSum {
     return sum;
   }
 
-  /// Flat part of the greatest residual.
   [[nodiscard]] Part greatest_residual(const SystemWaveform& wave, std::span<const float> y,
                                        double interval) const noexcept {
     std::array<SystemWaveform::Blend, most> blends{};
@@ -207,7 +202,6 @@ class WaveformSum {
  private:
   static constexpr std::size_t parameters_max = 3 * most + 1;
 
-  /// Normal equations at an estimate.
   struct Equations {
     std::array<std::array<double, parameters_max>, parameters_max> matrix{};
     std::array<double, parameters_max> right{};
@@ -272,8 +266,6 @@ class WaveformSum {
   }
 };
 
-}  // namespace detail
-
-}  // namespace PULSECAST_NAMESPACE
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

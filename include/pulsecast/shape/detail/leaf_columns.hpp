@@ -20,7 +20,6 @@ struct LeafColumn {
 /// leaves' width that are shifted against each other. Rays in the same column of a layer meet the same leaf.
 class LeafColumns {
  public:
-  /// Layer along a ray.
   struct Layer {
     double end = std::numeric_limits<double>::infinity();  ///< range at which the ray leaves it; infinite for a layer
                                                            ///< without an end [m]

@@ -21,7 +21,6 @@ namespace PULSECAST_NAMESPACE {
 /// corner shared by its two edges; bounds: Higham 2002, ch. 3.
 class LineTest {
  public:
-  /// Leaves the line unset.
   LineTest() noexcept {}
   /// Line through the only ray of a bundle, for triangles within `bounds` [m].
   LineTest(const auto& ray, const Box& bounds) noexcept : origin_(ray.origin), direction_(ray.direction(0)) {

@@ -51,7 +51,6 @@ struct VoxelLevel {
   std::int32_t shift = 0;                 ///< log2 of the edge of a bit's cube [cells]
   std::int32_t unused = 0;                ///< makes all bytes of an archive definite
 
-  /// Index of the word that holds the bit of a cell.
   [[nodiscard]] std::size_t word(const LatticeCell& c) const noexcept {
     const int word_shift = shift + 2;
     if (words > 0)
