@@ -210,8 +210,7 @@ template <class A, class B, class C>
 }
 
 /// True if in each of these lanes the pose is `rigid`, or not finite: a run reports NaN.
-template <class From, class To>
-[[nodiscard]] bool rigid_lanes(const PoseLanes<From, To>& poses, const simd::Mask& lanes) noexcept {
+[[nodiscard]] bool rigid_lanes(const auto& poses, const simd::Mask& lanes) noexcept {
   for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
     if (lanes[lane] != 0 && poses[lane].finite() && !poses[lane].rigid()) return false;
   return true;

@@ -16,11 +16,9 @@ namespace PULSECAST_NAMESPACE {
 
 /// Deflects the pulses of a laser by a moving optic, or rotates a whole instrument by a head:
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
-// clang-format off
 template <class Moving, class Source>
 requires detail::Deflectable<Moving, Source>
 class Deflector {
-  // clang-format on
   static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
   static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
   static_assert(Gated<Moving> || !ForeseesOpening<Moving>,

@@ -35,13 +35,6 @@ inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double 
   return passes;
 }
 
-/// Unit direction of one refracted ray, as above; empty where `refract` does not return its lane.
-[[nodiscard]] inline std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) noexcept {
-  Vec3Lanes light(direction);
-  if (refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
-  return light[0];
-}
-
 /// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked.
 /// The wedges bend the beam without shifting it: thickness and distance are neglected.
 struct RisleyPrisms {

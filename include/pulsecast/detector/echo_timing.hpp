@@ -16,13 +16,11 @@ namespace PULSECAST_NAMESPACE {
 /// et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
   /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows:
-  /// unbiased for an echo of
-  /// any length. What media send back does not count; an echo that is theirs has the range of its peak.
+  /// unbiased for an echo of any length. What media send back does not count; their echo has the range of its peak.
   true_range,
   /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or
-  /// the steps of a
-  /// digitiser
-  /// it is that after a filter about as wide as the pulse, so that it errs less with more samples.
+  /// the steps of a digitiser it is that after a filter about as wide as the pulse, so that it errs less with more
+  /// samples.
   peak,
   leading_edge,       ///< first rise to the threshold: earlier for stronger echoes, which is the range walk
   constant_fraction,  ///< first rise to `WaveformSettings::fraction` of the maximum, whatever the echo's strength
@@ -119,17 +117,9 @@ inline constexpr double centroid_level =
 /// the level of a leading edge, and `fraction` the share of the maximum of a constant fraction.
 [[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top,
                                       double threshold, double fraction) noexcept {
-  switch (timing) {
-    case EchoTiming::leading_edge:
-      return detail::rise_before(y, i, threshold);
-    case EchoTiming::constant_fraction:
-      return detail::rise_before(y, i, fraction * top.height);
-    case EchoTiming::centroid:
-      return detail::centroid_about(y, i, centroid_level * top.height);
-    case EchoTiming::true_range:
-    case EchoTiming::peak:
-      break;
-  }
+  if (timing == EchoTiming::leading_edge) return detail::rise_before(y, i, threshold);
+  if (timing == EchoTiming::constant_fraction) return detail::rise_before(y, i, fraction * top.height);
+  if (timing == EchoTiming::centroid) return detail::centroid_about(y, i, centroid_level * top.height);
   return static_cast<double>(i) + top.offset;
 }
 

@@ -39,37 +39,33 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   /// Selected echoes of the detector inside.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
-    const std::size_t n = d.echoes.size();
-    if (n < 2) return d;
-    switch (mode_) {
-      case ReturnMode::first:
-        d.echoes = d.echoes.first(1);
-        break;
-      case ReturnMode::last:
-        d.echoes = d.echoes.last(1);
-        break;
-      case ReturnMode::strongest:
-        d.echoes = keep_strongest(d.echoes, 1);
-        break;
-      case ReturnMode::first_and_last:
-        d.echoes[1] = d.echoes[n - 1];
-        d.echoes = d.echoes.first(2);
-        break;
-      case ReturnMode::strongest_and_last:
-        d.echoes = keep_strongest(d.echoes, 2, 1);
-        break;
-      case ReturnMode::n_nearest:
-        d.echoes = d.echoes.first(std::min(n, number_));
-        break;
-      case ReturnMode::n_strongest:
-        d.echoes = keep_strongest(d.echoes, number_);
-        break;
-    }
+    if (d.echoes.size() < 2) return d;
+    d.echoes = kept(d.echoes);
     number_echoes(d.echoes);
     return d;
   }
 
  private:
+  [[nodiscard]] std::span<Echo> kept(std::span<Echo> echoes) const noexcept {
+    switch (mode_) {
+      case ReturnMode::first:
+        return echoes.first(1);
+      case ReturnMode::last:
+        return echoes.last(1);
+      case ReturnMode::strongest:
+        return keep_strongest(echoes, 1);
+      case ReturnMode::first_and_last:
+        echoes[1] = echoes.back();
+        return echoes.first(2);
+      case ReturnMode::strongest_and_last:
+        return keep_strongest(echoes, 2, 1);
+      case ReturnMode::n_nearest:
+        return echoes.first(std::min(echoes.size(), number_));
+      case ReturnMode::n_strongest:
+        return keep_strongest(echoes, number_);
+    }
+    return echoes;
+  }
   /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has
   /// few echoes.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {

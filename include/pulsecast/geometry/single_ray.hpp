@@ -62,6 +62,13 @@ struct SingleRayPacket {
   return rays;
 }
 
+namespace detail {
+/// A range, or minus infinity for NaN.
+[[nodiscard]] inline double limit_of(double range) noexcept {
+  return range > -std::numeric_limits<double>::infinity() ? range : -std::numeric_limits<double>::infinity();
+}
+}  // namespace detail
+
 /// Closest hit so far of a single ray. At exactly equal range the smallest id wins.
 struct ClosestHit {
   static constexpr std::uint64_t none = ClosestHits::none;  ///< id of no hit
@@ -90,10 +97,7 @@ struct ClosestHit {
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return range; }  ///< as in `ClosestHits`
   /// Largest range at which the ray can still find a closer hit [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return range > -infinity ? range : -infinity;
-  }
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(range); }
 };
 
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
@@ -114,10 +118,7 @@ struct AnyHit {
   }
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }  ///< as in `ClosestHits`
   /// Largest range at which a hit still counts [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return far > -infinity ? far : -infinity;
-  }
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(far); }
 };
 
 /// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts
@@ -194,10 +195,7 @@ class AllHits {
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
   /// Largest range at which a hit is still held [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return limit_ > -infinity ? limit_ : -infinity;
-  }
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(limit_); }
 
  private:
   double near_, limit_, far_;

@@ -19,7 +19,6 @@
 #include <pulsecast/platform/detail/curved_path.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

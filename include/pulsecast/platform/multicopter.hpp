@@ -16,7 +16,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -5,7 +5,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -15,7 +15,6 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/platform/heading.hpp>
+#include <pulsecast/base/frame.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
