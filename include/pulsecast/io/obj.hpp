@@ -12,7 +12,7 @@
 #include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -4,7 +4,6 @@
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -18,6 +17,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
+#include <pulsecast/platform/detail/rolling_wheel.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -221,6 +221,7 @@ class FootingFinder {
   /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this
   /// tangent.
   static constexpr double tilt_max = 1.7;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Lengths for messages, rounded to the centimetre.
   [[nodiscard]] static std::string brief(double x) { return text::to_text(std::round(x * 100) / 100); }
@@ -240,42 +241,13 @@ class FootingFinder {
     const std::optional<double> below = height(place, near);
     any_ground_ = any_ground_ || below;
     if (!below && !std::exchange(gap, true) && gaps_ == 0) first_gap_ = place;
-    const std::optional<double> rolled = roll(place, {std::sin(heading), std::cos(heading)}, near, below);
+    const Vec2 ahead{std::sin(heading), std::cos(heading)};
+    const auto at = [&](double way) { return height(place + way * ahead, near).value_or(-infinity); };
+    const std::optional<double> rolled = lowest_of_wheel(s_.wheel_radius, at, below);
     if (!rolled && !s_.height_without_ground)
       throw SettingError("plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], x", place.x, "m",
                          "over ground; there is none at y = " + text::to_text(place.y) + " m");
     return rolled ? *rolled : *s_.height_without_ground;
-  }
-
-  /// Lowest point that a wheel rolling ahead reaches at a place: the closing of the ground's profile with the wheel's
-  /// disc, which is the ground itself wherever that bends less than the wheel. Source: ISO 16610-41:2015, closing with
-  /// a disk.
-  [[nodiscard]] std::optional<double> roll(const Vec2& place, const Vec2& ahead, double near,
-                                           const std::optional<double>& below) const {
-    const double r = s_.wheel_radius, nothing = -std::numeric_limits<double>::infinity();
-    const auto at = [&](double u) { return height(place + u * ahead, near).value_or(nothing); };
-    if (below) {
-      const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
-          heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
-      const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
-      bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
-      for (std::size_t k = 0; k < 4; ++k)
-        touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
-      if (touched) return below;
-    }
-    constexpr int n = 12;  // samples of a radius
-    std::array<double, 4 * n + 1> profile{};
-    for (int k = -2 * n; k <= 2 * n; ++k)
-      profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
-    const auto disc = [&](int k) { return r * std::sqrt(1 - static_cast<double>(k * k) / (n * n)); };
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int axle = -n; axle <= n; ++axle) {
-      double centre = nothing;
-      for (int k = -n; k <= n; ++k)
-        centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
-      lowest = std::fmin(lowest, centre - disc(axle));
-    }
-    return lowest > nothing ? std::optional(lowest) : below;
   }
 
   const G& ground_;

@@ -16,7 +16,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/shape/packed_heights.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
