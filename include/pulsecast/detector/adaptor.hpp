@@ -20,8 +20,8 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
 ///
 ///     template <Detector Inner>
 ///     struct LastEcho : DetectorAdaptor<Inner> {
-///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept { ... this->inner.detect(input,
-///       workspace) ... }
+///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
+///         ... this->inner.detect(input, workspace) ... }
 ///     };
 ///     template <Detector Inner>
 ///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
@@ -32,7 +32,6 @@ struct DetectorAdaptor {
   static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< as of the detector inside
   static constexpr bool reads_velocity = ReadsVelocity<Inner>;                     ///< as of the detector inside
 
-  /// Validates the detector inside. @throws SettingError
   void validate() const {
     if constexpr (Validated<Inner>) inner.validate();
   }
@@ -42,18 +41,14 @@ struct DetectorAdaptor {
   }
   /// Prepares the detector inside for the pulses of a laser. @throws SettingError as that does
   void prepare(const Laser& laser) requires PreparesForLasers<Inner> { inner.prepare(laser); }
-  /// Normalizes the detector inside.
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 
-  /// Sample spacing of waveforms [s].
   [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> {
     return inner.sample_interval();
   }
 
-  /// Scratch memory of the detector inside.
   [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }
 
-  /// Echoes of the detector inside.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
     return inner.detect(input, workspace);
   }

@@ -14,16 +14,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
-template <class S>
-concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<S>;
-}  // namespace detail
-
 /// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one
 /// type. Of n channels, slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in
 /// `Scanner::delay`, which must not decrease from channel to channel; emitters that fire together share it. The
 /// emitters of channel k have the channel number k.
-template <detail::SourceInSomeFrame Source>
+template <class Source>
+requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
   /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a

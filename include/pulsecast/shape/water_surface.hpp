@@ -74,7 +74,7 @@ class WaterSurface {
         offer(span.begin);
         continue;
       }
-      if (!prepared) detail::WaveProfile::set_phases(waves_, {rays.origin.x, rays.origin.y}, rays.tick, phases);
+      if (!prepared) waves_.set_phases({rays.origin.x, rays.origin.y}, rays.tick, phases);
       prepared = true;
       const detail::WaveProfile profile(waves_, phases, {direction.x, direction.y});
       const Line line{rays.origin.z - level_, direction.z};

@@ -42,6 +42,8 @@ struct SineWave {
   }
 };
 
+class WaterSurface;
+
 namespace detail {
 
 inline constexpr std::size_t max_waves = 512;  ///< greatest number of waves of a field
@@ -180,6 +182,7 @@ class WaveField {
 
  private:
   friend class detail::WaveProfile;
+  friend class WaterSurface;
 
   /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half turns/s], phase
   /// [half turns].
@@ -220,11 +223,6 @@ class WaveProfile {
     double rest;          ///< bound of the height of the waves left out [m]; 0 if there are none
     std::size_t groups;   ///< groups that were summed
   };
-
-  /// Sets the phases of a field at the place and time where lines begin.
-  static void set_phases(const WaveField& field, const Vec2& place, const Tick& t, WavePhases& phases) noexcept {
-    field.set_phases(place, t, phases);
-  }
 
   /// Field and phases must outlive the profile.
   WaveProfile(const WaveField& field, const WavePhases& phases, const Vec2& direction) noexcept
