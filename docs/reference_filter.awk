@@ -14,7 +14,7 @@ BEGIN {
   says["memory"] = "Memory that this occupies [bytes]."
   says["bounds"] = "Smallest box around all that can be met [m]."
   of["at"] = "Motion"; of["open"] = "Gated"; of["pulse"] = of["duration"] = "PulseSource"; of["share"] = of["offset"] = "Footprint"
-  of["closest"] = "Target, and as the concept Geometry,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
+  of["closest"] = "Target, and as the concepts Geometry and Accelerator,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
   of["reflections"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
   of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
@@ -23,6 +23,9 @@ BEGIN {
   says["size"] = "Number of elements."
   says["settings"] = "Settings, as validated."
   says["set"] = "Sets a lane."
+  says["angle"] = "Elevation of the beam above forward [rad]."
+  says["pulse_width"] = "Width of a laser's outgoing pulse, by the measure of its echoes [s]. Errors: as `validate`."
+  says["depth"] = "Steps from the root to the deepest leaf, at most 64."
   says["data"] = says["begin"] = "Pointer to the first element."
   says["end"] = "Pointer past the last element."
   says["empty"] = "True without elements."
@@ -75,7 +78,9 @@ function with(text, line) {
 # Explanation of the function declared in a line without a docstring; empty if there is none.
 function explanation(line,   name) {
   if (line ~ /^ +explicit [A-Za-z]+\(DeserializeTag/) return tag
+  if (line ~ /^ +(explicit )?[A-Z][A-Za-z0-9]+Lanes\(const /) return "Of components by lane, or of one value in all lanes."
   if (line ~ /^ +struct Workspace \{/) return "Scratch memory of one worker."
+  if (line ~ /^ +class Columns \{/) return "Data of the voxels that this filling needs, by number of the voxel."
   if (line ~ /^ +.*\(.* override( |;|$)/) return overrides
   if (line ~ /^ *(return|else|throw|if|for) / || !match(line, function_of_a_class)) return ""
   name = substr(line, RSTART, RLENGTH - 1)

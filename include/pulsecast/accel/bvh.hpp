@@ -48,7 +48,6 @@ class Bvh {
   explicit Bvh(DeserializeTag) {}
   void archive(auto& a) { a(bounds_, centre_, depth_, nodes_, primitives_); }
 
-  /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
     std::vector<std::uint8_t> depths(nodes_.size());  // 0 for no parent so far
     if (!depths.empty()) depths[0] = 1;
@@ -71,19 +70,14 @@ class Bvh {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + primitives_.memory(); }
 
-  /// Primitives in the order of the leaves.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept {
     return {primitives_.data(), primitives_.size()};
   }
 
-  /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
-  /// meet.
-  template <class Rays, class Test, class Hits>
-  requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  template <class Rays>
+  void closest(const Rays& rays, const detail::LeafTest auto& test, auto& nearest) const noexcept {
     if (nodes_.empty()) return;
     if constexpr (Rays::capacity == 1)
       descend_alone(rays, test, nearest);

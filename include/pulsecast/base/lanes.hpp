@@ -47,9 +47,7 @@ struct TickLanes {
   simd::Doubles fraction{};  ///< fractional parts, in [0, 1) [s]
 
   TickLanes() = default;
-  /// Of whole and fractional parts.
   TickLanes(const simd::Doubles& whole, const simd::Doubles& part) noexcept : second(whole), fraction(part) {}
-  /// One time in all lanes.
   explicit TickLanes(const Tick& t) noexcept
       : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
 
@@ -109,9 +107,7 @@ struct Vec3Lanes {
   simd::Doubles z{};  ///< third components
 
   Vec3Lanes() = default;
-  /// Of components.
   Vec3Lanes(const simd::Doubles& x_, const simd::Doubles& y_, const simd::Doubles& z_) noexcept : x(x_), y(y_), z(z_) {}
-  /// One vector in all lanes.
   explicit Vec3Lanes(const Vec3& v) noexcept : x(in_all_lanes(v.x)), y(in_all_lanes(v.y)), z(in_all_lanes(v.z)) {}
 
   [[nodiscard]] Vec3 operator[](std::size_t lane) const noexcept { return {x[lane], y[lane], z[lane]}; }
@@ -144,11 +140,9 @@ struct RotationLanes {
   simd::Doubles z{};                  ///< third imaginary parts
 
   RotationLanes() = default;
-  /// Of components.
   RotationLanes(const simd::Doubles& w_, const simd::Doubles& x_, const simd::Doubles& y_,
                 const simd::Doubles& z_) noexcept
       : w(w_), x(x_), y(y_), z(z_) {}
-  /// One rotation in all lanes.
   explicit RotationLanes(const Rotation& r) noexcept
       : w(in_all_lanes(r.w)), x(in_all_lanes(r.x)), y(in_all_lanes(r.y)), z(in_all_lanes(r.z)) {}
   /// About a unit axis, by an angle [rad].
@@ -190,9 +184,7 @@ struct PoseLanes {
   Vec3Lanes position{};      ///< origins of `From` in `To` [m]
 
   PoseLanes() = default;
-  /// Of rotations and positions.
   explicit PoseLanes(const RotationLanes& r, const Vec3Lanes& p = {}) noexcept : rotation(r), position(p) {}
-  /// One pose in all lanes.
   explicit PoseLanes(const Pose<From, To>& p) noexcept : rotation(p.rotation), position(p.position) {}
 
   [[nodiscard]] Pose<From, To> operator[](std::size_t lane) const noexcept { return {rotation[lane], position[lane]}; }

@@ -25,7 +25,6 @@ struct FiberArray {
   /// Index of the lit fibre, from 0.
   [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fibers_per_second, fibers); }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {
     return fibers == 1 ? 0 : half_angle * (2 * static_cast<double>(fiber(t)) / (fibers - 1.0) - 1);
   }

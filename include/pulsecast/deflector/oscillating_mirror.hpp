@@ -31,7 +31,6 @@ struct OscillatingMirror {
                    swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
   }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }

@@ -32,7 +32,6 @@ struct PolygonMirror {
     for (const double tilt : facet_tilts) require_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
 
   /// Index of the current facet: below the number of tilts, or 0 without tilts.

@@ -60,7 +60,6 @@ class AnalyticWaveform {
     if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
 
-  /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);

@@ -22,13 +22,12 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
-  double bandwidth = 1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from
-                           ///< 1e6 to 1e12 [Hz]
+  double bandwidth =
+      1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B are one echo; 1e6 to 1e12 [Hz]
   double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
   double threshold = 1e-12;       ///< least power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
-  bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum
-                                  ///< efficiency, has the power of the noise
+  bool shot_noise = false;        ///< adds that of the reference beam: of power one photon by efficiency in a sweep
   bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
   std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 

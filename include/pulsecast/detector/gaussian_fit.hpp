@@ -44,8 +44,7 @@ struct GaussianFit {
   struct Result {
     Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
-    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within
-                             ///< its width of them
+    bool converged = false;  ///< true for a Gaussian no wider than the samples, and centred within its width of them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {

@@ -149,8 +149,7 @@ struct ClosestHits {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
 
   alignas(64) std::array<double, RayBundle::capacity> range;      ///< range of the hit [m]; `far` without a hit
-  alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower;
-                                                                  ///< `none` if nothing was met
+  alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< upper half: part, lower: primitive; or `none`
   std::uint64_t part = 0;                                         ///< part under test, in the upper half
 
   /// No hits so far of a bundle's rays.

@@ -13,7 +13,6 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/shape/detail/voxel_columns.hpp>
 #include <pulsecast/shape/leaf_angles.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 #include <pulsecast/shape/voxel_index.hpp>
@@ -33,8 +32,7 @@ struct LeafColumn {
 class LeafColumns {
  public:
   struct Layer {
-    double end = std::numeric_limits<double>::infinity();  ///< range at which the ray leaves it; infinite for a layer
-                                                           ///< without an end [m]
+    double end = std::numeric_limits<double>::infinity();  ///< range at which the ray leaves it [m]
     LeafColumn column{};                                   ///< the ray's column in it
   };
 
@@ -105,7 +103,6 @@ struct TransmissiveVoxels {
     a(tilted_leaves, leaf_area, clumping);
   }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}

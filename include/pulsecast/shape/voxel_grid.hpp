@@ -14,7 +14,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
-#include <pulsecast/shape/detail/voxel_columns.hpp>
 #include <pulsecast/shape/detail/voxel_index_builder.hpp>
 #include <pulsecast/shape/transmissive_voxels.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
@@ -88,7 +87,6 @@ struct OpaqueVoxels {
 
   void archive(auto& a) { a(incidence); }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
@@ -133,7 +131,6 @@ struct ScaledVoxels {
 
   void archive(auto& a) { a(incidence); }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}

@@ -100,9 +100,9 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at
-                                            ///< once, and their primitives may be shapes with trees of their own
-  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
+  static constexpr std::size_t few =
+      4096;  ///< primitives of a tree that takes all slices: these may be shapes with trees
+  static constexpr double leaf_cost = 1;  ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <span>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
@@ -173,6 +174,10 @@ void for_each_chunk(std::size_t count, const Workers& workers, const auto& act) 
   for_each_index(chunk_count(count), workers,
                  [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
+
+/// Test of the primitives of a leaf.
+template <class T>
+concept LeafTest = std::invocable<const T&, std::span<const PrimitiveIndex>>;
 
 /// Indexable range of boxes: an array, or a generator.
 template <class B>

@@ -154,8 +154,8 @@ class ReceivedPulse {
     double value = 0;
   };
   std::vector<Point> points_;
-  std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases,
-                              ///< and of later rows
+  std::vector<double>
+      rows_;  ///< value i, from -1 on, is number (i + 1) / phases of row (i + 1) % phases and later rows
 };
 
 }  // namespace PULSECAST_NAMESPACE

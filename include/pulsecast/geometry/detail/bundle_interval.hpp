@@ -283,8 +283,7 @@ class RayInterval {
   /// Linear map from a wall's coordinate along each axis to range; the margin makes two of it, for entry and for exit.
   simd::Vec4<Real> per_, start_[2];
   Real near_;
-  std::size_t entry_wall_[3];  ///< byte in the boxes of the walls where they are entered; the opposite ones are
-                               ///< `wall_bytes` apart
+  std::size_t entry_wall_[3];  ///< byte of the walls where boxes are entered; the opposite ones: `wall_bytes` apart
 };
 
 }  // namespace PULSECAST_NAMESPACE

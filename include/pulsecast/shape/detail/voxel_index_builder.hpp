@@ -12,7 +12,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/shape/detail/voxel_keys.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 #include <pulsecast/shape/voxel_index.hpp>
 
