@@ -21,8 +21,7 @@ struct OscillatingMirror {
   double cycles_per_second = 50;  ///< rate of full oscillations, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
   Swing swing = Swing::triangle;  ///< motion from end to end
-  double turning_time =
-      0;  ///< duration of a reversal, half of it on either side; at most half a cycle, 0 for a sine [s]
+  double turning_time = 0;  ///< duration of a reversal, half on either side; at most half a cycle, 0 for a sine [s]
 
   void validate() const {
     require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);

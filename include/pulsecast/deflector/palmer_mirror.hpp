@@ -15,10 +15,9 @@ namespace PULSECAST_NAMESPACE {
 /// the cone elliptical. The deviation from forward is the first half angle times the cosine upwards, and the second
 /// times the sine to the right.
 struct PalmerMirror {
-  double turns_per_second = 50;  ///< rate of turns around the cone, at most 1e12 [Hz]
-  double half_angle = pi / 9;    ///< half angle of the cone, upwards and downwards [rad]
-  std::optional<double>
-      half_angle_across{};  ///< half angle of the cone to the right and left; that above if empty [rad]
+  double turns_per_second = 50;               ///< rate of turns around the cone, at most 1e12 [Hz]
+  double half_angle = pi / 9;                 ///< half angle of the cone, upwards and downwards [rad]
+  std::optional<double> half_angle_across{};  ///< half angle to the right and left; that above if empty [rad]
 
   void validate() const {
     require_rate("PalmerMirror::turns_per_second", turns_per_second);

@@ -20,8 +20,7 @@ struct PolygonMirror {
   double sweep = 2 * pi / 3;      ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
   double angle_min = -pi;         ///< lower end of the gate [rad]
   double angle_max = pi;          ///< upper end of the gate [rad]
-  std::vector<double>
-      facet_tilts{};  ///< deflection of each facet in turn to the right of the plane; none if empty [rad]
+  std::vector<double> facet_tilts{};  ///< deflection by each facet in turn, right of the plane; none if empty [rad]
 
   void validate() const {
     require_rate("PolygonMirror::lines_per_second", lines_per_second);
@@ -50,8 +49,7 @@ struct PolygonMirror {
   /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     if (open(t)) return t;
-    const double begin =
-        0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, if not before the line [cycles]
+    const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless before 0 [cycles]
     const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
     const double wait = (left < 2 ? left : 1) - 2 * margin();

@@ -110,8 +110,7 @@ namespace detail {
 
 }  // namespace detail
 
-inline constexpr double centroid_level =
-    0.1;  ///< share of the maximum from which `EchoTiming::centroid` weighs samples
+inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `centroid` weighs samples
 
 /// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is
 /// the level of a leading edge, and `fraction` the share of the maximum of a constant fraction.

@@ -23,7 +23,7 @@ namespace PULSECAST_NAMESPACE {
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
   double bandwidth =
-      1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B are one echo; 1e6 to 1e12 [Hz]
+      1e9;  ///< change of frequency in a sweep, 1e6 to 1e12: surfaces closer than c / 2B are one echo [Hz]
   double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
   double threshold = 1e-12;       ///< least power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
@@ -120,9 +120,8 @@ class Fmcw {
 
  private:
   using Line = Workspace::Line;
-  static constexpr double reach = 2;  ///< half the main lobe of the window [periods in a sweep]
-  static constexpr double grid =
-      0.25;  ///< spacing of the spectrum, of samples padded to four times as many [periods in a sweep]
+  static constexpr double reach = 2;    ///< half the main lobe of the window [periods in a sweep]
+  static constexpr double grid = 0.25;  ///< spacing of the spectrum, four points a period [periods in a sweep]
 
   /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
   struct Noise {

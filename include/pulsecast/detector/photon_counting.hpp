@@ -29,7 +29,7 @@ struct PhotonCountingSettings {
   double background = 0;    ///< received sunlight [W]
   std::size_t pixels = 1;   ///< detectors that share the light evenly, at most 4096
   double dead_time =
-      20e-9;              ///< time after a detection in which a pixel is blind; infinite in Geiger mode, one a shot [s]
+      20e-9;              ///< time after a detection in which a pixel is blind; infinite: one a shot, Geiger mode [s]
   double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
   double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
   double jitter = 0;                              ///< standard deviation of a detection's time [s]
@@ -181,9 +181,8 @@ class PhotonCounting {
     for (std::size_t r = 0; r < input.reflections.size(); ++r) {
       const double mean = input.reflections[r].power * per_watt, at = arrival(input.reflections[r]);
       last = std::max(last, at + quantiles.back());
-      for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential()) {
+      for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential())
         enter(at + spread(), r);
-      }
     }
     const auto enter_continuous = [&](double at, std::size_t label) {
       last = std::max(last, at + quantiles.back());

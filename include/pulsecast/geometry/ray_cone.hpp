@@ -41,7 +41,7 @@ struct RayCone {
       away[k] = std::fabs(from[k]);
       fastest[k] = std::fabs(direction[k]) + aside;
       if (away[k] > reach[k] && (from[k] > 0 ? direction[k] : -direction[k]) > aside)
-        return true;  // beside it, and leaves
+        return true;  // beside it, leaving
     }
     for (int k = 0; k < 3; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;

@@ -128,12 +128,11 @@ namespace detail {
     require_within(name + "x", waypoints[k].x, -1e9, 1e9, "m");
     require_within(name + "y", waypoints[k].y, -1e9, 1e9, "m");
     const auto near = [&](const Vec2& p) { return length(waypoints[k] - p) < 0.01; };
-    if (k + 1 == waypoints.size()) {
+    if (k + 1 == waypoints.size())
       while (points.size() > 1 && near(points.back())) {
         points.pop_back();
         numbers.pop_back();
       }
-    }
     if (points.empty() || !near(points.back())) {
       points.push_back(waypoints[k]);
       numbers.push_back(k);

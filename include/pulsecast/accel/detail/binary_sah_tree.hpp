@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <concepts>
 #include <limits>
 #include <span>
@@ -101,7 +102,7 @@ class BinarySahTree {
 
  private:
   static constexpr std::size_t few =
-      4096;  ///< primitives of a tree that takes all slices: these may be shapes with trees
+      4096;                               ///< primitives of a tree that takes all slices: they may be shapes with trees
   static constexpr double leaf_cost = 1;  ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
@@ -222,7 +223,7 @@ class BinarySahTree {
       (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
       if (i < split.slice) left += all->counts[split.axis][i];
     }
-    if (task.depth + 1 + levels_of_halving(std::max(left, task.size() - left)) > max_depth) return halve(task);
+    if (task.depth + 1 + std::bit_width(std::max(left, task.size() - left) - 1) > max_depth) return halve(task);
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {

@@ -51,8 +51,7 @@ class KdTreeBuilder {
   static constexpr std::size_t grain = 4096;  ///< primitives of a subtree at most: what is pending then fits a cache
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
-  static constexpr double empty_bonus =
-      0.8;  ///< factor for a split with an empty side. Source: Wald & Havran 2006, 3.2
+  static constexpr double empty_bonus = 0.8;  ///< factor of splits with an empty side. Source: Wald & Havran 2006, 3.2
 
   struct Task {
     Box filled;  ///< bounds of its primitives

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -259,11 +258,6 @@ struct BuildInput {
     });
   }
 };
-
-/// Levels of halving down to single parts.
-[[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept {
-  return parts < 2 ? 0 : std::bit_width(parts - 1);
-}
 
 }  // namespace PULSECAST_NAMESPACE::detail
 

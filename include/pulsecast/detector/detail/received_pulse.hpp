@@ -154,8 +154,7 @@ class ReceivedPulse {
     double value = 0;
   };
   std::vector<Point> points_;
-  std::vector<double>
-      rows_;  ///< value i, from -1 on, is number (i + 1) / phases of row (i + 1) % phases and later rows
+  std::vector<double> rows_;  ///< value i, from -1 on, is number (i + 1) / phases of row (i + 1) % phases and later
 };
 
 }  // namespace PULSECAST_NAMESPACE

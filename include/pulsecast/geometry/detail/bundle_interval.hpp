@@ -208,8 +208,7 @@ class RayInterval {
     for (std::size_t k = 0; k < 3; ++k)
       entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
     const Axes both = o + direction;
-    const bool is_valid =
-        std::isfinite(both[0] + both[1] + both[2]);  // sums keep infinity and NaN; an invalid ray misses
+    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // sums keep infinity and NaN, which miss
     near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
                      : std::numeric_limits<Real>::infinity();  // no -0
   }

@@ -29,8 +29,7 @@ struct PathPiece {
   /// heading in its middle.
   [[nodiscard]] Stance after(double driven) const noexcept {
     const double way = gear * driven, half = 0.5 * curvature * way;
-    const double chord =
-        std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // to 1e-18
+    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // +-1e-18
     const double middle = start.heading + half;
     return {start.position + chord * Vec2{std::sin(middle), std::cos(middle)}, start.heading + 2 * half};
   }
