@@ -54,9 +54,9 @@ class BinarySahTree {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         subtrees.push_back(i);
-        for (std::size_t k = subtrees.size() - 1; k > 0 && steps[subtrees[k - 1]].task.size() < steps[i].task.size();
-             --k)
-          std::swap(subtrees[k - 1], subtrees[k]);  // largest first
+        const auto size = [&](std::size_t k) { return steps[subtrees[k]].task.size(); };
+        for (std::size_t k = subtrees.size() - 1; k > 0 && size(k - 1) < size(k); --k)  // largest first
+          std::swap(subtrees[k - 1], subtrees[k]);
         continue;
       }
       const auto halves = split(steps[i].task, space, workers);
@@ -70,8 +70,8 @@ class BinarySahTree {
     for (std::size_t i = steps.size(); i-- > 0;)
       if (const std::size_t halves = steps[i].halves; halves > 0) {
         const Step &first = steps[halves], &second = steps[halves + 1];
-        steps[i].sums =
-            plan(nodes_[*steps[i].task.number], first.sums, first.task.size(), second.sums, second.task.size());
+        Node& node = nodes_[*steps[i].task.number];
+        steps[i].sums = plan(node, first.sums, first.task.size(), second.sums, second.task.size());
       }
     spare_ = {};
   }
@@ -102,7 +102,7 @@ class BinarySahTree {
 
  private:
   static constexpr std::size_t few =
-      4096;                               ///< primitives of a tree that takes all slices: they may be shapes with trees
+      4096;  ///< primitives: smaller trees take all slices, as they may be of shapes with trees
   static constexpr double leaf_cost = 1;  ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
