@@ -101,9 +101,8 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t few =
-      4096;  ///< primitives: smaller trees take all slices, as they may hold shapes with trees
-  static constexpr double leaf_cost = 1;  ///< SAH cost of the tests in a leaf; a traversal step costs 1
+  static constexpr std::size_t few = 4096;  ///< primitives: smaller trees, perhaps of shapes, take all slices
+  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;
