@@ -78,7 +78,7 @@ struct ResultBuffer {
     shot.first_sample = samples.size();
     shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
     for (const Echo& echo : outcome.echoes) echoes.push_back(echo);
-    samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
+    if (!outcome.waveform.empty()) samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
     for (const SubrayRecord& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
   }

@@ -220,8 +220,10 @@ class WhiteTarget {
  public:
   /// Power received from a range [m] by the link budget, always the same one [W].
   [[nodiscard]] double power(const LinkBudget& budget, double range) noexcept {
-    if (range != range_) power_ = budget.power(1, 1, range);
-    range_ = range;
+    if (range != range_) {
+      power_ = budget.power(1, 1, range);
+      range_ = range;
+    }
     return power_;
   }
 

@@ -15,14 +15,21 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+/// Next greater number after finite r, as of std::nextafter, but without a call.
+template <std::floating_point Real>
+[[nodiscard]] Real next_above(Real r) noexcept {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  if (r == 0) return std::numeric_limits<Real>::denorm_min();
+  return std::bit_cast<Real>(static_cast<Bits>(std::bit_cast<Bits>(r) + (r > 0 ? 1 : -1)));
+}
+}  // namespace detail
+
 /// Least number of type Real that is not less than `value`.
 template <std::floating_point Real>
 [[nodiscard]] Real round_up(double value) noexcept {
-  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
   const Real r = static_cast<Real>(value);
-  if (!(static_cast<double>(r) < value)) return r;
-  if (r == 0) return std::numeric_limits<Real>::denorm_min();
-  return std::bit_cast<Real>(static_cast<Bits>(std::bit_cast<Bits>(r) + (r > 0 ? 1 : -1)));  // the next, without a call
+  return static_cast<double>(r) < value ? detail::next_above(r) : r;
 }
 
 /// Greatest number of type Real that is not greater than `value`.
