@@ -146,10 +146,9 @@ struct Receiver {
   [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }
 };
 
-/// Link budget: received power of a subray from the power of a pulse.
-/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close
-/// range, an aperture on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 +
-/// D^2) in place of D^2 / (4 R^2).
+/// Link budget: received power of a subray from the power of a pulse. Source: laser radar equation for an extended
+/// target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close range, an aperture on the axis collects sin^2
+/// of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
   /// Budget of no power.
