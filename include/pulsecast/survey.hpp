@@ -16,6 +16,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/transport_input.hpp>

@@ -48,7 +48,7 @@ notices "the README's table lists the public headers" 'cp include/pulsecast/io/l
 notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
-threads='threads live in run.hpp and three headers of base/ only'
+threads='threads live in run.hpp, its reorder buffer and three headers of base/ only'
 notices "$threads" "$add #include <mutex>\" include/pulsecast/survey.hpp"
 notices "$threads" "$add #include <thread>\" include/pulsecast/base/shared_array.hpp"
 notices 'files are for the rooms beside the core' "$add #include <fstream>\" include/pulsecast/survey.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <concepts>
-#include <cstddef>
 #include <exception>
 #include <memory>
 #include <thread>

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 #define PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/cycle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -29,7 +25,6 @@ struct FiberArray {
   /// Index of the lit fibre, from 0.
   [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fiber_rate, fibers); }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {
     return fibers == 1 ? 0 : half_angle * (2 * static_cast<double>(fiber(t)) / (fibers - 1.0) - 1);
   }

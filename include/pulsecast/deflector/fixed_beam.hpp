@@ -23,7 +23,6 @@ struct FixedBeam {
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes&, PoseLanes<frame::Beam, frame::Instrument>& at) const noexcept {
     at = PoseLanes(pose);
     return all_lanes();

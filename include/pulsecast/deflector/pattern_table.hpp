@@ -3,13 +3,11 @@
 #ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 #define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/cycle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

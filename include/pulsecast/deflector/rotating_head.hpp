@@ -21,11 +21,8 @@ struct RotatingHead {
     require_positive("RotatingHead::axis (length)", length(axis), "");
   }
 
-  [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Instrument, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Instrument, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = start + 2 * pi * t.phase(angular_rate / (2 * pi));
     poses = PoseLanes<frame::Instrument, frame::Instrument>{RotationLanes::about(pulsecast::normalize(axis), angle)};

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -71,8 +70,7 @@ template <EchoWidth Width>
 
 /// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence.
 /// Sampled every `interval` [s]; not for the hot path.
-template <EchoWidth Width>
-[[nodiscard]] double pulse_width(const Width& width, const PulseShape& shape, double interval) {
+[[nodiscard]] double pulse_width(const EchoWidth auto& width, const PulseShape& shape, double interval) {
   std::vector<double> samples;
   for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval)
     samples.push_back(shape(t));

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_FIRST_HIT_HPP
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
-#include <cstddef>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -16,7 +14,6 @@ struct FirstHit {
 
   void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     Echo echo;  ///< echo of the current pulse
   };

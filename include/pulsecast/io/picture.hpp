@@ -12,7 +12,7 @@
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/image.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Pictures of surfaces: PNG, JPEG, BMP, TGA, GIF, PSD and PNM, read by stb_image.
 namespace PULSECAST_NAMESPACE::io {

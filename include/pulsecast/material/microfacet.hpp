@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/fresnel.hpp>
 

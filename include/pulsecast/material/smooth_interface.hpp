@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 #define PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>
 
@@ -12,10 +10,9 @@ namespace PULSECAST_NAMESPACE {
 
 /// Kinds of specular reflection and transmission.
 enum class InterfaceKind : std::uint8_t {
-  none,    ///< not at all
-  mirror,  ///< reflects a share of it, at any incidence
-  pane,    ///< plate with two parallel faces, drawn as one surface: reflects light, and lets it through with a lateral
-           ///< shift
+  none,        ///< not at all
+  mirror,      ///< reflects a share of it, at any incidence
+  pane,        ///< plate with two parallel faces, drawn as one surface: reflects light, and lets it through, shifted
   dielectric,  ///< face of a body of glass or another clear medium: reflects and refracts
   water,       ///< the same, of water
 };

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,7 +46,6 @@ class Platform {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(source_, i, count);
     auto out = placed(inner);
@@ -59,7 +57,6 @@ class Platform {
     return out;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return source_.next_pulse(i);
   }

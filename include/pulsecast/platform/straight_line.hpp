@@ -5,7 +5,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -26,9 +25,7 @@ struct StraightLine {
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Body, frame::World>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in
   /// different ways.

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCANNER_SCANNER_HPP
 #define PULSECAST_SCANNER_SCANNER_HPP
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -38,7 +37,6 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     PulseLanes<frame::Beam> p;
     p.size = count;

@@ -25,7 +25,7 @@
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Reading of OBJ files.
 namespace PULSECAST_NAMESPACE::io {
