@@ -268,13 +268,13 @@ TEST_CASE("a drop's backscatter without absorption is its extinction by the lida
 
 TEST_CASE("the diameter of a uniform number is the inverse of the cumulative distribution") {
   for (const Precipitation& p : precipitations) {
-    CHECK(p.diameter(0) == p.least);
-    CHECK(p.diameter(1) == relative(p.most, 1e-12));
-    CHECK(p.diameter(1) <= p.most);
+    CHECK(p.diameter(0) == p.diameter_min);
+    CHECK(p.diameter(1) == relative(p.diameter_max, 1e-12));
+    CHECK(p.diameter(1) <= p.diameter_max);
     for (double u = 0.01; u < 1; u += 0.01) {
       const double d = p.diameter(u);
-      REQUIRE(d > p.least);
-      REQUIRE(d < p.most);
+      REQUIRE(d > p.diameter_min);
+      REQUIRE(d < p.diameter_max);
       Precipitation part = p;
       part.most = d;
       REQUIRE(part.number() == relative(u * p.number(), 1e-9));
