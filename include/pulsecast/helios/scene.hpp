@@ -133,7 +133,7 @@ class SceneBuilder {
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(HELIOS_SCENE)
 #include <pulsecast/helios/detail/ground_builder.hpp>
 #include <pulsecast/helios/detail/mesh_parts.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>

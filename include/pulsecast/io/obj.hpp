@@ -43,7 +43,7 @@ struct ObjModel {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(IO_OBJ)
 #include <pulsecast/io/detail/obj/reader.hpp>
 #endif
 

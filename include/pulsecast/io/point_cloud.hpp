@@ -81,7 +81,7 @@ struct PointCloud {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(IO_POINT_CLOUD)
 #include <pulsecast/io/detail/point_cloud_reader.hpp>
 #endif
 
