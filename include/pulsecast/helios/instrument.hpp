@@ -120,7 +120,7 @@ namespace detail {
   for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
     const ChannelSettings& channel = scanner.channels[c];
     SurveyOptic optic;
-    if (fires) optic = survey_optic(channel, settings, rate, options.boresight, {options.optic_time});
+    if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
     channels.emplace_back(std::move(optic), Scanner{.pulse_rate = rate,
                                                     .pulses = slots,
                                                     .laser = survey_laser(channel, settings),

@@ -134,9 +134,8 @@ class SceneBuilder {
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_SCENE)
-#include <pulsecast/helios/detail/ground_builder.hpp>
-#include <pulsecast/helios/detail/mesh_parts.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>
+#include <pulsecast/helios/detail/source_readers.hpp>
 #endif
 
 #endif

@@ -168,7 +168,7 @@ class Simulation {
 #if PULSECAST_DEFINES(HELIOS_SIMULATION)
 #include <algorithm>
 
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -17,7 +17,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

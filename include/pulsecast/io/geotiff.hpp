@@ -70,7 +70,6 @@ struct GeoTiff {
 #include <tiffio.h>
 
 #include <pulsecast/io/detail/degrees.hpp>
-#include <pulsecast/io/detail/geotiff/colour_table.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
 #include <pulsecast/io/detail/geotiff/height_scale.hpp>
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>

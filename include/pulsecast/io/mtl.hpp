@@ -12,7 +12,6 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

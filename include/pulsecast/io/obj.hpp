@@ -9,7 +9,6 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>

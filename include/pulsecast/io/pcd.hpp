@@ -21,7 +21,7 @@
 #include <liblzf/lzf.h>
 
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

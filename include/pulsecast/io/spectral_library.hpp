@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -21,7 +21,6 @@
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/detail/xml/file_name.hpp>
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>

@@ -20,10 +20,8 @@
 #include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/detail/copc/plan.hpp>
 #include <pulsecast/io/detail/copc/runs.hpp>
-#include <pulsecast/io/detail/copc/sampling.hpp>
-#include <pulsecast/io/detail/copc/sorting.hpp>
 #include <pulsecast/io/detail/copc/subtree.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/laz/chunk.hpp>
 #include <pulsecast/io/output_file.hpp>
 

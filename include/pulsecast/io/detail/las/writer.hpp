@@ -20,7 +20,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>

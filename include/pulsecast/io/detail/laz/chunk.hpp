@@ -16,9 +16,7 @@
 #include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/colour.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
-#include <pulsecast/io/detail/laz/median.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
-#include <pulsecast/io/detail/laz/time.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

@@ -12,7 +12,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/part.hpp>
