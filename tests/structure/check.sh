@@ -200,7 +200,7 @@ unclaimed_includes() {
   for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
     name=${header#include/pulsecast/}
     name=${name%.hpp}
-    case " $claimed" in *" $name "*) continue ;; esac
+    case " $claimed" in *" $name "* | *" ${name%/*}/* "*) continue ;; esac
     case " $with_library" in *" ${name%%/*} "*) continue ;; esac
     without="$without $header"
   done

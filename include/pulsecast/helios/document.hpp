@@ -14,9 +14,8 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path>
-      assets{};                ///< search folders; the first match wins. The folders of survey and document follow
-  bool channel_files = false;  ///< each channel gets a file named by its id: ambiguous ids are refused
+  std::vector<std::filesystem::path> assets{};  ///< first search folders; those of survey and document follow
+  bool channel_files = false;                   ///< each channel gets a file named by its id: ambiguous ids are refused
 };
 
 /// Content of a survey document.

@@ -74,10 +74,9 @@ struct LegScannerSettings {
   double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double>
-      divergence{};                ///< common value of all channels, default each one's own; `beamDivergence_rad` [rad]
-  double trajectory_interval = 0;  ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;              ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
+  std::optional<double> divergence{};  ///< of all channels; by default each one's own. `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;      ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;  ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
 
   void validate() const {
     require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
@@ -92,9 +91,8 @@ struct LegScannerSettings {
 
 /// `<leg>`
 struct LegSettings {
-  std::optional<std::string> strip{};  ///< legs of one strip share their files; `stripId`
-  std::optional<double>
-      duration_max{};  ///< upper limit of the leg's duration; `maxDuration_s` of leg or scannerSettings [s]
+  std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
+  std::optional<double> duration_max{};  ///< upper limit of its duration; `maxDuration_s` of leg or scannerSettings [s]
   LegPlatformSettings platform{};
   LegScannerSettings scanner{};
 

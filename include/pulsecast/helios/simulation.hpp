@@ -78,11 +78,10 @@ class Simulation {
     bool las_waveforms = false;    ///< cut and sample waveforms to the limits of LAS
     bool waveform_noise = false;   ///< add receiver noise
     bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
-    bool library_physics =
-        false;                   ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
-    bool light_paths = false;    ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
-    bool platform_noise = true;  ///< true: as in the survey; false: none
-    bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
+    bool library_physics = false;  ///< true: the library's own physics, not that of HELIOS++: docs/surveys.md
+    bool light_paths = false;      ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
+    bool platform_noise = true;    ///< true: as in the survey; false: none
+    bool leg_noise = true;         ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
     std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
@@ -101,9 +100,8 @@ class Simulation {
         : empty_shots_(pulsecast::detail::reads_empty_shots(sink)), take_(held(std::forward<Any>(sink))) {}
 
     void operator()(const EchoBatch& batch) const { take_(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept {
-      return empty_shots_;
-    }  ///< as the concept ChoosesShots describes
+    /// As the concept ChoosesShots describes.
+    [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
 
    private:
     template <class Any>

@@ -31,8 +31,7 @@ struct CompiledSurvey {
   };
   Legs<SurveyLeg> source;  ///< source of all pulses; each distinct receiver of the scanner's channels has an index
   std::vector<Leg> legs;   ///< legs, in order of the document
-  std::optional<double>
-      clock_start{};  ///< start time of the survey, that of its earliest leg, if a trajectory gives it [s]
+  std::optional<double> clock_start{};  ///< start of its earliest leg by the clock of a trajectory, if any [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 

@@ -17,9 +17,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for Esri ASCII grids.
 struct AsciiGridSettings {
-  double vertical_scale = 1;  ///< metres per unit of height [m]
-  std::optional<double>
-      missing{};  ///< value of missing heights, in the file's unit; by default from the file (NODATA_value), or -9999
+  double vertical_scale = 1;        ///< metres per unit of height [m]
+  std::optional<double> missing{};  ///< number of missing heights in the file; by default NODATA_value, or -9999
 
   void validate() const { require_positive("AsciiGridSettings::vertical_scale", vertical_scale, "m"); }
 };

@@ -73,7 +73,6 @@ struct GeoTiff {
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
 #include <pulsecast/io/detail/geotiff/height_scale.hpp>
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
-#include <pulsecast/io/detail/geotiff/samples.hpp>
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/io/input_file.hpp>
 

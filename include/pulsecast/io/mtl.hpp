@@ -18,10 +18,9 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Content of MTL files.
 struct MaterialLibrary {
-  std::map<std::string, Material, std::less<>> materials;  ///< materials by name
-  std::map<std::string, MaterialPictures, std::less<>>
-      pictures{};                     ///< pictures of those that have some, not read: see `add_pictures`
-  std::vector<std::string> warnings;  ///< oddities that could still be read
+  std::map<std::string, Material, std::less<>> materials;           ///< materials by name
+  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< of those that have some: see `add_pictures`
+  std::vector<std::string> warnings;                                ///< oddities that could still be read
 };
 
 /// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is

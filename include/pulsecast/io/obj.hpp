@@ -26,9 +26,8 @@ struct ObjSettings {
 struct ObjModel {
   MeshData mesh;                    ///< in units of the file, which should be metres; without triangles of zero area
   std::vector<Material> materials;  ///< materials of triangles, in order of first use
-  std::vector<MaterialPictures>
-      pictures{};                     ///< of each material, not read: see `add_pictures`; empty if there are none
-  std::vector<std::string> warnings;  ///< oddities that could still be read
+  std::vector<MaterialPictures> pictures{};    ///< of each material, not read: see `add_pictures`; or empty
+  std::vector<std::string> warnings;           ///< oddities that could still be read
   std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, those that are missing, too
 };
 

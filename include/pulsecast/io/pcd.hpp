@@ -42,9 +42,7 @@ struct PcdSettings {
   void validate() const {
     require_within("PcdSettings::encoding", static_cast<double>(encoding), 0,
                    static_cast<double>(PcdEncoding::binary_compressed), "");
-    layout.validate();
-    points.validate();
-    detail::require_field_names(layout);
+    detail::require_packable(layout, points);
   }
 };
 

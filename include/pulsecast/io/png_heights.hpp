@@ -21,10 +21,9 @@ struct PngHeightSettings {
   double vertical_scale = 1;               ///< metres per unit of grey [m]
   double vertical_offset = 0;              ///< height of grey 0, black [m]
   std::optional<std::uint16_t> missing{};  ///< grey of missing heights
+  std::optional<Vec2> pixel{};  ///< spacing of the pixels, east and south [m]; by default from the world file
   std::optional<Vec2>
-      pixel{};  ///< spacing of the pixels, to the east and the south [m]; by default from the world file
-  std::optional<Vec2>
-      first{};  ///< centre of the pixel in the north-west [m]; by default from the world file, or (0, 0) beside `pixel`
+      first{};  ///< centre of the north-west pixel [m]; default: the world file's; (0, 0) beside `pixel`
   std::size_t max_pixels = std::size_t{1} << 28;  ///< pixels at most
 
   void validate() const {
@@ -61,7 +60,6 @@ struct PngHeightSettings {
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <stb/stb_image.h>
 
@@ -137,8 +135,7 @@ class PngHeightReader {
     const double count = static_cast<double>(width_) * height_;
     if (count > static_cast<double>(settings_.max_pixels))
       fail("is of " + pixels + ": expected at most " + std::to_string(settings_.max_pixels) + " in all");
-    constexpr double deflate =
-        1032;  // largest ratio of compression; source: zlib, Technical Details, "Maximum Compression Factor"
+    constexpr double deflate = 1032;  // largest ratio; source: zlib, "Maximum Compression Factor"
     if (count * bits_ / 8 > deflate * static_cast<double>(bytes))
       fail("claims " + pixels + ", more than its " + std::to_string(bytes) + " bytes can hold");
     raster_.columns = static_cast<std::uint32_t>(width_);

@@ -96,8 +96,7 @@ class SpectrumReader {
     if (!unit_ || !scale_) titles();
     SpectrumFile file;
     file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
-    std::stable_sort(samples_.begin(), samples_.end(),
-                     [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    std::ranges::stable_sort(samples_, [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
     file.spectrum = std::make_shared<const Spectrum>(united());
     file.warnings = std::move(warnings_);
     return file;
@@ -237,8 +236,7 @@ class SpectrumReader {
   std::string titles_;  // last line of the header, in small letters
   std::size_t titles_line_ = 0;
   std::vector<std::string> warnings_;
-  std::size_t scale_line_ = 0,
-              odd_ = 0;  // lines of the header's scale, and of the first wavelength outside the range of light
+  std::size_t scale_line_ = 0, odd_ = 0;  // lines of the header's scale, and of the first odd wavelength
   bool begun_ = false;
 };
 

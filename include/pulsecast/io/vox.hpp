@@ -27,10 +27,8 @@ enum class VoxelUse : std::uint8_t {
 struct VoxelFileSettings {
   VoxelUse use = VoxelUse::transmissive;  ///< use of the voxels
   double exponent = 0.5;  ///< of scaled cubes: their edge is (PAD / PADmax)^exponent times that of the cell
-  std::optional<double> density_max =
-      std::nullopt;  ///< PADmax; by default from the file, or else its maximum [m^2/m^3]
-  std::optional<std::uint64_t> shift =
-      std::nullopt;  ///< seed of random shifts of scaled cubes inside their cells; none if empty
+  std::optional<double> density_max = std::nullopt;   ///< PADmax; by default from the file, or its maximum [m^2/m^3]
+  std::optional<std::uint64_t> shift = std::nullopt;  ///< seed of random shifts of scaled cubes in their cells; or none
 
   void validate() const {
     require_not_negative("VoxelFileSettings::exponent", exponent, "");

@@ -8,7 +8,6 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
-#include <cstddef>
 #include <future>
 #include <memory>
 #include <optional>
@@ -178,17 +177,11 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
       py::arg("progress") = py::none(), py::arg("pulses") = true, py::arg("columns") = false,
       py::arg("colours") = false,
       "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
-      "and returns a Batch. "
-      "With a callback, "
-      "batches go to callback(batch) every `every_pulses` pulses or `every_seconds` seconds, and at the end, and are "
-      "not kept. "
-      "progress(done, total, echoes, "
-      "seconds) is called some ten times a second. pulses=False keeps points only, without rows of pulses and "
-      "waveforms. columns=True "
-      "keeps points "
-      "by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more ray each. "
-      "Raises "
-      "Interrupted on Ctrl-C; its `result` is complete up to there.");
+      "and returns a Batch. With a callback, batches go to callback(batch) every `every_pulses` pulses or "
+      "`every_seconds` seconds, and at the end, and are not kept. progress(done, total, echoes, seconds) is called "
+      "some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. columns=True "
+      "keeps points by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more "
+      "ray each. Raises Interrupted on Ctrl-C; its `result` is complete up to there.");
 }
 
 }  // namespace gnu::visibility("hidden")]]python

@@ -122,8 +122,7 @@ namespace detail {
     if (s->loop > 0) steady.duration = step * s->loop;
     sequences.push_back({.motions = {steady}});
     if (s->loop == 0 || !s->next) break;
-    const auto next =
-        std::find_if(part.motions.begin(), part.motions.end(), [&](const auto& m) { return m.id == *s->next; });
+    const auto next = std::ranges::find_if(part.motions, [&](const auto& m) { return m.id == *s->next; });
     if (next == part.motions.end()) break;
     if (const auto back = seen.find(next->id); back != seen.end()) {
       again = back->second;

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 
-#include <pugixml.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +10,8 @@
 #include <string>
 #include <variant>
 #include <vector>
+
+#include <pugixml.hpp>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -50,9 +49,8 @@ class CopcTree {
   }
 
   [[nodiscard]] std::vector<CopcEntry>& entries() noexcept { return entries_; }  ///< nodes
-  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept {
-    return chunk_sizes_;
-  }  ///< of the chunks, in order [byte]
+  /// Of the chunks, in order [byte]
+  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept { return chunk_sizes_; }
   [[nodiscard]] const std::vector<std::uint32_t>& points() const noexcept { return chunk_points_; }  ///< of the chunks
 
  private:

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
 #define PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
 
-#include <tiffio.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdarg>
@@ -19,6 +17,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include <tiffio.h>
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/input_file.hpp>

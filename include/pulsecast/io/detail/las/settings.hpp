@@ -25,8 +25,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Extra value of each point, behind the standard ones.
 struct LasExtra {
   std::string_view name, description;
-  std::uint8_t type,
-      size;  ///< data type of the Extra Bytes record: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
+  std::uint8_t type, size;  ///< type: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
 };
 
 inline constexpr std::array las_extras{
@@ -107,8 +106,7 @@ struct LasSettings {
                                       ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
   double intensity_range = 1;         ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;  ///< reference power of amplitudes in dB [W]
-  std::optional<Date> created =
-      std::nullopt;  ///< date in the header; if empty, 0, so that equal surveys give equal bytes
+  std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0, for equal bytes of equal surveys
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
@@ -156,8 +154,7 @@ struct LasSettings {
         throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(),
                            static_cast<double>(name.size()), "bytes",
                            "above 0, and names that differ in their first 31 bytes from others and from Range, "
-                           "Amplitude, Reflectance, "
-                           "EchoWidth, PulseIndex, ObjectId, LightKind");
+                           "Amplitude, Reflectance, EchoWidth, PulseIndex, ObjectId, LightKind");
       known.push_back(cut);
     }
   }

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>

@@ -25,14 +25,12 @@ enum class ColourBy : std::uint8_t { height, intensity, object, classification, 
 
 /// Settings of a picture.
 struct ImageSettings {
-  int width = 1600;              ///< width of the picture [px]
-  int height = 900;              ///< height of the picture [px]
-  double azimuth = radians(30);  ///< viewing direction, clockwise from north [rad]
-  double elevation = radians(
-      30);  ///< viewing direction below the horizon; a quarter turn with azimuth 0 gives a map with north up [rad]
-  double field_of_view = radians(30);  ///< angle across the scene, approximate; 0 for a parallel projection [rad]
-  std::optional<Vec3>
-      eye{};  ///< position of the camera, field of view across the width; if empty, chosen to frame all points [m]
+  int width = 1600;                ///< width of the picture [px]
+  int height = 900;                ///< height of the picture [px]
+  double azimuth = radians(30);    ///< viewing direction, clockwise from north [rad]
+  double elevation = radians(30);  ///< viewing direction below the horizon; a quarter turn looks straight down [rad]
+  double field_of_view = radians(30);     ///< angle across the scene, approximate; 0 for a parallel projection [rad]
+  std::optional<Vec3> eye{};              ///< position of the camera; by default chosen to frame all points [m]
   ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
   double point_size = 0;                  ///< diameter in the middle of the scene; 0 to close the gaps [px]
   Srgb background{13, 17, 23};            ///< colour of the background

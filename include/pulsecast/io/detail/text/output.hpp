@@ -37,8 +37,7 @@ class TextRow {
                    units = size * unit;
       if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
     }
-    std::array<char, std::numeric_limits<double>::max_exponent10 + 32>
-        digits;  // longest number with sign, point and decimals
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // of the longest number
     const auto [end, error] =
         std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
     std::string_view text(digits.data(), end);
