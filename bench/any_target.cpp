@@ -25,7 +25,7 @@ template <class Pattern, class Map>
 double sum_of_ranges(const Map& map, const Pattern& footprint) {
   const Platform airplane{StraightLine{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60},
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg},
+                          Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 20_deg},
                                     Scanner{.pulses = 2'000, .laser = {.peak_power = 5000_W}}}};
   const Survey survey{airplane, footprint, map, Receiver{}, FirstHit{}};
   auto workspace = survey.workspace();

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What making a mesh costs: million triangles a second, by the clock on the wall and by the processor's time, and bytes
-// a triangle, for tree and triangles together; beside it Embree 3, at its medium and its high build quality, by turns
-// in the same run. A row is printed only once the mesh has given the same answers as `Linear` on a sample. Rows are
-// named scene/accelerator/threads. An OBJ file in metres, if one is given, is a scene of its own. Embree's bytes are
-// those of its tree with vertices and corners in single precision; the most it held on the way stands beside them.
+// Cost of building a mesh: million triangles a second, by wall-clock and processor time, and bytes a triangle, for tree
+// and triangles together; beside it Embree 3, at its medium and its high build quality, alternating in the same run. A
+// row is printed only once the mesh has given the same answers as `Linear` on a sample. Rows are named
+// scene/accelerator/threads. An OBJ file in metres, if one is given, is a scene of its own. Embree's bytes are those of
+// its tree with vertices and corners in single precision; its peak memory stands beside them.
 
 #include <concepts>
 #include <cstddef>
@@ -50,7 +50,7 @@ void check(const std::string& name, const Shape& shape, const MeshData& mesh) {
   std::exit(1);
 }
 
-/// On so many threads, if it can be told.
+/// On `threads` threads, if the number can be set.
 template <class Shape>
 Shape build(MeshData mesh, [[maybe_unused]] unsigned threads) {
   if constexpr (std::constructible_from<Shape, MeshData, unsigned>)
@@ -72,7 +72,7 @@ Entrant ours(const std::string& name, const MeshData& mesh, unsigned threads) {
           }};
 }
 
-/// Adds it for one thread, and for all if it can be told.
+/// Adds it for one thread, and for all if the number can be set.
 template <class Shape>
 void add(std::vector<Entrant>& all, const std::string& name, const MeshData& mesh) {
   all.push_back(ours<Shape>(name + "/1", mesh, 1));

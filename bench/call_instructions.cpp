@@ -35,7 +35,7 @@ auto low_flight() {
   return Platform{
       StraightLine{.from = {0, -450, 100}, .to = {0, 450, 100}, .speed = 10},
       Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-      Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg},
+      Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 20_deg},
                 Scanner{.pulse_rate = 100_kHz, .pulses = 1'000, .laser = {.wavelength = 905_nm, .peak_power = 500_W}}}};
 }
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a COPC file costs, beside LAZ: time of the wall and of the processors for the writer alone, size, and greatest
-// memory of the program. An airplane flies over hills with trees, in strips of 500 m, with ten points a square metre;
-// the points are made by formulas as they are written. Usage: copc FORMAT POINTS THREADS FILE; FORMAT is laz or copc.
-// bench/copc.sh runs both in turns.
+// Cost of a COPC file, beside LAZ: wall-clock and processor time of the writer alone, size, and peak memory of the
+// program. An airplane flies over hills with trees, in strips of 500 m, with ten points a square metre; the points are
+// made by formulas as they are written. Usage: copc FORMAT POINTS THREADS FILE; FORMAT is laz or copc. bench/copc.sh
+// runs both in turns.
 
 #include <sys/resource.h>
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What making echoes of a pulse's reflections costs: ns a pulse and a reflection, by detector, by how many reflections
-// there are, and by what was met: one plane squarely, a slope, or the leaves of a tree. Rows are named
-// case/reflections/detector. The reflections of 1,024 pulses come in the order of their subrays; they are copied for
-// each go, as the detector sorts them, and that is in the figure.
+// Cost of detecting the echoes of a pulse: ns a pulse and a reflection, by detector, number of reflections, and target:
+// a plane at normal incidence, a slope, or the leaves of a tree. Rows are named case/reflections/detector. The
+// reflections of 1,024 pulses come in the order of their subrays; they are copied for each pass, as the detector sorts
+// them, and the copy is part of the figure.
 
 #include <algorithm>
 #include <cstddef>

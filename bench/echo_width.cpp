@@ -29,9 +29,8 @@ auto tripod() {
   const double step = 1_deg;
   const Scanner scanner{
       .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror mirror{
-      .lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
-  const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
+  const PolygonMirror mirror{.line_rate = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
+  const RotatingHead head{.angular_rate = 360_deg / scanner.duration().seconds()};
   return Platform{Tripod{.position = wood::glades(seed).front()}, Mount{.lever_arm = {0, 0, 1.7}},
                   Deflector{head, Deflector{mirror, scanner}}};
 }
@@ -41,7 +40,7 @@ auto airplane() {
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 20'000, .laser = laser};
   const StraightLine line{.from = {-30, 0, 600}, .to = {30, 0, 600}, .speed = 30};
   return Platform{line, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                  Deflector{OscillatingMirror{.cycles_per_second = 50, .half_angle = 3_deg}, scanner}};
+                  Deflector{OscillatingMirror{.cycle_rate = 50, .half_angle = 3_deg}, scanner}};
 }
 
 /// Times a survey with a detector. Widths change no echo: there are as many as without.

@@ -23,7 +23,7 @@
 /// Embree 3 on the benchmarks' meshes and rays, for comparison. Source: Wald, Woop, Benthin, Johnson & Ernst 2014.
 namespace bench {
 
-/// A mesh built by Embree, on so many threads.
+/// A mesh built by Embree, on `threads` threads.
 class EmbreeMesh {
  public:
   EmbreeMesh(const MeshData& mesh, RTCBuildQuality quality, bool robust, unsigned threads = 1)

@@ -23,7 +23,7 @@ double sum_of_ranges(const Scene<Mesh>& ground, const Divergence& first, const D
   };
   const Platform airplane{StraightLine{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60},
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg},
+                          Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 20_deg},
                                     Channels{std::vector{channel(first, 0), channel(second, 5_us)}}}};
   const Survey survey{airplane, SunflowerFootprint{19}, ground, Receiver{}, FullWaveform{}};
   auto workspace = survey.workspace();

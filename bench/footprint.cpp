@@ -23,8 +23,8 @@ template <Footprint Pattern>
 std::uint64_t echoes(const Pattern& footprint, const street::Scene& map, double waist_diameter) {
   const Laser laser{.divergence = 0.3_mrad, .waist_diameter = waist_diameter};
   const Platform source{Tripod{.position = {1.2, 0, street::height({1.2, 0})}}, Mount{.lever_arm = {0, 0, 1.7}},
-                        Deflector{RotatingHead{.rate = 0.5},
-                                  Deflector{PolygonMirror{.lines_per_second = 50, .sweep = 80_deg},
+                        Deflector{RotatingHead{.angular_rate = 0.5},
+                                  Deflector{PolygonMirror{.line_rate = 50, .sweep = 80_deg},
                                             Scanner{.pulse_rate = 20_kHz, .pulses = 200'000, .laser = laser}}}};
   return run(Survey{source, footprint, map, Receiver{}, FullWaveform{}}, {.threads = 1}).echoes;
 }

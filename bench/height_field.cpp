@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 
 // Cost of a raster as a height field, against the same raster as a mesh in a `Bvh`: memory, and rays a second from the
-// air and from a tripod, by turns. Both must give the same ranges. Rows are named pulses/subrays/shape. With `large` on
-// the command line: a raster of 20,000 x 20,000 alone.
+// air and from a tripod, alternating. Both must give the same ranges. Rows are named pulses/subrays/shape. With `large`
+// on the command line: a raster of 20,000 x 20,000 alone.
 
 #include <sys/resource.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 // Pulses from all along a car's survey of the town, for `light.sh` to count its instructions: `bench_light` runs each
-// function below once. Prints sums of ranges, and the share of the light that meets glass.
+// function below once. Prints sums of ranges, and the share of the light that hits glass.
 
 #include <cstdio>
 #include <memory>

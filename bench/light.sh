@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Counts the instructions of a pulse in the surveys of light.cpp: of a street whose windows are matt, and pass light on. Needs g++ and
+# Counts the instructions of a pulse in the surveys of light.cpp: of a street with matt and with specular windows. Needs g++ and
 # valgrind. Usage: light.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Leaves as masks, two triangles each, against the same leaves cut out, by turns: time, memory and gap fraction of a
+// Leaves as masks, two triangles each, against the same leaves cut out, alternating: time, memory and gap fraction of a
 // crown seen from below, by single rays and by pulses of 19 subrays. Rows are named subrays/shape.
 
 #include <cmath>

@@ -33,7 +33,7 @@ struct Grid {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Hilly ground of about so many triangles.
+/// Hilly ground of about `triangles` triangles.
 Grid grid_of(std::size_t triangles) {
   const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(triangles) / 2));
   Grid grid;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of slots that give nothing, on one thread [ns]: a tripod beside a lone tree, in slots that the mirror blocks, in
-// pulses beside the tree's bounds, in pulses inside them that meet nothing, and, to compare, in pulses that give
-// echoes. Rows are named slots/subrays.
+// Cost of empty slots, on one thread [ns]: a tripod beside a lone tree, in slots that the mirror blocks, in pulses
+// beside the tree's bounds, in pulses inside them without hits, and, to compare, in pulses with echoes. Rows are named
+// slots/subrays.
 
 #include <cstddef>
 #include <functional>
@@ -25,11 +25,10 @@ namespace {
 auto beside_the_tree(PulseIndex pulses) {
   const Laser laser{.wavelength = 1064_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const Scanner scanner{.pulse_rate = 300_kHz, .pulses = pulses, .laser = laser};
-  const RotatingHead head{.rate = 90_deg / scanner.duration().seconds()};
+  const RotatingHead head{.angular_rate = 90_deg / scanner.duration().seconds()};
   return Platform{
       Tripod{.position = {8, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about(axis::up, 45_deg)},
-      Deflector{head,
-                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 100_deg, .angle_min = -40_deg}, scanner}}};
+      Deflector{head, Deflector{PolygonMirror{.line_rate = 100_Hz, .sweep = 100_deg, .angle_min = -40_deg}, scanner}}};
 }
 
 /// Slots of a kind, in order.

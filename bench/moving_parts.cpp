@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 
 // Cost of moving parts: cars drive around on a plain of 2 km by 2 km while a scanner on a mast turns. Time a pulse with
-// 2 and with 2,000 of them, by turns. Rows are named duration/cars, and printed only once every hit of a sample is on
-// its part's place at that time.
+// 2 and with 2,000 of them, alternating. Rows are named duration/cars, and printed only once every hit of a sample is
+// on its part's place at that time.
 
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ Cars plain(std::size_t cars, double seconds) {
     MotionSequence round;
     for (int side = 0; side < 4; ++side) {
       round.motions.push_back({.velocity = rotation_about(axis::up, side * pi / 2) * way, .duration = block / speed});
-      round.motions.push_back({.rate = pi / 2, .duration = 1});
+      round.motions.push_back({.angular_rate = pi / 2, .duration = 1});
     }
     parts.push_back(
         {.geometry = shape,

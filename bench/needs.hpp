@@ -14,8 +14,7 @@
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
-/// What the programs `needs_*.cpp` share: the same ground, the same flight, one clock. They differ in what they hold
-/// besides.
+/// Common ground, flight and clock of the programs `needs_*.cpp`, which differ in the other types that they contain.
 namespace needs {
 
 using namespace pulsecast;
@@ -33,15 +32,15 @@ using namespace pulsecast::literals;
 }
 
 inline constexpr StraightLine flight{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60};
-inline constexpr OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg};
+inline constexpr OscillatingMirror mirror{.cycle_rate = 50_Hz, .half_angle = 20_deg};
 inline constexpr Scanner laser{
     .pulse_rate = 100_kHz,
     .pulses = 100'000,
     .laser = {.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad}};
 [[nodiscard]] inline Mount mount() { return {.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})}; }
 
-/// Prints what a pulse takes [ns], by the processor's time of this thread, and the sum of all ranges [m], which tells
-/// whether others did the same work.
+/// Prints the processor time of a pulse on this thread [ns], and the sum of all ranges [m], by which programs are
+/// compared.
 template <class S>
 int go(const S& survey) {
   auto workspace = survey.workspace();

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a pulse costs on one thread, stage by stage [ns]: an airplane over hills, a tripod beside a tree, a car in a
-// street. A survey is run again and again, each time with one more of its stages; what the others would have given is
-// known from before. So every stage is measured where it is at work, and they sum to the whole survey. Rows are named
-// survey/subrays/stage; `--only` is held against survey/subrays/. They are printed only once the accelerator has given
-// the same answers as `Linear` on a sample, and the survey of known hits the same echoes.
+// Cost of a pulse on one thread, stage by stage [ns]: an airplane over hills, a tripod beside a tree, a car in a
+// street. A survey runs repeatedly, each time with one more of its stages; the results of the others are recorded
+// before. So every stage is measured in place, and the stages sum to the whole survey. Rows are named
+// survey/subrays/stage; `--only` is compared with survey/subrays/. They are printed only after the accelerator has
+// given the same hits as `Linear` on a sample, and the survey of recorded hits the same echoes.
 
 #include <algorithm>
 #include <cstddef>
@@ -64,7 +64,7 @@ struct Noting {
   }
 };
 
-/// Rays are traced, but what they meet is known.
+/// Rays are traced, but their hits are recorded ones.
 struct Traced {
   const Mesh& mesh;
   const Known& known;

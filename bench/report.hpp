@@ -20,7 +20,8 @@
 #include <utility>
 #include <vector>
 
-/// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags.
+/// Common parts of the benchmarks: clocks, alternating rounds, and a report with the machine, the compiler and its
+/// flags.
 namespace bench {
 
 namespace detail {
@@ -50,10 +51,11 @@ inline void keep(const T& value) noexcept {
   return *middle;
 }
 
-/// What a piece of work took, round by round [s].
+/// Durations of a piece of work, round by round [s].
 using Times = std::vector<double>;
 
-/// How many times faster a work is than another: the median of the rounds, in each of which both saw the same machine.
+/// Speed of a work relative to another: the median of the rounds, in each of which both ran on the machine in the same
+/// state.
 [[nodiscard]] inline double speed_ratio(const Times& of, const Times& other) {
   Times ratios;
   for (std::size_t i = 0; i < of.size() && i < other.size(); ++i) ratios.push_back(other[i] / of[i]);
@@ -106,8 +108,8 @@ class Report {
     return only_.empty() || std::any_of(only_.begin(), only_.end(), matches);
   }
 
-  /// Times pieces of work by turns: in a round, each is repeated until its seconds have passed by the clock. What slows
-  /// the machine down for a while slows them all. Gives the seconds that each took for one go, round by round.
+  /// Times alternating pieces of work: in a round, each is repeated until its seconds have passed by the clock. What
+  /// slows the machine down for a while slows them all. Gives the seconds that each took for one go, round by round.
   [[nodiscard]] std::vector<Times> by_turns(const std::vector<std::function<void()>>& works,
                                             double (*clock)() = thread_seconds) const {
     std::vector<Times> times(works.size());

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a pulse of 19 subrays takes on one thread, and what the machine can do at most, for `roofline.sh`: the peak
-// rates of arithmetic and of reading, and the time of surveys beside a tree, in a street and over hills of a raster.
-// `--once NAME` runs one of the surveys once to warm the caches and once in the function `roofline_counted`, whose
-// operations and bytes the script counts.
+// Time of a pulse of 19 subrays on one thread, and limits of the machine, for `roofline.sh`: the peak rates of
+// arithmetic and of reading, and the time of surveys beside a tree, in a street and over hills of a raster. `--once
+// NAME` runs one of the surveys once to warm the caches and once in the function `roofline_counted`, whose operations
+// and bytes the script counts.
 
 #include <array>
 #include <cmath>
@@ -66,7 +66,7 @@ void read(const std::vector<std::uint64_t>& all) {
 
 }  // namespace
 
-/// What `roofline.sh` counts.
+/// Function that `roofline.sh` counts.
 [[gnu::noinline]] void roofline_counted(const std::function<double()>& work) { std::printf("%.9g\n", work()); }
 
 int main(int count, char** words) {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// How the cost grows: with threads, with triangles, with instances and with subrays. Threads are measured by the clock
-// on the wall, while nothing else should run; the rest by the processor's time of one thread. A row is printed only
-// once the accelerator has given the same answers as `Linear` on a sample. Rows are named by what grows and how much:
-// `--only 'triangles/*'`. Ten million triangles take some 2 GB.
+// Growth of the cost with threads, triangles, instances and subrays. Threads are measured by wall-clock time, while
+// nothing else should run; the rest by processor time of one thread. A row is printed only once the accelerator has
+// given the same hits as `Linear` on a sample. Rows are named by the varied quantity and its value: `--only
+// 'triangles/*'`. Ten million triangles take some 2 GB.
 
 #include <algorithm>
 #include <cmath>

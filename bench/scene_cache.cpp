@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a scene cache saves: hills as an OBJ file, loaded and built, and then opened from their cache. Usage:
-// bench_scene_cache [TRIANGLES], 6,000,000 if not told. The files stand in the system's folder for temporary ones, and
+// Time saved by a scene cache: hills as an OBJ file, loaded and built, and then opened from their cache. Usage:
+// bench_scene_cache [TRIANGLES], by default 6,000,000. The files are in the system's folder for temporary files, and
 // are removed.
 
 #include <chrono>

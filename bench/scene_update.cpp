@@ -80,7 +80,7 @@ std::shared_ptr<const PartMotion> motion(Kind kind, wood::Dice& dice) {
   if (kind == Kind::rest) return std::make_shared<const PartMotion>(std::vector<TimedPose>{{0, speed(), no_rotation}});
   if (kind == Kind::steady) return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed()});
   if (kind == Kind::screw)
-    return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed(), .rate = dice.between(-1, 1)});
+    return std::make_shared<const PartMotion>(SteadyMotion{.velocity = speed(), .angular_rate = dice.between(-1, 1)});
   const Vec3 to = 0.05 * speed(), from{};
   const Rotation turned = rotation_about(axis::up, dice.between(-1e-4, 1e-4));  // about the world's origin
   return std::make_shared<const PartMotion>(

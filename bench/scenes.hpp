@@ -18,7 +18,7 @@
 #include "../examples/street.hpp"
 #include "../examples/tree.hpp"
 
-/// What the benchmarks scan, and with which pulses.
+/// Scenes and pulses of the benchmarks.
 namespace bench {
 
 using namespace pulsecast;
@@ -62,7 +62,7 @@ template <class Mesh>
   return box;
 }
 
-/// Where a pulse leaves, and where it goes: along the y axis of its own frame.
+/// Origin and direction of a pulse: the y axis of its own frame.
 struct Aim {
   Vec3 place;
   Rotation rotation;
@@ -123,9 +123,8 @@ inline constexpr std::size_t pulse_count = 4096;
   return all;
 }
 
-/// Bundles side by side, each in as much memory as it needs, so that going through many of them costs little. One that
-/// is asked for is made where it is wanted, as a survey makes its own: in the nearest cache, and with all that `pad`
-/// finds about its directions.
+/// Bundles side by side, each in as much memory as it needs, so that reading many of them costs little. A requested one
+/// is made in place, as in a survey: in the nearest cache, and with the ranges of directions found by `pad`.
 class Bundles {
  public:
   void add(const RayBundle& rays) {
@@ -220,12 +219,12 @@ double sum_of_single_ranges(const Shape& shape, const Bundles& all) noexcept {
   for (std::size_t i = 0; i < all.size(); ++i) {
     ClosestHit nearest(std::numeric_limits<double>::infinity());
     shape.closest(all.ray(i), nearest);
-    sum += nearest.met(0) ? nearest.range : 0;
+    sum += nearest.met(0) ? nearest.range[0] : 0;
   }
   return sum;
 }
 
-/// What every ray of some bundles meets: range, and number of the primitive.
+/// Hits of every ray of some bundles: range, and number of the primitive.
 struct Answer {
   double range;
   std::uint64_t id;
@@ -249,7 +248,7 @@ template <class Shape>
   for (std::size_t i = 0; i < all.size(); ++i) {
     ClosestHit nearest(std::numeric_limits<double>::infinity());
     shape.closest(all.ray(i), nearest);
-    found.push_back({nearest.range, nearest.id});
+    found.push_back({nearest.range[0], nearest.id[0]});
   }
   return found;
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What pulses are spared because the scene does not ask for it: the shares of pulses that take each short cut, in the
-// surveys of `bench_pipeline`. Nothing is timed; what the stages cost that are spared, `bench_pipeline` tells.
+// Shares of pulses that take each short cut, in the surveys of `bench_pipeline`, which measures the cost of the stages
+// that are skipped. Nothing is timed here.
 
 #include <cstddef>
 #include <memory>

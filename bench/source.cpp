@@ -31,12 +31,12 @@ template <class Optic>
 auto on_tripod(Optic optic) {
   return Platform{
       Tripod{}, Mount{},
-      Deflector{RotatingHead{.rate = 0.1}, Deflector{optic, Scanner{.pulse_rate = 300_kHz, .pulses = slots}}}};
+      Deflector{RotatingHead{.angular_rate = 0.1}, Deflector{optic, Scanner{.pulse_rate = 300_kHz, .pulses = slots}}}};
 }
 
-const PolygonMirror open_mirror{.lines_per_second = 100, .sweep = 60_deg};
-const PolygonMirror blind_mirror{.lines_per_second = 100, .sweep = 60_deg, .angle_min = 59.9_deg, .angle_max = 60_deg};
-const RisleyPrisms prisms{.prisms = {{.turns_per_second = 100}, {.turns_per_second = -77}}};
+const PolygonMirror open_mirror{.line_rate = 100, .sweep = 60_deg};
+const PolygonMirror blind_mirror{.line_rate = 100, .sweep = 60_deg, .angle_min = 59.9_deg, .angle_max = 60_deg};
+const RisleyPrisms prisms{.prisms = {{.rotation_rate = 100}, {.rotation_rate = -77}}};
 
 std::uint64_t run_blocked() {
   const Void nothing;

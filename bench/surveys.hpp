@@ -21,7 +21,7 @@ using Mesh = TriangleMesh<>;
   const Laser laser{.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad};
   return Platform{StraightLine{.from = {0, -450, 1250}, .to = {0, 450, 1250}, .speed = 60},
                   Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                  Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 20_deg},
+                  Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 20_deg},
                             Scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser}}};
 }
 
@@ -30,11 +30,10 @@ using Mesh = TriangleMesh<>;
 [[nodiscard]] inline auto tripod(PulseIndex pulses) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser};
-  const RotatingHead head{.rate = 40_deg / scanner.duration().seconds()};
+  const RotatingHead head{.angular_rate = 40_deg / scanner.duration().seconds()};
   return Platform{
       Tripod{.position = {12, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about(axis::up, 70_deg)},
-      Deflector{head,
-                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 45_deg, .angle_min = -10_deg}, scanner}}};
+      Deflector{head, Deflector{PolygonMirror{.line_rate = 100_Hz, .sweep = 45_deg, .angle_min = -10_deg}, scanner}}};
 }
 
 /// A car in the street, with a scanner that turns across.
@@ -42,7 +41,7 @@ using Mesh = TriangleMesh<>;
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.3_mrad};
   return Platform{StraightLine{.from = street::on({2, -70}), .to = street::on({2, 70}), .speed = 10},
                   Mount{.lever_arm = {0, 0, 2.3}, .boresight = rotation_about(axis::up, 45_deg)},
-                  Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 180_deg},
+                  Deflector{PolygonMirror{.line_rate = 100_Hz, .sweep = 180_deg},
                             Scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser}}};
 }
 
@@ -52,7 +51,7 @@ using Mesh = TriangleMesh<>;
   return Scene<Mesh>({{.geometry = std::make_shared<const Mesh>(std::move(mesh))}});
 }
 
-/// What a run hands to its sinks, kept: as one batch.
+/// Sink that keeps the results of a run as one batch.
 struct Recording {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;

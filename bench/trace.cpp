@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What tracing costs on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and
-// beside them Embree 3 on the same rays, by turns in the same run. A row is printed only once the accelerator has given
-// the same answers as `Linear`, bit by bit, on a sample; of Embree it is printed how many of its ranges agree.
+// Cost of tracing on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and
+// beside them Embree 3 on the same rays, alternating in the same run. A row is printed only once the accelerator has
+// given the same hits as `Linear`, bit by bit, on a sample; for Embree the share of equal ranges is printed.
 //
 // Rows are named scene/subrays/accelerator, with `alone` for a `SingleRayPacket` in place of a bundle: `--only
 // '*/19/Bvh<float>' --only
@@ -72,7 +72,7 @@ struct Group {
   std::string name;
   Bundles bundles;
   std::size_t subrays;  ///< in each
-  std::size_t sampled;  ///< bundles that `Linear` is asked about
+  std::size_t sampled;  ///< bundles that `Linear` traces, too
 };
 
 std::vector<Group> groups(const Course& course) {
@@ -104,7 +104,7 @@ void add_embree(const Report& report, const Group& group, const std::vector<Embr
   }
 }
 
-/// How many of Embree's ranges are ours, but for what single precision makes of them.
+/// Number of Embree's ranges that equal ours up to single precision.
 void print_agreement(const Report& report, const Group& group, const EmbreeSubject& embree, const Subject& ours) {
   const auto theirs = EmbreeRays<1>(group.bundles, true).ranges(*embree.mesh);
   const auto expected = ours.answers(group.bundles);

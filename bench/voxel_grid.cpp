@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 // Cost of scanning a grid of voxels by their number: 10^4 and 10^7 cells of the same kind of scene, single rays and
-// bundles, by turns. Rows are named scene/cells/subrays.
+// bundles, alternating. Rows are named scene/cells/subrays.
 
 #include <cmath>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What writing costs: million points a second of the processor's time, that of the system included, and bytes a point,
-// by format. One batch, from an airplane over hills with waveforms of 80 samples a pulse, is written again and again to
+// Cost of writing: million points per second of processor time, including that of the system, and bytes a point, by
+// format. One batch, from an airplane over hills with waveforms of 80 samples a pulse, is written again and again to
 // the system's folder for temporary files. The files are removed.
 
 #include <cstddef>

@@ -28,7 +28,7 @@ using namespace pulsecast::literals;
 auto airplane(const StraightLine& pass, double pulse_rate) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 2500_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const auto pulses = static_cast<PulseIndex>(std::ceil(pass.duration().seconds() * pulse_rate));
-  const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 18_deg, .turning_time = 1_ms};
+  const OscillatingMirror mirror{.cycle_rate = 50_Hz, .half_angle = 18_deg, .turning_time = 1_ms};
   return Platform{
       pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
       Deflector{mirror, Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};

@@ -27,7 +27,7 @@ auto scanner(const GroundVehicleDrive& drive, double angle, double pulse_rate) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const auto pulses = static_cast<PulseIndex>(drive.duration().seconds() * pulse_rate);
   return Platform{drive, Mount{.lever_arm = {0, 1.1, 2.1}, .boresight = rotation_about(axis::up, angle)},
-                  Deflector{PolygonMirror{.lines_per_second = 60_Hz, .sweep = 180_deg},
+                  Deflector{PolygonMirror{.line_rate = 60_Hz, .sweep = 180_deg},
                             Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
 }
 

@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     const Scanner scanner{.pulse_rate = pulse_rate,
                           .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate),
                           .laser = laser};
-    const PolygonMirror mirror{.lines_per_second = 40_Hz, .sweep = 45_deg};
+    const PolygonMirror mirror{.line_rate = 40_Hz, .sweep = 45_deg};
     // The instrument looks down; its up axis points to the right of the flight.
     const Platform drone{
         flight,

@@ -17,8 +17,8 @@ int main() {
 
   // the instrument: a mirror sweeps a laser beam up and down, a head turns both once around, on a tripod
   const Scanner laser{.pulse_rate = 100_kHz, .pulses = 1'000'000};
-  const Deflector sweeping{PolygonMirror{.lines_per_second = 100_Hz}, laser};
-  const Deflector turning{RotatingHead{.rate = 36_deg}, sweeping};
+  const Deflector sweeping{PolygonMirror{.line_rate = 100_Hz}, laser};
+  const Deflector turning{RotatingHead{.angular_rate = 36_deg}, sweeping};
   const Platform platform{Tripod{.position = {0, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}}, turning};
 
   // the survey: from the number of a pulse to its echoes

@@ -76,12 +76,12 @@ VoxelData crown() {
 void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::path& file, unsigned threads) {
   const Scene<Mesh> alone({{.geometry = tree, .materials = material_table(wood::materials())}});
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 250'000};
-  const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 32_deg};
+  const OscillatingMirror mirror{.cycle_rate = 50_Hz, .half_angle = 32_deg};
   std::vector<Platform<Tripod, Deflector<RotatingHead, Deflector<OscillatingMirror, Scanner>>>> set_ups;
   for (int side = 0; side < 4; ++side) {
     const double heading = side * 90_deg;  // towards the tree; the head turns from left of it to right of it
     const Vec3 foot = -15.0 * Vec3(std::sin(heading), std::cos(heading), 0);
-    const RotatingHead head{.rate = -40_deg / scanner.duration().seconds(), .start = 20_deg};
+    const RotatingHead head{.angular_rate = -40_deg / scanner.duration().seconds(), .start = 20_deg};
     set_ups.push_back({Tripod{.position = foot, .heading = heading}, Mount{.lever_arm = {0, 0, 8}},
                        Deflector{head, Deflector{mirror, scanner}}});
   }
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
       const Scanner scanner{
           .pulse_rate = pulse_rate, .pulses = pulses, .laser = {.peak_power = 1000_W, .divergence = 0.5_mrad}};
       return Platform{strip, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                      Deflector{OscillatingMirror{.cycles_per_second = 60_Hz, .half_angle = half_angle}, scanner}};
+                      Deflector{OscillatingMirror{.cycle_rate = 60_Hz, .half_angle = half_angle}, scanner}};
     };
     std::vector<decltype(airplane({}))> legs;
     for (const StraightLine& strip : strips) legs.push_back(airplane(strip));

@@ -50,7 +50,7 @@ enum MaterialIndex : std::uint32_t { meadow, field, water, asphalt, wall, roof }
   return all;
 }
 
-/// From 0 to 1 as x goes from low to high, without a kink.
+/// Smooth step from 0 to 1 between low and high.
 [[nodiscard]] inline double smooth_step(double low, double high, double x) noexcept {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -61,13 +61,13 @@ class Terrain {
  public:
   explicit Terrain(std::uint64_t seed) noexcept : seed_(seed) {}
 
-  /// Where the middle of the river, or of the road, runs from south to north [m].
+  /// Middle of the river, or of the road, from south to north [m].
   [[nodiscard]] static double river(double y) noexcept {
     return 75 * std::sin(y / 140) + 30 * std::sin(y / 57 + 1) - 60;
   }
   [[nodiscard]] static double road(double y) noexcept { return 70 * std::sin(y / 150 - 0.1) + 14; }
 
-  /// How far a place is from the middle of the river, or of the road, about [m].
+  /// Approximate distance of a place from the middle of the river, or of the road [m].
   [[nodiscard]] static double from_river(const Vec2& at) noexcept { return distance(at, river); }
   [[nodiscard]] static double from_road(const Vec2& at) noexcept { return distance(at, road); }
 

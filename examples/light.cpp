@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Light that goes on. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle show what is
-// not where it seems; a drone over a river, whose green light passes the waves down to the bed. Writes street.las,
-// street.png, river.las and river.png.
+// Multi-bounce light. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle produce ghost
+// points; a drone over a river, whose green light passes the waves down to the bed. Writes street.las, street.png,
+// river.las and river.png.
 
 #include <cmath>
 #include <cstdint>
@@ -113,9 +113,8 @@ void scan(const CommandLine& line, double visibility, double step) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
   const Scanner scanner{
       .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(100_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror polygon{
-      .lines_per_second = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
-  const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
+  const PolygonMirror polygon{.line_rate = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
+  const RotatingHead head{.angular_rate = 360_deg / scanner.duration().seconds()};
   const Vec3 foot = street::on({0.5, -82});
   const Platform tripod{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}},
                         Deflector{head, Deflector{polygon, scanner}}};
@@ -207,7 +206,7 @@ void scan(const CommandLine& line, double depth, double wind, double pulse_rate)
                         .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate),
                         .laser = laser};
   const Platform drone{flight, Mount{.boresight = extrinsic({{axis::right, -90_deg}})},
-                       Deflector{PalmerMirror{.turns_per_second = 40, .half_angle = 20_deg}, scanner}};
+                       Deflector{PalmerMirror{.rotation_rate = 40, .half_angle = 20_deg}, scanner}};
   const Scene map = scene(line.seed, depth, wind, laser.wavelength);
   const Survey survey{drone, SingleRay{}, map, LightPaths{}, Receiver{}, FullWaveform{{.threshold = 20e-9}}, line.seed};
   ::scan(survey, line, "river",

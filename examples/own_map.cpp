@@ -80,8 +80,9 @@ int main(int argc, char** argv) {
     const Cistern map;
     const Scanner scanner{.pulse_rate = 300_kHz, .pulses = 600'000};
     const auto stop_at = [&](double y) {
-      const Deflector sweeping{PolygonMirror{.lines_per_second = 500_Hz, .sweep = 90_deg}, scanner};
-      return Platform{Tripod{.position = {2, y, 0.4}}, Mount{}, Deflector{RotatingHead{.rate = 180_deg}, sweeping}};
+      const Deflector sweeping{PolygonMirror{.line_rate = 500_Hz, .sweep = 90_deg}, scanner};
+      return Platform{Tripod{.position = {2, y, 0.4}}, Mount{},
+                      Deflector{RotatingHead{.angular_rate = 180_deg}, sweeping}};
     };
     const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // set-ups along an aisle
     const Survey survey{stops, SingleRay{}, map, Receiver{}, FirstHit{}};

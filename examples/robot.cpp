@@ -26,16 +26,15 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 
 /// One turn of the sensor: beams that fire together on a rotating head.
-auto spinning_sensor(std::size_t beams, double turns_per_second, PulseIndex columns) {
-  const Scanner scanner{.pulse_rate = turns_per_second * static_cast<double>(columns),
-                        .pulses = columns,
-                        .laser = {.wavelength = 905_nm}};
+auto spinning_sensor(std::size_t beams, double rotation_rate, PulseIndex columns) {
+  const Scanner scanner{
+      .pulse_rate = rotation_rate * static_cast<double>(columns), .pulses = columns, .laser = {.wavelength = 905_nm}};
   std::vector<Deflector<FixedBeam, Scanner>> emitters;
   for (std::size_t k = 0; k < beams; ++k) {
     const double elevation = std::lerp(-25_deg, 15_deg, static_cast<double>(k) / static_cast<double>(beams - 1));
     emitters.push_back({FixedBeam{aimed_at(0, elevation)}, scanner});
   }
-  return Deflector{RotatingHead{.rate = -360_deg * turns_per_second}, Channels{emitters}};
+  return Deflector{RotatingHead{.angular_rate = -360_deg * rotation_rate}, Channels{emitters}};
 }
 
 /// Motion of the robot during one scan, at constant speed: the scan has the distortion of a real one.

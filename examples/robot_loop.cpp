@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 // Loop of a robot in traffic: physics at 60 Hz, and a VLP-16 that spins on from step to step, ten turns a second. The
-// poses of the cars are known now and not before. Each turn is a scan in the sensor's frame, by which the robot brakes.
+// poses of the cars are known at each step only. Each turn is a scan in the sensor's frame, by which the robot brakes.
 // Writes the last scan to scan.ply. docs/robotics.md explains the loop.
 
 #include <algorithm>
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     street::Scene moving = traffic::scene_of(cars), unused = moving;
     const Layered world{town, moving};
 
-    // the robot: it keeps to its lane; its sensor is told where it is by a trajectory that reads it
+    // the robot: it keeps to its lane; the trajectory of its sensor reads its position
     traffic::Vehicle robot{.from = {1.9, -street::half_size.x}, .along = {0, 1}};
     const SpinningSensor sensor = velodyne_vlp_16();
     const Platform platform{traffic::LivePath{&robot}, Mount{.lever_arm = {0, 0, 1.9}}, sensor.source(1e6)};

@@ -92,34 +92,34 @@ class Picture {
 constexpr Scanner slow{.pulse_rate = 4_kHz, .pulses = 4000};
 
 void draw_lines(const CommandLine& line) {
-  const OscillatingMirror triangle{.cycles_per_second = 7, .half_angle = 20_deg, .turning_time = 20_ms};
-  const OscillatingMirror sine{.cycles_per_second = 7, .half_angle = 20_deg, .swing = Swing::sine};
+  const OscillatingMirror triangle{.cycle_rate = 7, .half_angle = 20_deg, .turning_time = 20_ms};
+  const OscillatingMirror sine{.cycle_rate = 7, .half_angle = 20_deg, .swing = Swing::sine};
   Picture(line, "oscillating_mirror").flight(-45, Deflector{triangle, slow}).flight(45, Deflector{sine, slow}).close();
 
-  const PolygonMirror plain{.lines_per_second = 30, .sweep = 45_deg, .angle_min = -20_deg, .angle_max = 20_deg};
+  const PolygonMirror plain{.line_rate = 30, .sweep = 45_deg, .angle_min = -20_deg, .angle_max = 20_deg};
   PolygonMirror tilted = plain;
   tilted.facet_tilts = {-0.7_deg, 0, 0.7_deg};
   const Scanner fast{.pulse_rate = 9_kHz, .pulses = 9000};  // the gate passes four in nine
   Picture(line, "polygon_mirror").flight(-45, Deflector{plain, fast}).flight(45, Deflector{tilted, fast}).close();
 
-  const FiberArray fibers{.fibers = 64, .fibers_per_second = slow.pulse_rate, .half_angle = 20_deg};
+  const FiberArray fibers{.fibers = 64, .fiber_rate = slow.pulse_rate, .half_angle = 20_deg};
   Picture(line, "fiber_array").flight(0, Deflector{fibers, slow}).close();
 }
 
 void draw_curves(const CommandLine& line) {
-  const PalmerMirror round{.turns_per_second = 12, .half_angle = 18_deg};
-  const PalmerMirror flat{.turns_per_second = 12, .half_angle = 18_deg, .half_angle_across = 9_deg};
+  const PalmerMirror round{.rotation_rate = 12, .half_angle = 18_deg};
+  const PalmerMirror flat{.rotation_rate = 12, .half_angle = 18_deg, .half_angle_across = 9_deg};
   Picture(line, "palmer_mirror").flight(-45, Deflector{round, slow}).flight(45, Deflector{flat, slow}).close();
 
-  RisleyPrisms prisms{.prisms = {{.wedge = 18.7_deg, .turns_per_second = -121.6},
-                                 {.wedge = 18.0_deg, .turns_per_second = 77.7, .inclined_exit = true}}};
+  RisleyPrisms prisms{.prisms = {{.wedge = 18.7_deg, .rotation_rate = -121.6},
+                                 {.wedge = 18.0_deg, .rotation_rate = 77.7, .inclined_exit = true}}};
   const Scanner fast{.pulse_rate = 100_kHz, .pulses = 12'000};
   Picture rosettes(line, "risley_prisms");
   rosettes.balloon(-45, Deflector{prisms, fast});
-  prisms.prisms.push_back({.wedge = 8_deg, .turns_per_second = 10, .inclined_exit = true});
+  prisms.prisms.push_back({.wedge = 8_deg, .rotation_rate = 10, .inclined_exit = true});
   rosettes.balloon(55, Deflector{prisms, fast}).close();
 
-  PatternTable sunflower{.entries_per_second = slow.pulse_rate};
+  PatternTable sunflower{.entry_rate = slow.pulse_rate};
   for (int k = 0; k < 2000; ++k) {  // Source: Vogel 1979
     const double angle = k * pi * (3 - std::sqrt(5.0)), off = 20_deg * std::sqrt(k / 2000.0);
     sunflower.entries.push_back({.azimuth = off * std::sin(angle), .elevation = off * std::cos(angle)});
@@ -128,17 +128,17 @@ void draw_curves(const CommandLine& line) {
 }
 
 void draw_heads(const CommandLine& line) {
-  const Deflector circling{RotatingHead{.rate = 37 * 360_deg, .axis = {0, std::cos(10_deg), std::sin(10_deg)}},
+  const Deflector circling{RotatingHead{.angular_rate = 37 * 360_deg, .axis = {0, std::cos(10_deg), std::sin(10_deg)}},
                            Deflector{FixedBeam{aimed_at(0, 19_deg)}, Scanner{.pulse_rate = 12_kHz, .pulses = 12'000}}};
-  const Deflector circling_in_a_circle{RotatingHead{.rate = -3 * 360_deg, .axis = axis::forward}, circling};
+  const Deflector circling_in_a_circle{RotatingHead{.angular_rate = -3 * 360_deg, .axis = axis::forward}, circling};
   Picture(line, "rotating_head").balloon(-45, circling).balloon(45, circling_in_a_circle).close();
 
   std::vector<Deflector<FixedBeam, Scanner>> beams;  // sixteen beams in turn
   for (int k = 0; k < 16; ++k)
     beams.emplace_back(FixedBeam{aimed_at(0, radians(-25 + k))},
                        Scanner{.pulse_rate = 5_kHz, .pulses = 500, .delay = k * 10_us});
-  const Deflector spinning{RotatingHead{.rate = -10 * 360_deg}, Channels{beams}};
-  const Deflector tilted{RotatingHead{.rate = 0, .start = -4_deg, .axis = axis::right}, spinning};
+  const Deflector spinning{RotatingHead{.angular_rate = -10 * 360_deg}, Channels{beams}};
+  const Deflector tilted{RotatingHead{.angular_rate = 0, .start = -4_deg, .axis = axis::right}, spinning};
   Picture(line, "channels").tripod(-14, spinning).tripod(20, tilted).close();
 }
 

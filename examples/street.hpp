@@ -153,7 +153,7 @@ inline void add_tube(MeshData& mesh, const Vec3& from, const Vec3& to, double ra
   return mesh;
 }
 
-/// What makes one house unlike another.
+/// Properties in which houses differ.
 struct House {
   int bays = 4;  ///< windows in a row
   int storeys = 3;

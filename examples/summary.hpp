@@ -4,8 +4,8 @@
 
 #include <pulsecast/run.hpp>
 
-/// Tells on the terminal how far a run is, its rate and the time left: in one line that is renewed in place. Elsewhere,
-/// as in the log of a server, a new line every five seconds.
+/// Prints the progress of a run, its rate and the time left on the terminal: in one line that is renewed in place.
+/// Elsewhere, as in the log of a server, a new line every five seconds.
 class ProgressLine {
  public:
   ProgressLine();

@@ -78,7 +78,7 @@ struct Axis {
   }
 };
 
-/// How an axis grows.
+/// Growth of an axis.
 struct Growth {
   double length;      ///< [m]
   double radius;      ///< at the foot [m]
@@ -141,7 +141,7 @@ inline Vec3 branching(const Vec3& along, double angle, double azimuth) noexcept 
 
 inline constexpr double golden_angle = 2.399963;  ///< between branches, as in many plants [rad]. Source: Vogel 1979
 
-/// What makes one kind of broadleaved tree unlike another.
+/// Properties in which kinds of broadleaved trees differ.
 struct Broadleaf {
   double height = 17;         ///< [m]
   double girth = 0.26;        ///< radius of the stem above its roots [m]
@@ -213,7 +213,7 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
   return mesh;
 }
 
-/// What makes one kind of conifer unlike another.
+/// Properties in which kinds of conifers differ.
 struct Conifer {
   double height = 21;        ///< [m]
   double girth = 0.24;       ///< radius of the stem above its roots [m]

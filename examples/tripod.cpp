@@ -33,9 +33,8 @@ auto set_up(const Vec3& foot, double step) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.35_mrad};
   const Scanner scanner{
       .pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror mirror{
-      .lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
-  const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
+  const PolygonMirror mirror{.line_rate = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
+  const RotatingHead head{.angular_rate = 360_deg / scanner.duration().seconds()};
   return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}},
                   Deflector{head, Deflector{mirror, scanner}}};
 }

@@ -24,10 +24,10 @@ using pulsecast::Vec2;
 inline constexpr double side = 64;          ///< of the plot, whose centre is the origin [m]
 inline constexpr Vec2 hut_place{5.5, 6.5};  ///< middle of the hut [m]
 
-/// Where nothing grows: before the hut, on the path that leads there, and in a glade beside it [m].
+/// Places without plants: before the hut, on the path that leads there, and in a glade beside it [m].
 inline constexpr std::array<Vec2, 3> bare_places{{{-1.6, -1.5}, {-10.2, -11}, {12, -4.5}}};
 
-/// How far a place is from the path that winds from the south-west to the hut [m].
+/// Distance of a place from the path that winds from the south-west to the hut [m].
 [[nodiscard]] inline double from_path(const Vec2& at) noexcept {
   const Vec2 nearest{0.75 * at.y + 2 * std::sin(at.y / 6), at.y};
   return at.y < hut_place.y ? length(at - nearest) : length(at - hut_place);
@@ -216,7 +216,7 @@ class Planting {
   std::vector<Scene::Part> parts_;
 };
 
-/// Where a tripod may stand.
+/// Places for a tripod.
 [[nodiscard]] inline std::vector<Vec3> glades(std::uint64_t seed) {
   const Terrain terrain(seed);
   std::vector<Vec3> all;

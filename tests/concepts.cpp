@@ -20,8 +20,7 @@ using namespace pulsecast::support;
 // Every concept accepts its least model, and refuses what misses it by one thing.
 namespace {
 
-// ----------------------------------------------------------------------------------------------------------------
-// motions
+// ----------------------------------------------------------------------------------------- motions
 
 static_assert(Optic<LeastOptic> && Head<LeastHead> && Trajectory<LeastTrajectory>);
 static_assert(Motion<LeastOptic, frame::Beam, frame::Instrument>);
@@ -84,8 +83,7 @@ struct HowOpen : LeastOptic {
 };
 static_assert(!Gated<HowOpen>, "open() returns how far, not whether");
 
-// -----------------------------------------------------------------------------------------------------------------
-// ground
+// ------------------------------------------------------------------------------------------ ground
 
 struct Level {
   double operator()(Vec2) const { return 0; }
@@ -102,8 +100,7 @@ struct LevelOfPoint {
 };
 static_assert(!Ground<LevelOfPoint>, "it wants to know the height");
 
-// ------------------------------------------------------------------------------------------------------------ echo
-// widths
+// ------------------------------------------------------------------------------------- echo widths
 
 struct AlwaysWide {
   double width(std::span<const double>, double) const noexcept { return 1; }
@@ -115,8 +112,7 @@ struct WidthMayThrow {
 };
 static_assert(!EchoWidth<WidthMayThrow>, "width() is not noexcept");
 
-// ---------------------------------------------------------------------------------------------------------- pulse
-// sources
+// ----------------------------------------------------------------------------------- pulse sources
 
 static_assert(BeamSource<LeastSource<frame::Beam>> && InstrumentSource<LeastSource<frame::Instrument>>);
 static_assert(WorldSource<LeastSource<frame::World>>);
@@ -179,8 +175,7 @@ struct LasersAlone : LeastSource<frame::Beam> {
 };
 static_assert(!BeamSource<LasersAlone>, "a list of lasers is no table of emitters");
 
-// -------------------------------------------------------------------------------------------------------------- the
-// scene
+// --------------------------------------------------------------------------------------- the scene
 
 static_assert(Accelerator<LeastAccelerator>);
 
@@ -291,8 +286,7 @@ struct AlwaysHits {
 };
 static_assert(!Target<AlwaysHits>, "closest_hit() cannot say that nothing was met");
 
-// ----------------------------------------------------------------------------------------------------------- the
-// detector
+// ------------------------------------------------------------------------------------ the detector
 
 static_assert(Footprint<LeastFootprint>);
 
@@ -314,7 +308,7 @@ static_assert(!Footprint<FootprintMayThrow>, "share() is not noexcept");
 static_assert(Transport<LeastTransport, LeastRayTarget> && Transport<LeastTransport, LeastBundleTarget>);
 static_assert(!TracesVelocity<LeastTransport, LeastRayTarget>, "it has no trace<true>");
 static_assert(Transport<DirectLight, LeastRayTarget> && TracesVelocity<DirectLight, LeastRayTarget>);
-static_assert(!VelocityTarget<LeastRayTarget>, "it has no surfaces");
+static_assert(!SceneQueries<LeastRayTarget>, "it has no surfaces");
 
 struct UnsizedTransport : LeastTransport {
   void reflections(std::size_t) const = delete;

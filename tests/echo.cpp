@@ -10,13 +10,6 @@
 
 using namespace pulsecast;
 
-TEST_CASE("a hit as made has met nothing") {
-  Hit hit;
-  CHECK_FALSE(hit.met());
-  hit.range = 1e300;
-  CHECK(hit.met());
-}
-
 TEST_CASE("an echo stands on the axis of its shot") {
   Shot shot;
   shot.origin = {500000, 5400000, 300};

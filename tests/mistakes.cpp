@@ -51,7 +51,7 @@ TEST_CASE("a period in place of a pulse rate is refused when a stage is made") {
   CHECK(refusal([] {
           Deflector{PolygonMirror{}, Scanner{.pulse_rate = 0}};
         }) == "Scanner::pulse_rate is 0 Hz, but must be from 0.001 to 1e+12");
-  CHECK(refusal([] { Deflector{PolygonMirror{.lines_per_second = 1 / 60.0}, Scanner{}}; }) == "");
+  CHECK(refusal([] { Deflector{PolygonMirror{.line_rate = 1 / 60.0}, Scanner{}}; }) == "");
 }
 
 TEST_CASE("degrees in place of radians are refused when a stage is made") {

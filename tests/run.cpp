@@ -65,7 +65,7 @@ auto two_legs() {
   const auto leg = [](double x, double heading) {
     return Platform{
         Tripod{.position = {x, 0, 10}, .heading = heading}, Mount{},
-        Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 170_deg, .angle_min = -160_deg, .angle_max = 80_deg},
+        Deflector{PolygonMirror{.line_rate = 10, .sweep = 170_deg, .angle_min = -160_deg, .angle_max = 80_deg},
                   Scanner{.pulse_rate = 10_kHz, .pulses = pulses_per_leg, .laser = {.divergence = 3_mrad}}}};
   };
   return Legs(std::vector{leg(-20, 90_deg), leg(20, -80_deg)});
@@ -126,10 +126,10 @@ TEST_CASE(
     "a run with every error switched on gives the same to the last bit on 1, 2 and 7 threads, and with an other seed "
     "not") {
   const auto survey = [](std::uint64_t seed) {
-    const Platform flight{StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60},
-                          Mount{.boresight = rotation_about(axis::right, -90_deg)},
-                          Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 40_deg},
-                                    Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}}};
+    const Platform flight{
+        StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60},
+        Mount{.boresight = rotation_about(axis::right, -90_deg)},
+        Deflector{PolygonMirror{.line_rate = 20, .sweep = 40_deg}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}}};
     const PoseErrors errors{.position_noise = 2_cm,
                             .attitude_noise = 0.1_mrad,
                             .position_drift = 5_cm,

@@ -30,8 +30,7 @@ bool names(const std::string& law, const char* what) { return law.find(what) != 
 
 const std::array<Tick, 4> ticks{Tick{0, 0}, Tick{0, 0.5}, Tick{3, 0.25}, Tick{1000000, 0.75}};
 
-// ------------------------------------------------------------------------------------------------------------ bad
-// surveys
+// ------------------------------------------------------------------------------------- bad surveys
 
 /// What a survey remembers in its workspace.
 enum class Memo { nothing, slot, neighbours };
@@ -63,8 +62,7 @@ struct Placed {
   }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad
-// motions
+// ------------------------------------------------------------------------------------- bad motions
 
 using BeamPose = Pose<frame::Beam, frame::Instrument>;
 
@@ -142,8 +140,7 @@ struct FlickeringGate : LeastOptic {
   bool open(Tick) const noexcept { return state = !state; }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad
-// sources
+// ------------------------------------------------------------------------------------- bad sources
 
 using BeamPulse = std::optional<Pulse<frame::Beam>>;
 
@@ -179,8 +176,7 @@ struct Longer : LeastSource<frame::Beam> {
   PulseIndex size() const noexcept { return 11; }
 };
 
-// --------------------------------------------------------------------------------------------------------- bad
-// footprints
+// ---------------------------------------------------------------------------------- bad footprints
 
 struct Two {
   double first = 0.5, second = 0.5;
@@ -190,8 +186,7 @@ struct Two {
   double share(std::size_t j) const noexcept { return j == 0 ? first : second; }
 };
 
-// ---------------------------------------------------------------------------------------------------------- bad
-// detectors
+// ----------------------------------------------------------------------------------- bad detectors
 
 /// One echo per reflection, after which something goes wrong.
 template <class Flaw>
@@ -228,8 +223,7 @@ std::string flaw_found(Flaw flaw) {
   return detector_laws(Flawed{flaw}, Laser{}, cases);
 }
 
-// --------------------------------------------------------------------------------------------------------- bad
-// transports
+// ---------------------------------------------------------------------------------- bad transports
 
 /// Direct light, in whose results something goes wrong.
 template <class Flaw>
@@ -261,8 +255,7 @@ std::string transport_flaw_found(Flaw flaw) {
   return transport_laws(FlawedTransport{flaw}, LeastRayTarget{}, downwards, {.range_min = 1, .range_max = 100});
 }
 
-// ---------------------------------------------------------------------------------------------------------------- bad
-// maps
+// ---------------------------------------------------------------------------------------- bad maps
 
 /// A plane that every cone is said to miss.
 struct UnseenPlane : LeastBundleTarget {
@@ -273,8 +266,7 @@ struct SeenPlane : LeastBundleTarget {
   bool misses_cone(const RayCone& cone) const noexcept { return cone.origin.z > 0 && cone.direction.z > cone.spread; }
 };
 
-// ------------------------------------------------------------------------------------------------------------ bad
-// callers
+// ------------------------------------------------------------------------------------- bad callers
 
 /// Two shots with three echoes, kept alive for as long as a batch is needed.
 struct Sample {

@@ -54,9 +54,10 @@ auto still(const Vec3& position, const Rotation& turn, PulseIndex pulses = 1, co
 
 /// A tripod that scans all around it.
 auto all_around(const Vec3& position, PulseIndex pulses) {
-  return Platform{Tripod{.position = position, .heading = 0.3}, Mount{.lever_arm = {0.1, 0.2, 1.7}},
-                  Deflector{RotatingHead{.rate = 1}, Deflector{PolygonMirror{.lines_per_second = 50, .sweep = 80_deg},
-                                                               Scanner{.pulse_rate = 5_kHz, .pulses = pulses}}}};
+  return Platform{
+      Tripod{.position = position, .heading = 0.3}, Mount{.lever_arm = {0.1, 0.2, 1.7}},
+      Deflector{RotatingHead{.angular_rate = 1}, Deflector{PolygonMirror{.line_rate = 50, .sweep = 80_deg},
+                                                           Scanner{.pulse_rate = 5_kHz, .pulses = pulses}}}};
 }
 
 /// A plane that answers for single rays.
@@ -708,7 +709,8 @@ TEST_CASE("two emitters of different beams and receivers in one survey give what
     std::vector<Scanner> lasers{
         {.pulse_rate = 10, .pulses = 200, .laser = first, .receiver = first_receiver},
         {.pulse_rate = 10, .pulses = 200, .delay = 0.05, .laser = second, .receiver = second_receiver}};
-    return Platform{Tripod{}, Mount{}, Deflector{RotatingHead{.rate = 0.01_deg}, Deflector{Fixed{}, Channels{lasers}}}};
+    return Platform{Tripod{}, Mount{},
+                    Deflector{RotatingHead{.angular_rate = 0.01_deg}, Deflector{Fixed{}, Channels{lasers}}}};
   };
   const TwoPlates plates;
   const Survey both{device(narrow, 0, wide, 1), units, plates, 7};

@@ -48,9 +48,9 @@ struct Interval {
 };
 using Intervals = std::array<Interval, 3>;
 
-/// Bootstrap by blocks: pulses that follow each other meet the same things, so that blocks of them are drawn with
-/// replacement, not pulses. All settings get the same draws, so that two of them are compared pulse by pulse. Intervals
-/// hold 95 % of the draws. Source: Efron & Tibshirani 1993, sec. 8.6 and 13.3; Kuensch 1989 for blocks.
+/// Bootstrap by blocks: successive pulses hit the same objects, so blocks of them are drawn with replacement, not
+/// pulses. All settings get the same draws, so that two of them are compared pulse by pulse. Intervals hold 95 % of the
+/// draws. Source: Efron & Tibshirani 1993, sec. 8.6 and 13.3; Kuensch 1989 for blocks.
 class Bootstrap {
  public:
   explicit Bootstrap(std::size_t blocks) : times_(draws, std::vector<double>(blocks)) {

@@ -25,7 +25,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 struct Results {
   std::vector<std::size_t> first{0};  ///< echo of each pulse, and of the one that would follow the last
   std::vector<Echo> echoes{};
-  std::vector<double> gaps{};  ///< the share of each pulse's energy that meets no plant
+  std::vector<double> gaps{};  ///< the share of each pulse's energy that hits no plant
 
   [[nodiscard]] std::size_t pulses() const noexcept { return first.size() - 1; }
   [[nodiscard]] std::span<const Echo> of(std::size_t pulse) const noexcept {
@@ -33,13 +33,12 @@ struct Results {
   }
 };
 
-/// Whether a class is of plants: what ASPRS LAS 1.4 R15, table 17, calls low, medium and high vegetation, and 64, here
-/// of wood.
+/// True for a class of plants: low, medium and high vegetation by ASPRS LAS 1.4 R15, table 17, and 64, here of wood.
 [[nodiscard]] inline bool is_plant(std::uint16_t classification) noexcept {
   return (classification >= 3 && classification <= 5) || classification == 64;
 }
 
-/// What a survey with this footprint finds, which it records.
+/// Results of a survey that records the subrays of this footprint.
 template <class AnySurvey>
 [[nodiscard]] Results results_of(const AnySurvey& survey, const Pattern& footprint) {
   Results all;
@@ -56,7 +55,7 @@ template <class AnySurvey>
   return all;
 }
 
-/// How far the echoes of a setting are from those of the reference. Not a number where there is nothing to compare.
+/// Deviations of the echoes of a setting from those of the reference. NaN where there is nothing to compare.
 struct Errors {
   double echoes = unknown;                               ///< their number, less that of the reference [%]
   double missed = unknown, invented = unknown;           ///< echoes, of those of the reference [%]
@@ -119,9 +118,9 @@ struct Mean {
   [[nodiscard]] double deviation() const noexcept { return std::sqrt(std::fmax(rms() * rms() - mean() * mean(), 0)); }
 };
 
-/// What a forester wants to know: how much of the sky or of the ground plants hide, and how high they are.
+/// Quantities of forestry: the share of the sky or of the ground that plants hide, and their height.
 struct Canopy {
-  double gap_fraction = unknown;  ///< energy that meets no plant, of all that is sent [%]
+  double gap_fraction = unknown;  ///< energy that hits no plant, of the energy sent [%]
   std::vector<double> heights{};  ///< of echoes of plants above the ground [m]
 };
 
@@ -155,7 +154,7 @@ inline void compare(const Canopy& reference, const Canopy& found, Errors& errors
   errors.height_99 = difference(0.99);
 }
 
-/// What a preview forecasts: the echoes of every so many pulses, times as many, less those that there are [%].
+/// Error of a preview: n times the number of echoes of every n-th pulse, less the true number [%].
 [[nodiscard]] inline double forecast_error(const Results& found, std::size_t stride) {
   std::size_t echoes = 0;
   for (std::size_t i = 0; i < found.pulses(); i += stride) echoes += found.of(i).size();

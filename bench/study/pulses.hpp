@@ -16,8 +16,7 @@ namespace tradeoff {
 
 using namespace pulsecast;
 
-/// Pulses that are known beforehand, so that all settings of a scenario get the same ones, and making them is in
-/// nobody's time.
+/// Pulses made beforehand: all settings of a scenario get the same ones, and no time includes making them.
 class Pulses {
  public:
   Pulses() = default;
@@ -38,10 +37,10 @@ class Pulses {
 
 static_assert(WorldSource<Pulses>);
 
-/// Slots in a row, as they follow each other in a survey: what one pulse leaves in the caches is of use to the next.
+/// Consecutive slots, as in a survey, so that pulses share the contents of the caches.
 inline constexpr std::size_t run_length = 32;
 
-/// As many pulses of a survey: runs from everywhere in it, of those slots that hold a pulse which `wanted` wants.
+/// As many pulses of a survey: runs from everywhere in it, of those slots with a pulse for which `wanted` is true.
 template <WorldSource Source, class Wanted>
 [[nodiscard]] Pulses sampled(const Source& source, std::size_t count, Wanted wanted) {
   std::vector<Pulse<frame::World>> all;

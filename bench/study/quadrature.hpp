@@ -13,8 +13,8 @@
 #include "errors.hpp"
 #include "pulses.hpp"
 
-/// How well footprints of so many subrays tell the energy that a Gaussian beam sends past an edge, or onto a wire. No
-/// scene, no pulses.
+/// Errors of footprints of n subrays in the energy that a Gaussian beam sends past an edge, or onto a wire. No scene,
+/// no pulses.
 namespace tradeoff {
 
 struct Quadrature {

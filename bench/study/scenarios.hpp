@@ -22,7 +22,7 @@
 #include "pulses.hpp"
 #include "shapes.hpp"
 
-/// What is scanned, from where, and what else could stand for it.
+/// Scenes and platforms of the scenarios, and alternative models of the scenes.
 namespace tradeoff {
 
 using namespace pulsecast::literals;
@@ -55,8 +55,8 @@ template <class S>
   return std::make_shared<const std::remove_cvref_t<S>>(std::forward<S>(scene));
 }
 
-/// The pulses whose beams meet more than one thing: of the rays out to 1.2 radii some differ in what they meet, or by a
-/// hand's breadth.
+/// Pulses whose beams hit more than one object: of the rays out to 1.2 radii some differ in their primitives, or in
+/// range by a hand's breadth.
 template <class AnyScene>
 [[nodiscard]] auto meets_an_edge(const AnyScene& scene, const Laser& laser) {
   return [&scene, &laser, footprint = SunflowerFootprint(37),
@@ -114,7 +114,7 @@ template <class AnyScene>
   const Laser laser{.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad};
   const Platform airplane{StraightLine{.from = {0, -150, 1500}, .to = {0, 150, 1500}, .speed = 60},
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 5.5_deg},
+                          Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 5.5_deg},
                                     Scanner{.pulse_rate = 100_kHz, .pulses = 500'000, .laser = laser}}};
   s.pulses = sampled(airplane, pulses);
   return s;
@@ -140,10 +140,10 @@ template <class AnyScene>
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 3600 * 1800, .laser = laser};
   const Platform tripod{
       Tripod{.position = wood::glades(1).front()}, Mount{.lever_arm = {0, 0, 1.7}},
-      Deflector{RotatingHead{.rate = 360_deg / scanner.duration().seconds()},
-                Deflector{PolygonMirror{
-                              .lines_per_second = 100_kHz * 0.1_deg / 180_deg, .sweep = 90_deg, .angle_min = -70_deg},
-                          scanner}}};
+      Deflector{
+          RotatingHead{.angular_rate = 360_deg / scanner.duration().seconds()},
+          Deflector{PolygonMirror{.line_rate = 100_kHz * 0.1_deg / 180_deg, .sweep = 90_deg, .angle_min = -70_deg},
+                    scanner}}};
   s.pulses = sampled(tripod, pulses);
   return s;
 }
@@ -209,7 +209,7 @@ template <class AnyScene, class Plant>
   const Laser laser{.wavelength = 1550_nm, .peak_power = 100_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
   const Platform drone{StraightLine{.from = {0, -24, 45}, .to = {0, 24, 45}, .speed = 6},
                        Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                       Deflector{OscillatingMirror{.cycles_per_second = 20_Hz, .half_angle = 25_deg},
+                       Deflector{OscillatingMirror{.cycle_rate = 20_Hz, .half_angle = 25_deg},
                                  Scanner{.pulse_rate = 100_kHz, .pulses = 800'000, .laser = laser}}};
   s.pulses = sampled(drone, pulses);
   return s;
@@ -223,7 +223,7 @@ template <class AnyScene, class Plant>
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const Platform car{StraightLine{.from = street::on({2, -70}), .to = street::on({2, 70}), .speed = 10},
                      Mount{.lever_arm = {0, 0, 2.1}, .boresight = rotation_about(axis::up, 45_deg)},
-                     Deflector{PolygonMirror{.lines_per_second = 60_Hz, .sweep = 180_deg},
+                     Deflector{PolygonMirror{.line_rate = 60_Hz, .sweep = 180_deg},
                                Scanner{.pulse_rate = 100_kHz, .pulses = 1'400'000, .laser = laser}}};
   s.pulses = sampled(car, pulses);
   return s;
@@ -276,8 +276,8 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 4'000'000, .laser = laser};
   const Platform tripod{
       Tripod{.position = {0, -35, 0}}, Mount{.lever_arm = {0, 0, 1.7}},
-      Deflector{RotatingHead{.rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
-                Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
+      Deflector{RotatingHead{.angular_rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
+                Deflector{PolygonMirror{.line_rate = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
   s.pulses = sampled(tripod, pulses, meets_an_edge(whole, laser));
   s.exact = shared(in_double(whole));
   s.map = shared(whole);
@@ -309,7 +309,7 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   const Laser laser{.wavelength = 1064_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.5_mrad};
   const Platform airplane{StraightLine{.from = {0, -48, 1000}, .to = {0, 48, 1000}, .speed = 60},
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 2.5_deg},
+                          Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 2.5_deg},
                                     Scanner{.pulse_rate = 500_kHz, .pulses = 800'000, .laser = laser}}};
   s.pulses = sampled(airplane, pulses, meets_an_edge(whole, laser));
   s.exact = shared(in_double(whole));

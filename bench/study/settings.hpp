@@ -108,7 +108,8 @@ struct Setting {
 /// Calls a function with the detector of a setting.
 template <class Function>
 auto with_detector(double bin, Width width, double threshold, Function function) {
-  // by true ranges, and with the divisor of the peer: the study tells what sampling costs, not what receivers do
+  // by true ranges, and with the divisor of the peer: the study measures the cost of sampling, not the effects of
+  // receivers
   WaveformSettings settings{.threshold = threshold, .timing = EchoTiming::true_range, .shape_divisor = 3.5};
   if (bin > 0) settings.sample_interval = bin;
   const auto with_width = [&](auto measure) {
@@ -125,7 +126,7 @@ auto with_detector(double bin, Width width, double threshold, Function function)
   }
 }
 
-/// What a setting finds. Widths are measured whether it asks for them or not, as they do not change the echoes.
+/// Results of a setting. Widths are always measured, as they do not change the echoes.
 [[nodiscard]] inline Results results_of(const Scenario& scenario, const Setting& setting) {
   const Width width = setting.width == Width::fit ? Width::fit : Width::moments;
   return std::visit(

@@ -27,7 +27,7 @@ using ExactMesh = TriangleMesh<Bvh<double>>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Foliage = VoxelGrid<TransmissiveVoxels>;
 
-/// What a mesh was made from, but for corners that triangles share.
+/// Source data of a mesh, but for corners that triangles share.
 template <class AnyMesh>
 [[nodiscard]] MeshData data_of(const AnyMesh& mesh) {
   MeshData data;
@@ -59,8 +59,8 @@ template <class Other, class Function>
   return remade<ExactMesh>(scene, [](MeshData data) { return data; });
 }
 
-/// One in so many of the leaves, which are pairs of triangles, as much larger: their area is the same.
-/// Source: Cook et al. 2007, "Stochastic simplification of aggregate detail".
+/// One in n of the leaves, which are pairs of triangles, enlarged n times: their area is the same. Source: Cook et al.
+/// 2007, "Stochastic simplification of aggregate detail".
 template <class IsLeaf>
 [[nodiscard]] MeshData with_fewer_leaves(const MeshData& data, std::size_t one_in, IsLeaf is_leaf) {
   MeshData fewer;

@@ -28,13 +28,12 @@ using helios::SurveySettings;
 namespace {
 
 /// Classes of slots with equal cost.
-enum Kind : std::uint8_t { blocked, missed, met };
+enum Kind : std::uint8_t { blocked, missed, hit };
 constexpr std::size_t kinds = 3;
 
-Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
+Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : hit; }
 
-// ------------------------------------------------------------------------------------------------------------------
-// slots
+// ------------------------------------------------------------------------------------------- slots
 
 /// Results of single slots, spread over the whole survey.
 struct Census {
@@ -66,8 +65,8 @@ Estimate total_of(const std::vector<double>& sample, std::uint64_t size) {
 /// whole survey. A small survey is counted in full.
 Census take_census(const Simulation& simulation, PulseLines counted, std::uint64_t seed, unsigned threads,
                    double workers) {
-  constexpr std::uint64_t rounds = 64, most = rounds << 12;
-  const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, most),
+  constexpr std::uint64_t rounds = 64, max_size = rounds << 12;
+  const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, max_size),
                       each_round = (strata + rounds - 1) / rounds;
   std::vector<std::optional<SlotCount>> counts(strata);
   std::vector<PulseIndex> places(strata);
@@ -119,8 +118,7 @@ PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number
                        static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
 }
 
-// -------------------------------------------------------------------------------------------------------------------
-// time
+// -------------------------------------------------------------------------------------------- time
 
 /// Blocks of consecutive slots, each with a first slot of one kind.
 std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end,
@@ -186,8 +184,7 @@ double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& 
   return sum;
 }
 
-// -----------------------------------------------------------------------------------------------------------------
-// errors
+// ------------------------------------------------------------------------------------------ errors
 
 /// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the
 /// normal approximation of the binomial distribution.
@@ -223,8 +220,7 @@ struct Differences {
   }
 };
 
-// ---------------------------------------------------------------------------------------------------------------
-// together
+// ---------------------------------------------------------------------------------------- together
 
 /// Round numbers (1, 2, 5, 10 and so on) in an interval.
 std::vector<double> round_numbers(double from, double to) {
@@ -273,7 +269,7 @@ class Forecaster {
     measure_as_is();
     out.sampled = sampled_;
     prepare_others();
-    for (const ReceiverOverrides& how : candidates()) out.all.push_back(forecast(how));
+    for (const ReceiverOverrides& overrides : candidates()) out.all.push_back(forecast(overrides));
     return out;
   }
 
@@ -292,11 +288,11 @@ class Forecaster {
     std::vector<Kind> begin_at;
     const Allowance allowance(1.0, workers_);
     for (std::uint64_t round = 0; round < max_rounds && (round == 0 || allowance.left()); ++round)
-      for (const Kind kind : {met, missed, blocked}) {
-        const std::uint64_t each = kind == met ? 16 : 4;
-        std::vector<SampleBlock> some = blocks(kind, round * each, (round + 1) * each, 128, 896);
-        for (SampleBlock& block : some) block.empty_shots = lines_ != PulseLines::none;
-        for (Sample& sample : simulation_.sample(some, threads_)) {
+      for (const Kind kind : {hit, missed, blocked}) {
+        const std::uint64_t each = kind == hit ? 16 : 4;
+        std::vector<SampleBlock> subset = blocks(kind, round * each, (round + 1) * each, 128, 896);
+        for (SampleBlock& block : subset) block.empty_shots = lines_ != PulseLines::none;
+        for (Sample& sample : simulation_.sample(subset, threads_)) {
           samples.push_back(std::move(sample));
           begin_at.push_back(kind);
         }
@@ -312,14 +308,14 @@ class Forecaster {
       sampled_ += sample.counts.slots;
     }
     computing_ = std::max(0.0, dot(census_.slots, cost));
-    met_cost_ = std::max({cost[met], cost[missed], 1e-8});
+    hit_cost_ = std::max({cost[hit], cost[missed], 1e-8});
     unsure_ = sum > 0 ? 2 * std::sqrt(rest) / sum : 0;
     measure_writing();
   }
 
   /// Measures the cost of writing stretches that are spread over all results.
   void measure_writing() {
-    std::vector<PulseIndex> results = census_.found[met], starts;
+    std::vector<PulseIndex> results = census_.found[hit], starts;
     if (lines_ != PulseLines::none || results.empty())
       results.insert(results.end(), census_.found[missed].begin(), census_.found[missed].end());
     if (results.empty()) results = census_.found[blocked];
@@ -327,7 +323,7 @@ class Forecaster {
     for (std::uint64_t k = 0; k < 24; ++k)
       starts.push_back(spread_over(results, k, uniform({.seed = seed_, .subray = 4})));
     writing_ = writing_costs(simulation_, options_, channels_, lines_, starts);
-    if (trial_.complete) writing_.bytes.meet(trial_.bytes, trial_.points, trial_.lines);
+    if (trial_.complete) writing_.bytes.scale_to(trial_.bytes, trial_.points, trial_.lines);
   }
 
   /// Prepares the reference for other settings, with few enough pulses to try all settings in about a second.
@@ -335,20 +331,20 @@ class Forecaster {
     double trials = 0;  // in units of the survey's own settings
     const auto own = static_cast<double>(subrays_of(rings_));
     const auto effort = [&](int rings) { return 0.3 + 0.7 * static_cast<double>(subrays_of(rings)) / own; };
-    for (const ReceiverOverrides& how : candidates()) trials += effort(how.rings.value_or(rings_));
-    const auto affordable = [&](double seconds, double each, double least, double most) {
-      return static_cast<std::uint64_t>(std::clamp(seconds * workers_ / (each * met_cost_), least, most));
+    for (const ReceiverOverrides& overrides : candidates()) trials += effort(overrides.rings.value_or(rings_));
+    const auto affordable = [&](double seconds, double each, double low, double high) {
+      return static_cast<std::uint64_t>(std::clamp(seconds * workers_ / (each * hit_cost_), low, high));
     };
     const std::uint64_t n = affordable(0.8, 1.4 * 80 * trials, 8, 96);
-    for (const Kind kind : {met, missed, blocked})
-      for (const SampleBlock& block : blocks(kind, 0, kind == met ? n : n / 4, 16, 64)) {
+    for (const Kind kind : {hit, missed, blocked})
+      for (const SampleBlock& block : blocks(kind, 0, kind == hit ? n : n / 4, 16, 64)) {
         blocks_.push_back(block);
         kind_of_block_.push_back(kind);
       }
     weights_ = weights_of(census_, kind_of_block_);
     own_ = simulation_.sample(blocks_, threads_);
     own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_, weights_));
-    compared_ = blocks(met, 0, affordable(0.5, effort(*finest_.rings) + trials, 128, 2048), 0, 1);
+    compared_ = blocks(hit, 0, affordable(0.5, effort(*finest_.rings) + trials, 128, 2048), 0, 1);
     simulation_.receive(finest_);
     finer_ = simulation_.sample(compared_, threads_);
     simulation_.receive({});
@@ -366,19 +362,20 @@ class Forecaster {
     return all;
   }
 
-  Forecast forecast(const ReceiverOverrides& how) {
-    Forecast f{.how = how, .subrays = subrays_of(how.rings.value_or(rings_)), .points = census_.points};
-    const bool other = how != ReceiverOverrides{};
+  Forecast forecast(const ReceiverOverrides& overrides) {
+    Forecast f{
+        .overrides = overrides, .subrays = subrays_of(overrides.rings.value_or(rings_)), .points = census_.points};
+    const bool other = overrides != ReceiverOverrides{};
     double computing = computing_;
     if (other) {
-      simulation_.receive(how);
+      simulation_.receive(overrides);
       const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
       if (own_cost_ > 0)
         computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
       add_points(samples, f.points);
     }
     entire(f, computing);
-    simulation_.receive({how.rings, how.bin_size, true});
+    simulation_.receive({overrides.rings, overrides.bin_size, true});
     compare(simulation_.sample(compared_, threads_), f);
     simulation_.receive({});
     return f;
@@ -387,7 +384,7 @@ class Forecaster {
   /// Adds the difference in points from the survey's own settings, measured on the same pulses.
   void add_points(const std::vector<Sample>& samples, Estimate& points) const {
     double more = 0, variance = 0;
-    for (const Kind kind : {met, missed}) {
+    for (const Kind kind : {hit, missed}) {
       double sum = 0, number = 0, squares = 0;
       std::vector<std::pair<double, double>> all;
       for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -422,7 +419,7 @@ class Forecaster {
       return repetitions *
              (loading_ + unsure * (writing_.seconds.fixed + std::max(writing, (computing + writing) / workers_)));
     };
-    const double unsure = std::hypot(0.1, unsure_);  // sampling misses some effects: 10 % uncertainty
+    const double unsure = std::hypot(0.1, unsure_);  // sampling misses subset effects: 10 % uncertainty
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
     const WritingCost& bytes = writing_.bytes;
     const double growing = bytes.growing(f.points.value, census_.lines.value), value = bytes.fixed + growing;
@@ -459,7 +456,7 @@ class Forecaster {
   unsigned threads_;
   double workers_;  ///< threads that run at the same time
   double loading_;
-  std::vector<std::string> channels_;  ///< as of `file_channels`
+  std::vector<std::string> channels_;  ///< see `file_channels`
   PulseLines lines_;
   TrialRun trial_;
   Census census_;
@@ -467,7 +464,7 @@ class Forecaster {
   int rings_ = 1;
   ReceiverOverrides finest_{};
   // with the survey's own settings
-  double computing_ = 0, met_cost_ = 0, unsure_ = 0;
+  double computing_ = 0, hit_cost_ = 0, unsure_ = 0;
   std::uint64_t sampled_ = 0;
   WritingCosts writing_{};
   // reference for other settings

@@ -14,7 +14,7 @@
 
 /// Forecast of a survey with certain settings.
 struct Forecast {
-  pulsecast::helios::ReceiverOverrides how{};
+  pulsecast::helios::ReceiverOverrides overrides{};
   std::size_t subrays = 0;        ///< per pulse
   Estimate seconds{};             ///< total run time [s]
   Estimate memory{};              ///< peak [byte]
@@ -29,7 +29,7 @@ struct Forecast {
 struct Forecasts {
   double loading = 0;           ///< time of loading the scene, now [s]
   std::uint64_t slots = 0;      ///< number of slots in the survey
-  std::uint64_t sampled = 0;    ///< simulated slots behind `all.front()`
+  std::uint64_t sampled = 0;    ///< simulated slots of `all.front()`
   std::size_t finest = 0;       ///< subrays of the reference simulation
   std::vector<Forecast> all{};  ///< the first has the survey's own settings
 };

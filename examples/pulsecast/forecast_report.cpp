@@ -52,7 +52,7 @@ Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}}); }
 constexpr Unit one{1, ""}, percent{1e-2, "%"};
 
 /// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
-std::string told(const Estimate& e, const Unit& unit) {
+std::string text_of(const Estimate& e, const Unit& unit) {
   if (!std::isfinite(e.high)) return "unknown";
   return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" +
          digits(e.low / unit.size, std::floor) + " to " + digits(e.high / unit.size, std::ceil) + ')';
@@ -85,17 +85,17 @@ class SettingsChooser {
     return asked_.range_error || asked_.intensity_error ? best(seconds, error) : best(error, seconds);
   }
 
-  /// Forecast with the least violation of the limits.
+  /// Forecast with the smallest violation of the limits.
   [[nodiscard]] const Forecast& nearest() const {
     return *std::min_element(found_.all.begin(), found_.all.end(),
                              [&](const Forecast& a, const Forecast& b) { return worst(a) < worst(b); });
   }
 
   [[nodiscard]] int rings(const Forecast& f) const {
-    return f.how.rings.value_or(survey_.scanner.channels.front().waveform.rings);
+    return f.overrides.rings.value_or(survey_.scanner.channels.front().waveform.rings);
   }
   [[nodiscard]] double bin_size(const Forecast& f) const {
-    return f.how.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
+    return f.overrides.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
   }
 
   [[nodiscard]] std::string settings(const Forecast& f) const {
@@ -147,12 +147,12 @@ class SettingsChooser {
       std::cout << "  " << std::left << std::setw(17) << name << std::right << text << '\n';
     };
     std::cout << title << settings(f) << '\n';
-    line("run time", told(f.seconds, time_unit(f.seconds.value)));
-    line("memory", told(f.memory, bytes_unit(f.memory.value)));
-    line("points", told(f.points, one));
-    line("files", told(f.bytes, bytes_unit(f.bytes.value)));
-    line("range error", told(f.range_error, length_unit(f.range_error.value)));
-    line("intensity error", told(f.intensity_error, percent));
+    line("run time", text_of(f.seconds, time_unit(f.seconds.value)));
+    line("memory", text_of(f.memory, bytes_unit(f.memory.value)));
+    line("points", text_of(f.points, one));
+    line("files", text_of(f.bytes, bytes_unit(f.bytes.value)));
+    line("range error", text_of(f.range_error, length_unit(f.range_error.value)));
+    line("intensity error", text_of(f.intensity_error, percent));
   }
 
  private:
@@ -192,12 +192,12 @@ class SettingsChooser {
 
 }  // namespace
 
-bool forecast(const Options& options, const SurveyFile& file, const Loading& how, Notes& notes) {
+bool forecast(const Options& options, const SurveyFile& file, const Loading& loading, Notes& notes) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> scene_notes;
-  const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, how, scene_notes);
-  const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  notes.odd(simulation->warnings());
+  const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, loading, scene_notes);
+  const double loading_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  notes.warn(simulation->warnings());
   notes.require_none();
   if (simulation->compiled().source.size() == 0) {
     std::cerr << "error: no leg is active: a forecast needs a leg with pulses\n";
@@ -205,12 +205,12 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
   }
   Options all = options;
   take_columns(all, *simulation);
-  const Forecasts found = forecasts_of(*simulation, file.survey, all, how.settings.seed, loading);
+  const Forecasts found = forecasts_of(*simulation, file.survey, all, loading.settings.seed, loading_time);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)
     std::cout << "forecast in "
-              << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
+              << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading_time)
               << " s\n";
   if (!options.forecast.asks()) return true;
 

@@ -34,9 +34,9 @@ bool is_random(const helios::PartSource& source) {
 }
 
 /// Inputs of a scene in a run.
-SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run) {
-  SceneInputs inputs{.files = how.inputs->scene(), .more = how.inputs->spectra(), .name = survey.scene.id};
-  inputs.content = [&all = *how.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };
+SceneInputs inputs_of(const SurveySettings& survey, const Loading& loading, int run) {
+  SceneInputs inputs{.files = loading.inputs->scene(), .more = loading.inputs->spectra(), .name = survey.scene.id};
+  inputs.content = [&all = *loading.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };
   bool random = false, moves = false;
   for (const helios::PartSettings& part : survey.scene.parts) {
     random = random || is_random(part.source);
@@ -44,9 +44,9 @@ SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run)
     for (const helios::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
   }
   std::ostringstream all;
-  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence "
-      << how.settings.fixed_incidence << " library_physics " << how.settings.library_physics;
-  if (random) all << " seed " << how.settings.seed;
+  all << std::setprecision(17) << loading.scene_text << "\nrun " << run << " fixed_incidence "
+      << loading.settings.fixed_incidence << " library_physics " << loading.settings.library_physics;
+  if (random) all << " seed " << loading.settings.seed;
   if (moves) all << " rate " << helios::first_pulse_rate(survey);
   for (const auto& channel : survey.scanner.channels) all << ' ' << channel.wavelength;
   inputs.settings = all.str();
@@ -61,18 +61,19 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Simulation:
   return helios::make_simulation(survey, all);
 }
 
-std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& how, std::vector<std::string>& notes) {
-  Loading known = how;
-  known.settings.city_models = city_models();
-  if (!known.inputs) known.inputs = std::make_shared<SurveyInputs>(survey, how.settings.assets);
-  const auto parts = [survey, known, &notes](int run, const std::function<helios::BuiltParts()>& build) {
-    const SceneInputs inputs = inputs_of(survey, known, run);
-    KeptParts kept = known.sharing ? shared_parts(*known.sharing, known.store, inputs, build, notes)
-                                   : stored_parts(known.store, inputs, build, notes);
-    known.inputs->add(kept.built.files);
+std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& loading,
+                                 std::vector<std::string>& notes) {
+  Loading complete = loading;
+  complete.settings.city_models = city_models();
+  if (!complete.inputs) complete.inputs = std::make_shared<SurveyInputs>(survey, loading.settings.assets);
+  const auto parts = [survey, complete, &notes](int run, const std::function<helios::BuiltParts()>& build) {
+    const SceneInputs inputs = inputs_of(survey, complete, run);
+    KeptParts kept = complete.sharing ? shared_parts(*complete.sharing, complete.store, inputs, build, notes)
+                                      : stored_parts(complete.store, inputs, build, notes);
+    complete.inputs->add(kept.built.files);
     return std::move(kept.built);
   };
-  return helios::make_simulation(survey, known.settings, parts);
+  return helios::make_simulation(survey, complete.settings, parts);
 }
 
 void for_each_raster(const SurveySettings& survey, const std::function<void(const Raster&, const Placement&)>& use) {

@@ -32,8 +32,8 @@ std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::Sur
 
 /// Overload with a scene kept between runs and shared by processes. Adds notes on that to `notes`, which must outlive
 /// the simulation.
-std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey, const Loading& how,
-                                                    std::vector<std::string>& notes);
+std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey,
+                                                    const Loading& loading, std::vector<std::string>& notes);
 
 /// Calls `use` with each raster of heights in a scene, and its placement.
 void for_each_raster(const pulsecast::helios::SurveySettings& survey,

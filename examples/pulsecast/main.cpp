@@ -125,7 +125,7 @@ class Session {
         log_{.seed = seed},
         notes_(notes) {
     if (options_.page && options_.resume)
-      notes_.say("--page shows only the legs simulated now, not those of the earlier run");
+      notes_.note("--page shows only the legs simulated now, not those of the earlier run");
   }
 
   int run() {
@@ -135,9 +135,9 @@ class Session {
     const double start_time =
         gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
     const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
-    log_.how = how();
+    log_.how = run_inputs();
     if (again)
-      go_on_from(*again, *inputs);
+      resume_from(*again, *inputs);
     else
       log_.start_time = start_time;
     note_inputs(*inputs);
@@ -146,21 +146,22 @@ class Session {
     if (again) require_run(*again, simulation->runs());
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
-    tell_notes(*simulation);
+    print_notes(*simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     const RunSummary all = play_all(*simulation, *inputs, parent, again);
     pages_.finish(all.complete);
-    if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(*simulation);
+    if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
     if (pulses_cut_ > 0)
-      notes_.say(std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
-                 " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
+      notes_.note(
+          std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
+          " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
-      notes_.odd("no points from leg " + empty_legs_ +
-                 ": a leg without pulses, as the last of a platform that moves, may be inactive");
+      notes_.warn("no points from leg " + empty_legs_ +
+                  ": a leg without pulses, as the last of a platform that moves, may be inactive");
     if (all.count(Fate::blocked) > all.slots / 20 * 19)
-      notes_.say("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
+      notes_.note("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
     const std::string traffic = ranks_.traffic();
-    if (!options_.quiet) tell_summary(all, traffic);
+    if (!options_.quiet) print_summary(all, traffic);
     notes_.require_none();
     return all.complete ? success : interrupted;
   }
@@ -178,9 +179,9 @@ class Session {
     if (!unfinished.empty()) return {.folder = unfinished};
     const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
     if (newest.empty())
-      notes_.say("no run to resume in " + parent.string() + ": a new run is started");
+      notes_.note("no run to resume in " + parent.string() + ": a new run is started");
     else
-      notes_.say("no run to resume: the newest one, " + newest.string() + ", is complete");
+      notes_.note("no run to resume: the newest one, " + newest.string() + ", is complete");
     return {.is_complete = !newest.empty()};
   }
 
@@ -225,15 +226,15 @@ class Session {
       text << "are no seconds of a GPS week: LAS says that they are adjusted standard GPS time, which begins here at "
            << int{day.year()} << '-' << std::setfill('0') << std::setw(2) << unsigned{day.month()} << '-'
            << std::setw(2) << unsigned{day.day()};
-      notes_.say(text.str());
+      notes_.note(text.str());
     } else if (options_.adjusted_time) {
       text << "are neither seconds of a GPS week nor adjusted standard GPS time, of which LAS says that they are: "
               "expected one of these "
               "clocks";
-      notes_.odd(text.str());
+      notes_.warn(text.str());
     } else if (end > week) {
-      text << "go on beyond the end of the GPS week, 604800 s";
-      notes_.say(text.str());
+      text << "continue beyond the end of the GPS week, 604800 s";
+      notes_.note(text.str());
     }
   }
 
@@ -254,7 +255,7 @@ class Session {
       if (r > 0) {
         simulation.begin(r);
         if (note_inputs(inputs)) log_.write(folder);
-        tell_notes(simulation);
+        print_notes(simulation);
       }
       take_columns(options_, simulation);
       all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
@@ -270,7 +271,7 @@ class Session {
     return all;
   }
 
-  void tell_summary(const RunSummary& all, const std::string& traffic) const {
+  void print_summary(const RunSummary& all, const std::string& traffic) const {
     print(all);
     if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
     const auto fate = [&](const char* name, Fate f) {
@@ -294,33 +295,33 @@ class Session {
     return ranks_.from_first(folder.string());
   }
 
-  void tell_notes(const Simulation& simulation) {
-    notes_.odd(simulation.warnings());
-    notes_.say(scene_notes_);
+  void print_notes(const Simulation& simulation) {
+    notes_.warn(simulation.warnings());
+    notes_.note(scene_notes_);
     notes_.require_none();
   }
 
   /// Explains a cloud without points: mostly, scene and legs have coordinates of different origin.
-  void tell_of_nothing(const Simulation& simulation) {
+  void explain_no_points(const Simulation& simulation) {
     const Simulation::Scene scene = simulation.scene();
     const CompiledSurvey& compiled = simulation.compiled();
     const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
                                   [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
     if (scene.empty || leg == compiled.legs.end())
-      return notes_.odd("no points: the scene is empty, or no leg has pulses");
+      return notes_.warn("no points: the scene is empty, or no leg has pulses");
     std::ostringstream text;
     const auto put = [&](const char* words, const Vec3& v) {
       text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')';
     };
     text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
     put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
-    put(" m, and the scene extends from ", scene.least);
-    put(" to ", scene.most);
-    notes_.odd(text.str() + " m");
+    put(" m, and the scene extends from ", scene.min);
+    put(" to ", scene.max);
+    notes_.warn(text.str() + " m");
   }
 
   /// Line with all inputs of the results except seed and time.
-  [[nodiscard]] std::string how() const {
+  [[nodiscard]] std::string run_inputs() const {
     io::Digest survey;
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
@@ -348,7 +349,7 @@ class Session {
     return text.str();
   }
 
-  /// Adds the inputs known so far to the log. Returns true if there are new ones.
+  /// Adds the inputs found so far to the log. Returns true if there are new ones.
   bool note_inputs(SurveyInputs& inputs) {
     const std::size_t before = log_.inputs.size();
     if (ranks_.first())
@@ -371,7 +372,7 @@ class Session {
     if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since its start, " + changed);
   }
 
-  void go_on_from(const fs::path& folder, SurveyInputs& inputs) {
+  void resume_from(const fs::path& folder, SurveyInputs& inputs) {
     const std::string text = ranks_.from_first(ranks_.first() ? RunLog::text_in(folder) : std::string());
     RunLog log = RunLog::parse(text, (folder / RunLog::name).string());
     require_same(folder, log.how, log_.how);
@@ -385,7 +386,7 @@ class Session {
   bool are_whole(const std::vector<fs::path>& results) {
     const std::vector<fs::path> damaged = log_.damaged(results);
     for (const fs::path& path : damaged)
-      notes_.say(path.string() + " is not as long as when it was completed: its legs are simulated again");
+      notes_.note(path.string() + " is not as long as when it was completed: its legs are simulated again");
     if (damaged.empty() && log_.names(results)) return true;
     for (const fs::path& path : results) log_.files.erase(path.filename().string());
     return false;
@@ -436,7 +437,7 @@ class Session {
         if (signals > 0 || pages_.stop_requested()) stopping.request_stop();
         const Progress so_far{before + p.done, total, all.echoes + p.echoes, all.seconds + p.seconds};
         if (!options_.quiet) line(so_far);
-        pages_.tell(so_far);
+        pages_.show(so_far);
       };
       if (signals > 0) stopping.request_stop();
       const RunSummary part = files.run(simulation, run);
@@ -460,7 +461,7 @@ class Session {
   const SurveySettings& survey_;
   Ranks& ranks_;
   Pages pages_;
-  std::uint64_t pulses_cut_ = 0;  // as of `LegRun`, of all legs
+  std::uint64_t pulses_cut_ = 0;  // see `LegRun`; of all legs
   RunLog log_;
   std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;
@@ -468,13 +469,13 @@ class Session {
   Notes& notes_;
 };
 
-void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
+void print_info(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
   const SurveySettings& survey = file.survey;
   std::vector<std::string> scene_notes;
   const std::unique_ptr<Simulation> loaded = load(survey, loading_of(options, file, seed), scene_notes);
   const Simulation& simulation = *loaded;
-  notes.odd(simulation.warnings());
-  notes.say(scene_notes);
+  notes.warn(simulation.warnings());
+  notes.note(scene_notes);
   notes.require_none();
   const CompiledSurvey& compiled = simulation.compiled();
   const Simulation::Scene scene = simulation.scene();
@@ -484,7 +485,7 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, No
             << "\nscene    " << scene.parts << " parts, " << scene.moving << " of them move; " << scene.triangles
             << " triangles; " << static_cast<double>(scene.memory) / (1 << 20) << " MiB\n";
   if (!scene.empty) {
-    const Vec3 a = scene.least, b = scene.most;
+    const Vec3 a = scene.min, b = scene.max;
     std::cout << "extent   x " << a.x << " to " << b.x << " m, y " << a.y << " to " << b.y << " m, z " << a.z << " to "
               << b.z << " m\n";
   }
@@ -504,7 +505,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   std::vector<std::string> scene_notes;
   const std::unique_ptr<Simulation> loaded = load(file.survey, loading_of(options, file, seed), scene_notes);
   const Simulation& simulation = *loaded;
-  notes.odd(simulation.warnings());
+  notes.warn(simulation.warnings());
   notes.require_none();
   std::error_code error;
   fs::create_directories(options.output, error);
@@ -536,7 +537,7 @@ Options settled_by(const SurveyFile& file, Options options) {
 int work(const Options& options, Ranks& ranks) {
   if (options.command != "run" && !ranks.first()) return success;  // other commands use one process
   Notes notes(options);
-  notes.say(options.notes);
+  notes.note(options.notes);
   if (options.command == "catalogue") {
     print_catalogue(options);
     return success;
@@ -549,11 +550,11 @@ int work(const Options& options, Ranks& ranks) {
   else if (!seed)
     seed = std::random_device{}();
   if (options.command == "check") {
-    notes.odd(helios::check_without_scene(file.survey, file.leg_places));
+    notes.warn(helios::check_without_scene(file.survey, file.leg_places));
     notes.require_none();
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
-    tell(options, file, *seed, notes);
+    print_info(options, file, *seed, notes);
   } else if (options.command == "preview") {
     preview(options, file, *seed, notes);
   } else if (options.command == "forecast") {
@@ -565,15 +566,15 @@ int work(const Options& options, Ranks& ranks) {
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
       if (ranks.first())
-        notes.say("--page and --live have no effect under mpirun: they need all points in one process");
+        notes.note("--page and --live have no effect under mpirun: they need all points in one process");
     }
     if (ranks.count() > 1 && options.format == "copc.laz") {
       settled.format = "laz";
-      if (ranks.first()) notes.say("--format copc.laz needs all points in one process: under mpirun, laz is written");
+      if (ranks.first()) notes.note("--format copc.laz needs all points in one process: under mpirun, laz is written");
     }
     if (ranks.count() > 1 && options.geojson) {
       settled.geojson = false;
-      if (ranks.first()) notes.say("--geojson has no effect under mpirun: it needs all points in one process");
+      if (ranks.first()) notes.note("--geojson has no effect under mpirun: it needs all points in one process");
     }
     return Session(settled, file, *seed, ranks, notes).run();
   }

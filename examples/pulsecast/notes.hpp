@@ -16,24 +16,24 @@ class Notes {
  public:
   explicit Notes(const Options& options) : quiet_(options.quiet), strict_(options.strict) {}
 
-  /// Notes an oddity of the survey or its files: an error with `--strict`.
-  void odd(const std::string& text) {
-    if (!strict_) return say(text);
-    if (told_.insert(text).second) {
+  /// Prints a warning about the survey or its files: an error with `--strict`.
+  void warn(const std::string& text) {
+    if (!strict_) return note(text);
+    if (printed_.insert(text).second) {
       std::cerr << "error: " << text << '\n';
       ++errors_;
     }
   }
-  void odd(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) odd(text);
+  void warn(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) warn(text);
   }
 
-  /// Notes any other oddity or information.
-  void say(const std::string& text) {
-    if (!quiet_ && told_.insert(text).second) std::cerr << "note: " << text << '\n';
+  /// Prints any other note.
+  void note(const std::string& text) {
+    if (!quiet_ && printed_.insert(text).second) std::cerr << "note: " << text << '\n';
   }
-  void say(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) say(text);
+  void note(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) note(text);
   }
 
   /// Throws if a note is an error.
@@ -45,5 +45,5 @@ class Notes {
  private:
   bool quiet_, strict_;
   std::size_t errors_ = 0;
-  std::set<std::string> told_;
+  std::set<std::string> printed_;
 };

@@ -196,7 +196,7 @@ class CommandLine {
     app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
     app_.add_flag(both("libraryPhysics"), o_.library_physics, "Physics of the library in place of that of HELIOS++");
-    app_.add_flag(both("lightPaths"), o_.light_paths, "Light goes on from mirrors, glass and water");
+    app_.add_flag(both("lightPaths"), o_.light_paths, "Follow light from mirrors, glass and water");
     app_.add_flag("--colours", o_.colours, "Points in LAS with the colours of their surfaces");
     app_.add_flag(both("nearInfrared"), o_.near_infrared, "Colours with near infrared, by the spectra of surfaces");
     app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");

@@ -15,7 +15,7 @@
 
 #include "options.hpp"
 
-/// Adds what the writers need to know of a loaded scene.
+/// Adds the data of a loaded scene that the writers need.
 void take_columns(Options& options, const pulsecast::helios::Simulation& simulation);
 
 /// Ids of the channels that have point files of their own; empty for one file.
@@ -49,7 +49,7 @@ class LegFiles {
   [[nodiscard]] bool reads_empty_shots() const noexcept;  ///< as the concept ChoosesShots describes
   void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
-  [[nodiscard]] std::uint64_t pulses_cut() const;  ///< as of `LasWriter`; 0 for text
+  [[nodiscard]] std::uint64_t pulses_cut() const;  ///< see `LasWriter`; 0 for text
 
  private:
   struct Inside;

@@ -53,8 +53,8 @@ void Pages::operator()(const EchoBatch& batch) {
   if (inside_->server) (*inside_->server)(batch);
 }
 
-void Pages::tell(const Progress& progress) {
-  if (inside_->server) inside_->server->tell(progress);
+void Pages::show(const Progress& progress) {
+  if (inside_->server) inside_->server->show(progress);
 }
 
 bool Pages::stop_requested() const { return inside_->server && inside_->server->stop_requested(); }

@@ -26,7 +26,7 @@ class Pages {
   void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled,
              const pulsecast::PointColours& colours);
   void operator()(const pulsecast::EchoBatch& batch);
-  void tell(const pulsecast::Progress& progress);
+  void show(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;
   /// Ends the run and writes its page.
   void end();

@@ -31,7 +31,7 @@ using io::Fingerprint;
 namespace {
 
 constexpr std::uintmax_t worth_keeping =
-    std::uintmax_t{16} << 20;  ///< least size of the scene's files; smaller scenes build in about a second [byte]
+    std::uintmax_t{16} << 20;  ///< minimum size of the scene's files; smaller scenes build in about a second [byte]
 constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes except the newest [byte]
 
 /// Identifies this program: another build may make other scenes.

@@ -26,13 +26,13 @@ using namespace pulsecast;
 SurveyFile read_survey_file(const Options& options, Notes& notes) try {
   helios::SurveyDocument document =
       helios::read_survey(options.survey, {.assets = options.assets, .channel_files = options.split_by_channel});
-  notes.odd(document.warnings);
+  notes.warn(document.warnings);
   std::string text = helios::xml_text(document.survey),
               scene_text = helios::xml_text(helios::AssetDocument{.scenes = {document.survey.scene}});
   return {std::move(document.survey), std::move(text), std::move(scene_text), std::move(document.leg_places),
           std::move(document.place)};
 } catch (const helios::XmlFaults& faults) {
-  notes.odd(faults.warnings());
+  notes.warn(faults.warnings());
   throw;
 }
 

@@ -27,7 +27,7 @@ class SurveyInputs {
   void add(const std::set<std::filesystem::path>& files) { others_.insert(files.begin(), files.end()); }
 
   /// Fingerprint of the content of a file, or of a folder of spectra; zero if it cannot be read. Rereads a file only if
-  /// its size or times have changed. Throws a `FileError` if it is not what it was when it was asked for first.
+  /// its size or times have changed. Throws a `FileError` if it has changed since the first call.
   [[nodiscard]] pulsecast::io::Fingerprint fingerprint(const std::filesystem::path& path);
 
   /// Fingerprint of each file and folder of spectra, in hexadecimal digits.

@@ -131,9 +131,9 @@ double student_t(double freedom) {
   return x + g1 / freedom + g2 / (freedom * freedom);
 }
 
-/// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which meets the sum
-/// of the costs. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression
-/// estimator.
+/// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which reproduces the
+/// sum of the costs. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the
+/// regression estimator.
 WritingCost regression(std::span<const Written> all, double Written::*cost, double fixed) {
   double pp = 0, pl = 0, ll = 0, pc = 0, lc = 0;
   for (const Written& w : all) {
@@ -161,15 +161,14 @@ WritingCost regression(std::span<const Written> all, double Written::*cost, doub
   return found;
 }
 
-// -----------------------------------------------------------------------------------------------------------------
-// memory
+// ------------------------------------------------------------------------------------------ memory
 
 /// Resident memory of this process. Source: proc(5), /proc/PID/status.
 Resident resident_now() {
   std::ifstream in("/proc/self/status");
   Resident r;
   for (std::string word; in >> word;)
-    for (const auto& [name, value] : {std::pair{"RssAnon:", &r.own}, {"RssFile:", &r.file}, {"VmHWM:", &r.most}})
+    for (const auto& [name, value] : {std::pair{"RssAnon:", &r.own}, {"RssFile:", &r.file}, {"VmHWM:", &r.peak}})
       if (word == name && in >> *value) *value *= 1024;
   return r;
 }
@@ -240,7 +239,7 @@ void play(const Simulation& simulation, const Options& options, const std::vecto
 
 }  // namespace
 
-void WritingCost::meet(double all, double points, double lines) {
+void WritingCost::scale_to(double all, double points, double lines) {
   const double now = growing(points, lines);
   if (!(now > 0)) fixed = all;
   const double factor = now > 0 ? (all - fixed) / now : 1;
@@ -267,20 +266,20 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   std::vector<Written> all;
   const auto legs_of = legs_by_files(compiled);
   constexpr double stretch = 25'000;  // results: enough for a compressor to adapt
-  constexpr std::size_t least = 8;
+  constexpr std::size_t min_stretches = 8;
   constexpr PulseIndex longest = 1 << 18;
   const Allowance allowance(1, std::min(thread_count(options.threads), thread_count(0)));
   for (const PulseIndex from : starts) {
-    if (all.size() >= least && !allowance.left()) break;
+    if (all.size() >= min_stretches && !allowance.left()) break;
     const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
                                   [&](const auto& l) { return l.active && from < l.end; });
-    all.push_back(writer.write([&](LegFiles& files, Written& some) {
-      writer.add(files, some, from, std::min(leg->end, from + longest), stretch);
+    all.push_back(writer.write([&](LegFiles& files, Written& subset) {
+      writer.add(files, subset, from, std::min(leg->end, from + longest), stretch);
     }));
   }
   WritingCosts costs{regression(all, &Written::bytes, without.bytes),
                      regression(all, &Written::seconds, without.seconds)};
-  // Stretches differ from the whole by what their compressors know, and by their octree. Source: 37 surveys,
+  // Stretches differ from the whole by the state of their compressors, and by their octree. Source: 37 surveys,
   // bench/forecast.sh.
   const double model = !options.format.ends_with("laz") ? 0.005 : options.format == "laz" ? 0.015 : 0.08;
   costs.bytes.unsure = std::hypot(costs.bytes.unsure, model);
@@ -290,13 +289,13 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
     if (leg.active && leg.trajectory_interval > 0)
       records += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
   const double step = std::max(1.0, records / 20'000);
-  const Written paths = writer.write([&](LegFiles& files, Written& some) {
+  const Written paths = writer.write([&](LegFiles& files, Written& subset) {
     const double before = processor_time();
     for (const auto& [prefix, legs] : legs_of)
       for (const std::size_t k : legs)
         files.add_trajectory(compiled.source.legs()[k], compiled.legs[k].start,
                              step * compiled.legs[k].trajectory_interval);
-    some.seconds += processor_time() - before;
+    subset.seconds += processor_time() - before;
   });
   const double sets = static_cast<double>(legs_of.size());
   costs.bytes.fixed = sets * without.bytes + step * (paths.bytes - without.bytes);
@@ -315,7 +314,7 @@ TrialRun trial_run(const Simulation& simulation, const Options& options, const s
     try {
       play(simulation, options, channels, counted, folder.path, trial);
       if (write(pipe_ends[1], &trial, sizeof trial) == sizeof trial) _exit(0);
-    } catch (const std::exception&) {  // a fault of the survey or the disk: the process that waits will meet it
+    } catch (const std::exception&) {  // a fault of the survey or the disk: the process that waits will find it
     }
     _exit(1);
   }
@@ -328,8 +327,8 @@ TrialRun trial_run(const Simulation& simulation, const Options& options, const s
 }
 
 Estimate TrialRun::memory(double of_run, const Options& options) const {
-  if (!(after.most > 0)) return {before.most, before.most, std::numeric_limits<double>::infinity()};
-  const double growth = after.most - after.file - before.own, base = before.own + before.file;
+  if (!(after.peak > 0)) return {before.peak, before.peak, std::numeric_limits<double>::infinity()};
+  const double growth = after.peak - after.file - before.own, base = before.own + before.file;
   // With buffers that are not full yet, memory grows at most as the points do.
   const double more =
       !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
@@ -339,7 +338,7 @@ Estimate TrialRun::memory(double of_run, const Options& options) const {
   const bool alone = thread_count(options.threads) == 1;
   const double later = alone || options.format == "copc.laz" ? 1 : complete ? 1.05 : 1.2;
   const auto memory = [&](double all, double grown, double pages) {
-    return std::max(all * before.most, all * base + grown * later * growth + pages * after.file);
+    return std::max(all * before.peak, all * base + grown * later * growth + pages * after.file);
   };
   const double middle = std::sqrt(more);
   return {memory(1, middle, 0.1), memory(0.98, alone ? 0.93 : 0.65 * std::min(middle, 1.4), 0),

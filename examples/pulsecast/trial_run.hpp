@@ -34,8 +34,8 @@ struct WritingCost {
   double unsure = 0;           ///< half width of the 95 % interval, relative to the growing part
 
   [[nodiscard]] double growing(double points, double lines) const { return points * point + lines * line; }
-  /// Meets a known cost of all.
-  void meet(double all, double points, double lines);
+  /// Scales to a known total cost.
+  void scale_to(double all, double points, double lines);
 };
 
 /// Costs of writing a survey with the settings of a run.
@@ -56,7 +56,7 @@ WritingCosts writing_costs(const pulsecast::helios::Simulation& simulation, cons
 
 /// Resident memory of a process [byte].
 struct Resident {
-  double own = 0, file = 0, most = 0;  ///< anonymous memory; pages of files; greatest resident memory so far
+  double own = 0, file = 0, peak = 0;  ///< anonymous memory; pages of files; peak resident memory so far
 };
 
 /// Trial of a run: each leg was simulated and written until more points would take no more memory, or processor time
@@ -69,7 +69,7 @@ struct TrialRun {
   double bytes = 0;              ///< of all files [byte]
   double most_points = 0;        ///< of a set of files
 
-  /// Peak memory of a run with so many points, or fewer [byte].
+  /// Peak memory of a run of at most `of_run` points [byte].
   [[nodiscard]] Estimate memory(double of_run, const Options& options) const;
 };
 

@@ -14,6 +14,7 @@ import re
 import sys
 
 MEMBER = re.compile(r"  (?P<type>[\w:<>, ]+?) (?P<name>\w+)(?:\{.*\}| = [^;]*)?;(?:\s*///< (?P<doc>.*))?$")
+BROKEN_MEMBER = re.compile(r"^(  [\w:<>]+(?: \w+ =)?)\n +", re.MULTILINE)  # after its type or `=`
 NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodiscard\]\]|//[^/]|void validate)")
 FUNCTION = re.compile(r"[^;]*\) (const )?(noexcept )?\{$")
 TYPES = {"bool": "bool", "int": "int", "std::uint64_t": "int", "double": "float", "char": "str", "std::string": "str",
@@ -117,7 +118,7 @@ def main(cpp_file, stub_template, stub_file, *headers):
     lines = []
     for header in headers:  # each after those whose types it names
         with open(header, encoding="utf-8") as file:
-            lines += file.read().splitlines()
+            lines += BROKEN_MEMBER.sub(r"\1 ", file.read()).splitlines()
     described = list(describe(lines))
     with open(cpp_file, "w", encoding="utf-8") as file:
         file.writelines(cpp_of(described))

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of
-// one's own are for `bind_survey`; see `own_scanner.cpp`.
+// The Python module `pulsecast`: surveys of documents, run as the survey program runs them. For user-defined pipelines
+// there is `bind_survey`; see `own_scanner.cpp`.
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 namespace {
 
-/// Where a platform is, as a row of a NumPy array.
+/// Place of a platform, as a row of a NumPy array.
 struct PoseRow {
   double time, x, y, z, roll, pitch, yaw;
   std::int32_t leg, spare{};
@@ -60,7 +60,7 @@ void warn(const std::vector<std::string>& warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-/// What a mesh looks like, and what its points are told.
+/// Appearance of a mesh, and labels of its points.
 struct MeshLooks {
   std::optional<std::array<double, 3>> colour{};
   std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture{};
@@ -279,7 +279,7 @@ void bind_light(py::module_& m) {
           "Water of a type by Jerlov, from I, the clearest ocean, to III, and from 1C to 9C, coasts, for a laser's "
           "wavelength [m]. Raises "
           "ValueError and SettingError.");
-  py::class_<SmoothInterface>(m, "SmoothInterface", "Smooth surface that passes light on.")
+  py::class_<SmoothInterface>(m, "SmoothInterface", "Surface that reflects or transmits light specularly.")
       .def_static("mirror", &SmoothInterface::mirror, "reflectance"_a = 0.95,
                   "Mirror that reflects a share of the light.")
       .def_static("pane", &SmoothInterface::pane, "thickness"_a = 4e-3, "Pane of clear glass [m].")
@@ -297,7 +297,7 @@ void bind_mesh(py::module_& m) {
           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry "
           "platforms; "
           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
-          "smooth: SmoothInterface that passes light on, in a simulation with light_paths; colour: red, green and blue "
+          "smooth: SmoothInterface with specular light, in a simulation with light_paths; colour: red, green and blue "
           "of its points, in "
           "[0, 1]; picture: array of uint8, shape (rows, columns) or (rows, columns, channels), from the top, by which "
           "texture coordinates "
@@ -341,7 +341,7 @@ void bind_simulation(py::module_& m) {
            "receiver noise. "
            "fixed_incidence: scatter as at normal incidence. library_physics: physics of the library in place of "
            "HELIOS++'s. "
-           "light_paths: light goes on from mirrors, glass and water. "
+           "light_paths: follow light from mirrors, glass and water. "
            "platform_noise, leg_noise: False removes those of the survey. threads: for "
            "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises "
            "SettingError or FileError.")
@@ -366,8 +366,8 @@ void bind_simulation(py::module_& m) {
           [](const Simulation& s) -> py::object {
             const Simulation::Scene scene = s.scene();
             if (scene.empty) return py::none();
-            return py::make_tuple(py::make_tuple(scene.least.x, scene.least.y, scene.least.z),
-                                  py::make_tuple(scene.most.x, scene.most.y, scene.most.z));
+            return py::make_tuple(py::make_tuple(scene.min.x, scene.min.y, scene.min.z),
+                                  py::make_tuple(scene.max.x, scene.max.y, scene.max.z));
           },
           "Two corners of the scene's bounding box [m, world]; None for an empty scene.")
       .def_property_readonly(
@@ -391,7 +391,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_common(m);
   bind_settings(m);
   bind_documents(m);
-  bind_light(m);  // of whose types meshes are told
+  bind_light(m);  // before meshes, which use its types
   bind_mesh(m);
   bind_raycasting_scene(m);
   bind_simulation(m);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A scanner of one's own for Python: two spinning prisms over a floor, as a class of the module `own_scanner`.
+// A user-defined scanner for Python: two spinning prisms over a floor, as a class of the module `own_scanner`.
 
 #include <memory>
 
@@ -13,7 +13,7 @@ using namespace pulsecast::literals;
 
 namespace {
 
-/// Two thin prisms, one behind the other, each of which bends the beam by the same angle towards where it is turned.
+/// Two thin prisms in series, each of which bends the beam by the same angle towards its orientation.
 struct Rosette {
   double bend;           ///< by each prism [rad]
   double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]

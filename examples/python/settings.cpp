@@ -25,7 +25,7 @@ using namespace pulsecast;
 
 namespace {
 
-/// What there is to know of a struct or enum: made of the header by `describe_settings.py`.
+/// Description of a struct or enum, generated from the header by `describe_settings.py`.
 template <class Settings>
 struct Described;
 #include <settings_members.inc>
@@ -53,7 +53,7 @@ py::handle& class_of() {
   return made;
 }
 
-// ------------------------------------------------------------------------------------------------------------- to
+// ---------------------------------------------------------------------------------------------- to
 // Python
 
 template <class T>
@@ -83,7 +83,7 @@ py::object object_of(const T& value) {
   }
 }
 
-// ----------------------------------------------------------------------------------------------------------- from
+// -------------------------------------------------------------------------------------------- from
 // Python
 
 [[noreturn]] void refuse(const std::string& where, const std::string& expected, py::handle found) {
@@ -198,8 +198,7 @@ T value_of(py::handle object, const std::string& where) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
-// classes
+// ----------------------------------------------------------------------------------------- classes
 
 /// `==` of members: an array, a list and a tuple of equal numbers are equal.
 bool equal(py::handle a, py::handle b) {

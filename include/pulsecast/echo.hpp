@@ -11,25 +11,9 @@
 #include <pulsecast/base/scan_angle.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/hit.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// User's number of an object of the scene.
-using ObjectId = std::uint32_t;
-
-/// Hit of one subray: numbers only, so that any map can provide it.
-struct Hit {
-  double range =
-      std::numeric_limits<double>::infinity();  ///< distance from the pulse's origin; infinite for a miss [m]
-  double cos_incidence = 1;                     ///< cosine of the angle between beam and surface normal, in [0, 1]
-  double backscatter =
-      1;  ///< reflectance times the angular law, cosine included: 1 for a white Lambertian surface at normal incidence
-  ObjectId object = 0;               ///< number of the object hit
-  std::uint16_t classification = 0;  ///< class of the material hit
-
-  /// True for a hit.
-  [[nodiscard]] bool met() const noexcept { return range < std::numeric_limits<double>::infinity(); }
-};
 
 /// Way that returned light took. Of several, the last in this list names it.
 enum class ReflectionKind : std::uint8_t {
@@ -162,6 +146,26 @@ struct EchoBatch {
     const std::size_t each = subrays.size() / shots.size();
     return {subrays.data() + shot * each, each};
   }
+};
+
+/// Error of a pulse that makes its results worthless: NaN from a user's own type. `run` throws it.
+enum class PulseError : std::uint8_t {
+  none,
+  pose,  ///< a pose is not finite: an error of the trajectory, optic or pose errors
+  map,   ///< the map answered with a range or backscatter of NaN
+};
+
+/// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch
+/// are not set.
+struct Outcome {
+  Shot shot;                                ///< pulse as reported
+  std::span<const Echo> echoes;             ///< echoes, sorted by reported range
+  std::span<const float> waveform;          ///< received power [W]; empty if not kept
+  EnergyLedger energy{};                    ///< energy by the end of its paths; zero if nothing was sent [J]
+  bool spread = false;                      ///< as in `TransportResult`
+  bool unresolved = false;                  ///< as in `TransportResult`
+  std::span<const SubrayRecord> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
+  PulseError error = PulseError::none;      ///< makes the other members worthless, unless `none`
 };
 
 /// Position of an echo in the world [m].

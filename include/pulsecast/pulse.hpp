@@ -70,8 +70,8 @@ struct Laser {
   friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// Emitter of a device, and the receiver that hears it. A pulse source lists its emitters once, and each pulse names
-/// its own by number.
+/// Emitter of a device, with the number of its receiver. A pulse source lists its emitters once, and each pulse refers
+/// to its emitter by number.
 struct Emitter {
   Laser laser{};               ///< laser of its pulses
   double footprint_scale = 1;  ///< factor of the footprint's offsets, from 0 to 1000; 1: in units of the 1/e^2 radius
@@ -90,20 +90,20 @@ inline constexpr std::size_t max_emitters = 65'535;  ///< limit of the emitters 
 
 namespace detail {
 
-/// Data of a pulse that no stage before the platform knows.
+/// Data of a pulse that the platform adds.
 template <class Frame>
 struct PulseOnPlatform {};
 
 template <>
 struct PulseOnPlatform<frame::World> {
-  std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as known to the instrument; empty if exact
+  std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as measured by the instrument; empty if exact
   ScanAngle scan_angle{};  ///< angle of the beam from the vertical, to the right, a number [rad]
   std::uint16_t leg = 0;   ///< number of its leg, from 0
 };
 
 }  // namespace detail
 
-/// One laser pulse, in a frame. In the world it has besides `reported`, `scan_angle` and `leg`.
+/// One laser pulse, in a frame. In the world it also has `reported`, `scan_angle` and `leg`.
 template <class Frame>
 struct Pulse : detail::PulseOnPlatform<Frame> {
   Tick tick{};                      ///< emission time, since the survey's start
@@ -125,7 +125,7 @@ struct Pulse : detail::PulseOnPlatform<Frame> {
 
 namespace detail {
 
-/// Data of pulses in lanes that no stage before the platform knows.
+/// Data of pulses in lanes that the platform adds.
 template <class Frame>
 struct LanesOnPlatform {};
 
@@ -186,7 +186,7 @@ struct PulseLanes : detail::LanesOnPlatform<Frame> {
     }
   }
 
-  /// Sets the pose of a lane as known to the instrument.
+  /// Sets the pose of a lane as measured by the instrument.
   void report(std::size_t lane,
               const Pose<frame::Beam, frame::World>& p) noexcept requires std::same_as<Frame, frame::World> {
     this->reports[lane] = -1;

@@ -208,6 +208,20 @@ template <class G>
 concept TimeDependentGeometry = detail::TimeDependentConstant<G> && G::time_dependent;
 PULSECAST_OPTIONAL_MEMBER(TimeDependentConstant, "static constexpr bool time_dependent = true", time_dependent, , is_timed, timed_hits, time_dependent, timeless)
 
+struct Triangle;
+
+/// Geometry whose primitives are triangles: hits on it have barycentric weights.
+template <class G>
+concept MadeOfTriangles = requires(const G g, PrimitiveIndex i) {
+  { g.triangle(i) } noexcept -> std::same_as<Triangle>;
+};
+
+/// Geometry with texture coordinates, by primitive and barycentric weights; empty where there are none.
+template <class G>
+concept Textured = MadeOfTriangles<G> && requires(const G g, PrimitiveIndex i, const Vec3& weights) {
+  { g.texture(i, weights) } noexcept -> std::same_as<std::optional<Vec2>>;
+};
+
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
 template <class F>
 concept RecordsSubrays = detail::RecordedConstant<F> && F::recorded;
@@ -244,7 +258,7 @@ concept RunsWithoutReflections = detail::RunsWithoutReflectionsConstant<D> && D:
 PULSECAST_OPTIONAL_MEMBER(RunsWithoutReflectionsConstant, "static constexpr bool runs_without_reflections = true", runs_without_reflections, , always_listens, listens,
                           listen_always, always_on)
 
-/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.
+/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a map with `SceneQueries`.
 template <class D>
 concept ReadsVelocity = detail::VelocityConstant<D> && D::reads_velocity;
 PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, reads_velocities,

@@ -14,6 +14,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
@@ -21,40 +22,21 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Error of a pulse that makes its results worthless: NaN from a user's own type. `run` throws it.
-enum class PulseError : std::uint8_t {
-  none,
-  pose,  ///< a pose is not finite: an error of the trajectory, optic or pose errors
-  map,   ///< the map answered with a range or backscatter of NaN
-};
-
-/// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch
-/// are not set.
-struct Outcome {
-  Shot shot;                                ///< pulse as reported
-  std::span<const Echo> echoes;             ///< echoes, sorted by reported range
-  std::span<const float> waveform;          ///< received power [W]; empty if not kept
-  EnergyLedger energy{};                    ///< energy by the end of its paths; zero if nothing was sent [J]
-  bool spread = false;                      ///< as in `TransportResult`
-  bool unresolved = false;                  ///< as in `TransportResult`
-  std::span<const SubrayRecord> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
-  PulseError error = PulseError::none;      ///< makes the other members worthless, unless `none`
-};
-
-/// ReceiverOverrides half of a device, for the emitters with its index as their `Emitter::receiver`.
-template <Footprint Pattern, Detector Instrument>
+/// Receiving half of a device, for the emitters with its index as their `Emitter::receiver`.
+template <Footprint Footprint, Detector Detector>
 struct ReceiverUnit {
-  Pattern footprint;    ///< sampling of the beams
+  Footprint footprint;  ///< sampling of the beams
   Receiver receiver;    ///< aperture, range gate and range errors
-  Instrument detector;  ///< detector
+  Detector detector;    ///< detector
 };
 
 /// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order
 /// and from any number of threads. Refers to the map, which must outlive it.
-template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument, Transport<Map> Light = DirectLight>
+template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector,
+          Transport<Target> Transport = DirectLight>
 class Survey {
   static_assert(detail::SkipsBlockedCheck<Source>::passed);
-  static_assert(!ReadsVelocity<Instrument> || TracesVelocity<Light, Map>,
+  static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
                 "DirectLight has");
 
@@ -62,56 +44,47 @@ class Survey {
   /// Survey with one receiver for all emitters.
   /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the
   /// detector refuses
-  Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector,
+  Survey(Source source, Footprint footprint, const Target& target, Receiver receiver, Detector detector,
          std::uint64_t seed = 0)
-      : Survey(std::move(source), std::move(footprint), map, Light{}, std::move(receiver), std::move(detector), seed) {}
+      : Survey(std::move(source), std::move(footprint), target, Transport{}, std::move(receiver), std::move(detector),
+               seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, Pattern footprint, const Map& map, Light transport, Receiver receiver, Instrument detector,
-         std::uint64_t seed = 0)
-      : source_(validated(std::move(source))),
-        map_(&map),
-        transport_(validated(std::move(transport))),
-        receivers_(1, {std::move(footprint), std::move(receiver), std::move(detector)}),
-        seed_(seed) {
-    prepare();
-  }
+  Survey(Source source, Footprint footprint, const Target& target, Transport transport, Receiver receiver,
+         Detector detector, std::uint64_t seed = 0)
+      : Survey(std::move(source), {{std::move(footprint), std::move(receiver), std::move(detector)}}, target,
+               std::move(transport), seed) {}
 
   /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they
   /// are recorded.
   /// @throws SettingError as above, or for an emitter without a receiver
-  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map,
+  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target,
          std::uint64_t seed = 0)
-      : Survey(std::move(source), std::move(receivers), map, Light{}, seed) {}
+      : Survey(std::move(source), std::move(receivers), target, Transport{}, seed) {}
   /// As above, with a transport other than `DirectLight`.
-  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map, Light transport,
-         std::uint64_t seed = 0)
+  Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target,
+         Transport transport, std::uint64_t seed = 0)
       : source_(validated(std::move(source))),
-        map_(&map),
+        target_(&target),
         transport_(validated(std::move(transport))),
         receivers_(std::move(receivers)),
         seed_(seed) {
     prepare();
   }
 
-  Survey(Source, Pattern, const Map&&, Receiver, Instrument,
-         std::uint64_t = 0) = delete;  // a temporary map would dangle
-  Survey(Source, Pattern, const Map&&, Light, Receiver, Instrument, std::uint64_t = 0) = delete;
-  Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, const Map&&, std::uint64_t = 0) = delete;
-  Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, const Map&&, Light, std::uint64_t = 0) = delete;
+  // a temporary map would dangle
+  Survey(Source, Footprint, const Target&&, Receiver, Detector, std::uint64_t = 0) = delete;
+  Survey(Source, Footprint, const Target&&, Transport, Receiver, Detector, std::uint64_t = 0) = delete;
+  Survey(Source, std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, std::uint64_t = 0) = delete;
+  Survey(Source, std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, Transport, std::uint64_t = 0) = delete;
 
   /// Scratch memory of one worker.
   struct Workspace {
-    /// Workspace of a detector.
-    using OfDetector = decltype(std::declval<const Instrument&>().workspace(0));
-    /// Workspace of the transport.
-    using OfTransport = decltype(std::declval<const Light&>().workspace(0));
-
-    OfTransport transport;                 ///< workspace of the transport
-    SharedBuffer<Reflection> reflections;  ///< reflections of a pulse, with room for all
-    std::vector<SubrayRecord> subrays;     ///< all of a pulse, if recorded
-    std::vector<OfDetector> detectors;     ///< workspace of each receiver's detector
-    std::uint16_t emitter = 0;             ///< emitter of the last pulse
-    WhiteTarget white_target{};            ///< white target of that emitter
+    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< workspace of the transport
+    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
+    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
+    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< workspace of each receiver's
+    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
+    WhiteTarget white_target{};                                                     ///< white target of that emitter
   };
 
   /// Scratch memory for one worker.
@@ -135,13 +108,12 @@ class Survey {
     for (const EmitterConstants& e : emitters_) sum += receivers_[e.emitter.receiver].footprint.size();
     return sum / emitters_.size();
   }
-  [[nodiscard]] std::size_t recorded_subrays() const noexcept {
-    return recorded ? subrays() : 0;
-  }  ///< subrays passed on with each pulse
+  /// Subrays passed to the sinks with each pulse.
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }
   /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
   /// Receivers.
-  [[nodiscard]] std::span<const ReceiverUnit<Pattern, Instrument>> receivers() const noexcept { return receivers_; }
+  [[nodiscard]] std::span<const ReceiverUnit<Footprint, Detector>> receivers() const noexcept { return receivers_; }
   /// Sample spacing of a waveform; 0 if the detectors have none [s].
   [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
   /// Token that this survey shares with its copies alone: they may use each other's workspaces.
@@ -169,7 +141,7 @@ class Survey {
   }
 
  private:
-  using Unit = ReceiverUnit<Pattern, Instrument>;
+  using Unit = ReceiverUnit<Footprint, Detector>;
 
   /// Result of slot i, whose pulse is empty if it is blocked.
   [[nodiscard]] Outcome outcome(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse,
@@ -197,7 +169,7 @@ class Survey {
       w.white_target = {};
     }
     const TransportResult result = [&] {
-      if constexpr (RotatesPerPulse<Pattern>)
+      if constexpr (RotatesPerPulse<Footprint>)
         return trace(turned(*pulse, i), i, constants, w);
       else
         return trace(*pulse, i, constants, w);
@@ -208,7 +180,7 @@ class Survey {
     out.subrays = w.subrays;
     if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
     out.shot.fate = result.dark() ? result.fate : Fate::below_threshold;
-    if constexpr (!RunsWithoutReflections<Instrument>)
+    if constexpr (!RunsWithoutReflections<Detector>)
       if (result.dark()) return out;
 
     const std::span<Reflection> reflections(w.reflections.data(), result.reflections);
@@ -241,7 +213,7 @@ class Survey {
   };
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
-  static void require_whole_beam(const Pattern& footprint) {
+  static void require_whole_beam(const Footprint& footprint) {
     double sum = 0;
     for (std::size_t j = 0; j < footprint.size(); ++j) {
       const double share = footprint.share(j);
@@ -249,8 +221,7 @@ class Survey {
       require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
       sum += share;
     }
-    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6,
-                   "");  // tolerates the rounding of a sum of a million
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // rounding of a sum of a million
   }
 
   /// Refuses receivers whose results do not fit in one batch.
@@ -265,7 +236,7 @@ class Survey {
   }
 
   static double interval_of(const Unit& unit) noexcept {
-    if constexpr (SamplesWaveforms<Instrument>) return unit.detector.sample_interval();
+    if constexpr (SamplesWaveforms<Detector>) return unit.detector.sample_interval();
     return 0;
   }
 
@@ -294,10 +265,10 @@ class Survey {
   void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     Unit& unit = receivers_[emitter.receiver];
-    if constexpr (RotatesPerPulse<Pattern>)
+    if constexpr (RotatesPerPulse<Footprint>)
       require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
-    if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
-    if constexpr (PreparesForLasers<Instrument>) unit.detector.prepare(emitter.laser);
+    if constexpr (ValidatesLaser<Detector>) unit.detector.validate(emitter.laser);
+    if constexpr (PreparesForLasers<Detector>) unit.detector.prepare(emitter.laser);
     const EmitterConstants* alike = first;
     while (alike != constants &&
            !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
@@ -307,8 +278,8 @@ class Survey {
                   !unit.receiver.range_errors.none()};
   }
 
-  static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
-  static constexpr bool recorded = RecordsSubrays<Pattern>;
+  static_assert(detail::SurveyMembers<Footprint, Detector>::checked);
+  static constexpr bool recorded = RecordsSubrays<Footprint>;
 
   /// Pulse i with its beam turned about its axis.
   [[nodiscard]] Pulse<frame::World> turned(Pulse<frame::World> pulse, PulseIndex i) const noexcept {
@@ -331,10 +302,10 @@ class Survey {
                                w.white_target,
                                unit.receiver.gate(),
                                recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
-    if constexpr (ReadsVelocity<Instrument>)
-      return transport_.template trace<true>(*map_, light, w.transport, w.reflections);
+    if constexpr (ReadsVelocity<Detector>)
+      return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
     else
-      return transport_.trace(*map_, light, w.transport, w.reflections);
+      return transport_.trace(*target_, light, w.transport, w.reflections);
   }
 
   /// Error of a pulse that may have one: light did not return, the map answered with NaN, or a pose is reported.
@@ -344,8 +315,8 @@ class Survey {
   }
 
   Source source_;
-  const Map* map_;
-  Light transport_;
+  const Target* target_;
+  Transport transport_;
   std::vector<Unit> receivers_;
   std::uint64_t seed_;
   std::span<const EmitterConstants> emitters_{};  // by number
@@ -353,21 +324,24 @@ class Survey {
 };
 
 /// Names the mistake in the arguments.
-template <class Source, class Pattern, class Map, class Instrument>
-requires(!detail::Surveyable<Source, Pattern, Map, Instrument>)
-    Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
-->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
+template <class Source, class AnyFootprint, class AnyTarget, class AnyDetector>
+requires(!detail::Surveyable<Source, AnyFootprint, AnyTarget, AnyDetector>)
+    Survey(Source, AnyFootprint, AnyTarget&&, Receiver, AnyDetector, std::uint64_t = 0)
+->Survey<typename detail::SurveyArguments<Source, AnyFootprint, AnyTarget, AnyDetector>::First, AnyFootprint, AnyTarget,
+         AnyDetector>;
 /// As above.
-template <class Source, class Pattern, class Map, class Light, class Instrument>
-requires(!detail::Surveyable<Source, Pattern, Map, Instrument> || !Transport<Light, std::remove_cvref_t<Map>>)
-    Survey(Source, Pattern, Map&&, Light, Receiver, Instrument, std::uint64_t = 0)
-->Survey<typename detail::TransportArguments<Source, Pattern, Map, Light, Instrument>::First, Pattern,
-         std::remove_cvref_t<Map>, Instrument, Light>;
+template <class Source, class AnyFootprint, class AnyTarget, class AnyTransport, class AnyDetector>
+requires(!detail::Surveyable<Source, AnyFootprint, AnyTarget, AnyDetector> ||
+         !Transport<AnyTransport, std::remove_cvref_t<AnyTarget>>)
+    Survey(Source, AnyFootprint, AnyTarget&&, AnyTransport, Receiver, AnyDetector, std::uint64_t = 0)
+->Survey<typename detail::TransportArguments<Source, AnyFootprint, AnyTarget, AnyTransport, AnyDetector>::First,
+         AnyFootprint, std::remove_cvref_t<AnyTarget>, AnyDetector, AnyTransport>;
 /// As above.
-template <class Source, class Pattern, class Map, class Instrument>
-requires(detail::Temporary<Map>)
-    Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
-->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
+template <class Source, class AnyFootprint, class AnyTarget, class AnyDetector>
+requires(detail::Temporary<AnyTarget>)
+    Survey(Source, std::vector<ReceiverUnit<AnyFootprint, AnyDetector>>, AnyTarget&&, std::uint64_t = 0)
+->Survey<typename detail::SurveyArguments<Source, AnyFootprint, AnyTarget, AnyDetector>::First, AnyFootprint, AnyTarget,
+         AnyDetector>;
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -57,7 +57,7 @@ struct ChoppingHead : support::LeastHead {
 }  // namespace
 
 TEST_CASE("a deflector sends each pulse where its optic is at that time") {
-  const Mirrored device{PolygonMirror{.lines_per_second = 100, .sweep = 60_deg},
+  const Mirrored device{PolygonMirror{.line_rate = 100, .sweep = 60_deg},
                         Scanner{.pulse_rate = 100_kHz, .pulses = 100000}};
   const auto p = device.pulse(250);  // a quarter of the first line
   REQUIRE(p);
@@ -66,8 +66,8 @@ TEST_CASE("a deflector sends each pulse where its optic is at that time") {
 }
 
 TEST_CASE("a head turns what its instrument has deflected, not the other way round") {
-  const Headed device{RotatingHead{.rate = 90_deg}, Mirrored{PolygonMirror{.lines_per_second = 0.25, .sweep = 90_deg},
-                                                             Scanner{.pulse_rate = 1, .pulses = 4}}};
+  const Headed device{RotatingHead{.angular_rate = 90_deg}, Mirrored{PolygonMirror{.line_rate = 0.25, .sweep = 90_deg},
+                                                                     Scanner{.pulse_rate = 1, .pulses = 4}}};
   // after one second the mirror looks 45 degrees down and the head has turned to the left
   const auto p = device.pulse(1);
   REQUIRE(p);
@@ -75,7 +75,7 @@ TEST_CASE("a head turns what its instrument has deflected, not the other way rou
 }
 
 TEST_CASE("a head carries the place where the beam leaves around with it") {
-  const Deflector device{RotatingHead{.rate = 90_deg, .axis = axis::right},
+  const Deflector device{RotatingHead{.angular_rate = 90_deg, .axis = axis::right},
                          Deflector{Periscope{}, Scanner{.pulse_rate = 1, .pulses = 4}}};
   const auto p = device.pulse(1);
   REQUIRE(p);
@@ -85,10 +85,10 @@ TEST_CASE("a head carries the place where the beam leaves around with it") {
 
 TEST_CASE("a whole spinning head may be turned again, about another axis: the outer turn comes last") {
   const double spin = 10 * 360_deg, tilt = -15_deg, turn = 7_deg;
-  const Deflector spinning{RotatingHead{.rate = -spin},
+  const Deflector spinning{RotatingHead{.angular_rate = -spin},
                            Deflector{FixedBeam{aimed_at(0, tilt)}, Scanner{.pulse_rate = 20_kHz, .pulses = 40000}}};
-  const Deflector nodding{RotatingHead{.rate = turn, .axis = axis::right}, spinning};
-  const Deflector panning{RotatingHead{.rate = 3 * turn, .start = 1}, nodding};
+  const Deflector nodding{RotatingHead{.angular_rate = turn, .axis = axis::right}, spinning};
+  const Deflector panning{RotatingHead{.angular_rate = 3 * turn, .start = 1}, nodding};
   for (PulseIndex i = 0; i < 40000; i += 77) {
     CAPTURE(i);
     const double t = static_cast<double>(i) / 20e3, azimuth = spin * t, nod = turn * t, pan = 1 + 3 * turn * t;
@@ -118,9 +118,9 @@ TEST_CASE("a closed optic blocks the slot, and so does a closed head or what is 
 }
 
 TEST_CASE("deflectors keep the laws of a source and the size and ticks of what they wrap") {
-  const Mirrored inner{PolygonMirror{.lines_per_second = 77, .angle_min = -1, .angle_max = 0.5},
+  const Mirrored inner{PolygonMirror{.line_rate = 77, .angle_min = -1, .angle_max = 0.5},
                        Scanner{.pulse_rate = 99999.5, .pulses = 1000000007}};
-  const Headed outer{RotatingHead{.rate = 0.1}, inner};
+  const Headed outer{RotatingHead{.angular_rate = 0.1}, inner};
   CHECK(support::source_laws(inner) == "");
   CHECK(support::source_laws(outer) == "");
   CHECK(support::wrapped_source_laws(inner, inner.source()) == "");
@@ -148,7 +148,7 @@ TEST_CASE("an optic or a head that gives no rotation is a bug, which debug build
 
 TEST_CASE("a deflector refuses settings that cannot be, its own and those inside") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS((Mirrored{PolygonMirror{.lines_per_second = -1}, Scanner{}}), SettingError);
+  CHECK_THROWS_AS((Mirrored{PolygonMirror{.line_rate = -1}, Scanner{}}), SettingError);
   CHECK_THROWS_AS((Mirrored{PolygonMirror{}, Scanner{.pulse_rate = nan}}), SettingError);
-  CHECK_THROWS_AS((Headed{RotatingHead{.rate = nan}, Mirrored{PolygonMirror{}, Scanner{}}}), SettingError);
+  CHECK_THROWS_AS((Headed{RotatingHead{.angular_rate = nan}, Mirrored{PolygonMirror{}, Scanner{}}}), SettingError);
 }

@@ -17,7 +17,7 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 
 TEST_CASE("a fibre array draws equally spaced points from end to end, both ends included, and begins again") {
-  const FiberArray array{.fibers = 11, .fibers_per_second = 1e5, .half_angle = 20_deg};
+  const FiberArray array{.fibers = 11, .fiber_rate = 1e5, .half_angle = 20_deg};
   for (PulseIndex i = 0; i < 33; ++i) {
     CAPTURE(i);
     const Tick t = Tick::of(i, 1e5);
@@ -35,14 +35,13 @@ TEST_CASE("a fibre array of one shines forward") {
 
 TEST_CASE("a fibre array keeps the laws of a motion") {
   const auto ticks = support::some_ticks(3);
-  CHECK(support::motion_laws(FiberArray{.fibers = 13, .fibers_per_second = 777.7}, ticks) == "");
+  CHECK(support::motion_laws(FiberArray{.fibers = 13, .fiber_rate = 777.7}, ticks) == "");
 }
 
 TEST_CASE("a fibre array refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(FiberArray{}.validate());
   CHECK_THROWS_AS(FiberArray{.fibers = 0}.validate(), SettingError);
-  for (const double bad : {0.0, -1.0, nan})
-    CHECK_THROWS_AS(FiberArray{.fibers_per_second = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(FiberArray{.fiber_rate = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 3.2, nan}) CHECK_THROWS_AS(FiberArray{.half_angle = bad}.validate(), SettingError);
 }

@@ -22,9 +22,9 @@ using namespace pulsecast::literals;
 namespace {
 /// Rounded triangle, plain triangle and sine, all at a cycle a second.
 std::array<OscillatingMirror, 3> mirrors() {
-  return {OscillatingMirror{.cycles_per_second = 1, .half_angle = 20_deg, .turning_time = 0.1},
-          OscillatingMirror{.cycles_per_second = 1, .half_angle = 20_deg},
-          OscillatingMirror{.cycles_per_second = 1, .half_angle = 20_deg, .swing = Swing::sine}};
+  return {OscillatingMirror{.cycle_rate = 1, .half_angle = 20_deg, .turning_time = 0.1},
+          OscillatingMirror{.cycle_rate = 1, .half_angle = 20_deg},
+          OscillatingMirror{.cycle_rate = 1, .half_angle = 20_deg, .swing = Swing::sine}};
 }
 }  // namespace
 
@@ -62,7 +62,7 @@ TEST_CASE(
     "between its turns a triangle has a constant rate, and in its turns a constant acceleration over the turning "
     "time") {
   const double half_angle = 20_deg, turning_time = 0.1, h = 1e-3;
-  const OscillatingMirror mirror{.cycles_per_second = 1, .half_angle = half_angle, .turning_time = turning_time};
+  const OscillatingMirror mirror{.cycle_rate = 1, .half_angle = half_angle, .turning_time = turning_time};
   const auto angle = [&](double s) { return mirror.angle(Tick::of_seconds(s + 10)); };  // ten whole cycles later
   const double rate = 4 * half_angle / (1 - turning_time);  // from: half_angle = rate * (1/4 - turn/2) + rate * turn/4
   for (double s = 0.05; s < 0.45 - h; s += h) CHECK((angle(s + h) - angle(s)) / h == support::relative(rate, 1e-9));
@@ -73,19 +73,19 @@ TEST_CASE(
 }
 
 TEST_CASE("a triangle without turning time is one of straight lines") {
-  const OscillatingMirror mirror{.cycles_per_second = 1, .half_angle = 20_deg};
+  const OscillatingMirror mirror{.cycle_rate = 1, .half_angle = 20_deg};
   for (int k = 0; k <= 50; ++k) CHECK(std::fabs(mirror.angle({0, k / 100.0}) - (-20_deg + k * 0.8_deg)) < 1e-15);
 }
 
 TEST_CASE("a sine is one") {
-  const OscillatingMirror mirror{.cycles_per_second = 1, .half_angle = 20_deg, .swing = Swing::sine};
+  const OscillatingMirror mirror{.cycle_rate = 1, .half_angle = 20_deg, .swing = Swing::sine};
   for (int k = 0; k < 100; ++k)
     CHECK(std::fabs(mirror.angle({0, k / 100.0}) + 20_deg * std::cos(2 * pi * k / 100)) < 1e-15);
 }
 
 TEST_CASE("an oscillating mirror that turns round in 100 pulses has the shape of a peer's") {
   // recorded from HELIOS++: 100 kHz, 50 Hz, 30 degrees; its recurrence is up to half a pulse ahead of the closed form
-  const OscillatingMirror mirror{.cycles_per_second = 50, .half_angle = 30_deg, .turning_time = 1_ms};
+  const OscillatingMirror mirror{.cycle_rate = 50, .half_angle = 30_deg, .turning_time = 1_ms};
   const double half_pulse = 0.5 * degrees(0.00110289368214492) + 1e-3;
   for (const auto& recorded : std::vector<std::pair<PulseIndex, double>>{{0, -30},
                                                                          {2, -29.9987103846278},
@@ -106,7 +106,7 @@ TEST_CASE("an oscillating mirror that turns round in 100 pulses has the shape of
 }
 
 TEST_CASE("an oscillating mirror's angle does not wear out with time") {
-  OscillatingMirror mirror{.cycles_per_second = 50, .turning_time = 1_ms};
+  OscillatingMirror mirror{.cycle_rate = 50, .turning_time = 1_ms};
   for (const Swing swing : {Swing::triangle, Swing::sine}) {
     mirror.swing = swing;
     for (PulseIndex i = 0; i < 5000; i += 7)  // 10^12 pulses are 10^7 s
@@ -121,12 +121,12 @@ TEST_CASE("an oscillating mirror keeps the laws of a motion") {
 TEST_CASE("an oscillating mirror refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(OscillatingMirror{}.validate());
-  CHECK_NOTHROW(OscillatingMirror{.cycles_per_second = 50, .turning_time = 10_ms}.validate());
+  CHECK_NOTHROW(OscillatingMirror{.cycle_rate = 50, .turning_time = 10_ms}.validate());
   for (const double bad : {0.0, -1.0, nan})
-    CHECK_THROWS_AS(OscillatingMirror{.cycles_per_second = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(OscillatingMirror{.cycle_rate = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 3.2, nan})
     CHECK_THROWS_AS(OscillatingMirror{.half_angle = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 10.1_ms, nan})
-    CHECK_THROWS_AS((OscillatingMirror{.cycles_per_second = 50, .turning_time = bad}.validate()), SettingError);
+    CHECK_THROWS_AS((OscillatingMirror{.cycle_rate = 50, .turning_time = bad}.validate()), SettingError);
   CHECK_THROWS_AS((OscillatingMirror{.swing = Swing::sine, .turning_time = 1_ms}.validate()), SettingError);
 }

@@ -19,7 +19,7 @@ using namespace pulsecast::literals;
 namespace {
 PatternTable some_table(std::uint64_t seed, std::size_t n, double rate) {
   support::Generator any(seed);
-  PatternTable table{.entries_per_second = rate};
+  PatternTable table{.entry_rate = rate};
   for (std::size_t k = 0; k < n; ++k)
     table.entries.push_back({.azimuth = any.uniform(-pi, pi), .elevation = any.uniform(-1.5, 1.5)});
   return table;
@@ -53,5 +53,5 @@ TEST_CASE("a pattern table refuses entries that cannot be, and none at all") {
   for (const double bad : {-1.6, 1.6, nan})
     CHECK_THROWS_AS((PatternTable{.entries = {{}, {.elevation = bad}}}.validate()), SettingError);
   for (const double bad : {0.0, -1.0, nan})
-    CHECK_THROWS_AS((PatternTable{.entries = {{}}, .entries_per_second = bad}.validate()), SettingError);
+    CHECK_THROWS_AS((PatternTable{.entries = {{}}, .entry_rate = bad}.validate()), SettingError);
 }

@@ -22,8 +22,8 @@ namespace {
 
 /// Two wedges, as of a small mapping sensor.
 RisleyPrisms two_wedges(double first, double second) {
-  return {.prisms = {{.wedge = 18.7481_deg, .turns_per_second = first},
-                     {.wedge = 17.9634_deg, .turns_per_second = second, .inclined_exit = true}}};
+  return {.prisms = {{.wedge = 18.7481_deg, .rotation_rate = first},
+                     {.wedge = 17.9634_deg, .rotation_rate = second, .inclined_exit = true}}};
 }
 
 /// Snell's law in a plane: light at an angle below forward meets a face whose normal, along the light, is at an angle
@@ -70,7 +70,7 @@ TEST_CASE("light is refracted by Snell's law, in the plane of light and normal")
 
 TEST_CASE("one prism draws a cone whose angle follows from Snell's law in a plane") {
   for (const bool inclined_exit : {false, true}) {
-    const RisleyPrisms optic{.prisms = {{.wedge = 18_deg, .turns_per_second = 10, .inclined_exit = inclined_exit}}};
+    const RisleyPrisms optic{.prisms = {{.wedge = 18_deg, .rotation_rate = 10, .inclined_exit = inclined_exit}}};
     const double angle = behind_prism(0, 18_deg, inclined_exit, 1.51);
     CHECK(angle > 9_deg);  // about (index - 1) times the wedge
     for (int k = 0; k < 100; ++k) {
@@ -146,8 +146,8 @@ TEST_CASE("a prism that reflects all light inside lets none out") {
 }
 
 TEST_CASE("two steep prisms let light out in a part of their turns only") {
-  const RisleyPrisms optic{.prisms = {{.wedge = 32_deg, .turns_per_second = 7},
-                                      {.wedge = 32_deg, .turns_per_second = -5, .inclined_exit = true}}};
+  const RisleyPrisms optic{
+      .prisms = {{.wedge = 32_deg, .rotation_rate = 7}, {.wedge = 32_deg, .rotation_rate = -5, .inclined_exit = true}}};
   int open = 0;
   for (PulseIndex i = 0; i < 1000; ++i) open += optic.open(Tick::of(i, 1000));
   CHECK(open > 100);
@@ -169,7 +169,7 @@ TEST_CASE("Risley prisms keep the laws of a motion") {
   const auto ticks = support::some_ticks(6);
   CHECK(support::motion_laws(two_wedges(-121.5657, 77.7430), ticks) == "");
   RisleyPrisms three = two_wedges(100, -77);
-  three.prisms.push_back({.wedge = 5_deg, .turns_per_second = 3.3, .start = 1});
+  three.prisms.push_back({.wedge = 5_deg, .rotation_rate = 3.3, .start = 1});
   CHECK(support::motion_laws(three, ticks) == "");
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("Risley prisms refuse what cannot be") {
   CHECK_NOTHROW(RisleyPrisms{.prisms = {{}}}.validate());
   for (const double bad : {-0.1, 1.6, nan})
     CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.wedge = bad}}}.validate()), SettingError);
-  CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.turns_per_second = nan}}}.validate()), SettingError);
+  CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.rotation_rate = nan}}}.validate()), SettingError);
   for (const double bad : {-1.0, 0.0, nan}) {
     CHECK_THROWS_AS((RisleyPrisms{.prisms = {{.refractive_index = bad}}}.validate()), SettingError);
     CHECK_THROWS_AS((RisleyPrisms{.prisms = {{}}, .surrounding_index = bad}.validate()), SettingError);

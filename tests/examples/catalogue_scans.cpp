@@ -61,14 +61,12 @@ Place place_of(const std::string& document, const ScannerSettings& scanner) {
   return {"tripod", 0, 0};
 }
 
-double scan_frequency_of(const ScannerSettings& scanner) {
+double scan_rate_of(const ScannerSettings& scanner) {
   const ChannelSettings& channel = scanner.channels.front();
-  if (channel.scan_frequency_max > 0) return 0.5 * (channel.scan_frequency_min + channel.scan_frequency_max);
+  if (channel.scan_rate_max > 0) return 0.5 * (channel.scan_rate_min + channel.scan_rate_max);
   const bool head_scans =
-      channel.scan_angle_max >= pi && (scanner.channels.size() > 1 || channel.head_speed_max > radians(3600));
-  return std::holds_alternative<RotatingOptic>(channel.optic) && head_scans
-             ? 0
-             : std::max(20.0, channel.scan_frequency_min);
+      channel.scan_angle_max >= pi && (scanner.channels.size() > 1 || channel.head_rate_max > radians(3600));
+  return std::holds_alternative<RotatingOptic>(channel.optic) && head_scans ? 0 : std::max(20.0, channel.scan_rate_min);
 }
 
 SurveySettings survey_of(const std::string& document, const ScannerSettings& scanner,
@@ -79,15 +77,15 @@ SurveySettings survey_of(const std::string& document, const ScannerSettings& sca
       std::find_if(platforms.begin(), platforms.end(), [&](const auto& p) { return p.id == place.platform; });
   REQUIRE(platform != platforms.end());
   survey.platform = *platform;
-  const double head_speed = std::min(scanner.channels.front().head_speed_max, radians(3600));
+  const double head_rate = std::min(scanner.channels.front().head_rate_max, radians(3600));
   LegSettings leg;
   leg.duration_max = 2;
   leg.platform.position = {0, 0, place.height};
   leg.platform.speed = place.speed;
   leg.scanner.pulse_rate = scanner.pulse_rates.front();
-  leg.scanner.scan_frequency = scan_frequency_of(scanner);
-  leg.scanner.head_speed = head_speed;
-  if (place.speed == 0 && head_speed > 0) leg.scanner.head_stop = 2 * head_speed;  // for as long
+  leg.scanner.scan_rate = scan_rate_of(scanner);
+  leg.scanner.head_rate = head_rate;
+  if (place.speed == 0 && head_rate > 0) leg.scanner.head_stop = 2 * head_rate;  // for as long
   survey.legs.push_back(leg);
   if (place.speed > 0) {
     leg.platform.position.y += 2 * place.speed;
@@ -152,12 +150,11 @@ TEST_CASE("every scanner of the catalogue scans a plane, at the rates that it is
       CHECK(found.pulses >= 100);
       CHECK(found.echoes >= 20);
       for (const ChannelSettings& channel : scanner.channels) {
-        CHECK(channel.scan_frequency_min <= survey.legs.front().scanner.scan_frequency);
-        CHECK((channel.scan_frequency_max == 0 ||
-               survey.legs.front().scanner.scan_frequency <= channel.scan_frequency_max));
+        CHECK(channel.scan_rate_min <= survey.legs.front().scanner.scan_rate);
+        CHECK((channel.scan_rate_max == 0 || survey.legs.front().scanner.scan_rate <= channel.scan_rate_max));
       }
-      if (scanner.channels.front().scan_frequency_max == 0) continue;
-      survey.legs.front().scanner.scan_frequency = 1.01 * scanner.channels.front().scan_frequency_max;
+      if (scanner.channels.front().scan_rate_max == 0) continue;
+      survey.legs.front().scanner.scan_rate = 1.01 * scanner.channels.front().scan_rate_max;
       CHECK_THROWS_AS((void)compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 0; }),
                       SettingError);
     }
@@ -174,7 +171,7 @@ TEST_CASE("every platform of the catalogue goes where it is sent") {
       LegSettings leg{.duration_max = 60};
       leg.platform.position = {5, y, 10};
       leg.platform.speed = 4;
-      leg.scanner.scan_frequency = scan_frequency_of(scanner);
+      leg.scanner.scan_rate = scan_rate_of(scanner);
       survey.legs.push_back(leg);
     }
     const CompiledSurvey compiled = compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 10; });

@@ -40,7 +40,7 @@ TEST_CASE("pulse rates") {
   for (const auto& [name, rate, first, bound] : {Case{"1 Hz, from pulse 1e12", 1, 1'000'000'000'000, 1e-12},
                                                  {"10 GHz, from pulse 1", 1e10, 1, 1e-5},
                                                  {"10 GHz, from pulse 1e12", 1e10, 1'000'000'000'000, 1e-5}}) {
-    const Deflector source{PatternTable{.entries = entries, .entries_per_second = rate},
+    const Deflector source{PatternTable{.entries = entries, .entry_rate = rate},
                            Scanner{.pulse_rate = rate, .pulses = first + 100'000}};
     double worst = 0, other_entry = 0;
     for (PulseIndex i = first; i < first + 100'000; ++i) {

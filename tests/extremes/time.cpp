@@ -117,23 +117,21 @@ TEST_CASE("the time of a pulse") {
 TEST_CASE("the phase of each optic") {
   const double tilt = 20_deg;
   directions("OscillatingMirror, triangle",
-             Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt}, scanner},
-             [&](PulseIndex i) {
+             Deflector{OscillatingMirror{.cycle_rate = frequency, .half_angle = tilt}, scanner}, [&](PulseIndex i) {
                const Real phase = turns(i).phase;
                return above(tilt * (phase < 0.5L ? 4 * phase - 1 : 3 - 4 * phase));
              });
-  directions(
-      "OscillatingMirror, sine",
-      Deflector{OscillatingMirror{.cycles_per_second = frequency, .half_angle = tilt, .swing = Swing::sine}, scanner},
-      [&](PulseIndex i) { return above(-tilt * std::cos(turn * turns(i).phase)); });
-  directions("PalmerMirror", Deflector{PalmerMirror{.turns_per_second = frequency, .half_angle = tilt}, scanner},
+  directions("OscillatingMirror, sine",
+             Deflector{OscillatingMirror{.cycle_rate = frequency, .half_angle = tilt, .swing = Swing::sine}, scanner},
+             [&](PulseIndex i) { return above(-tilt * std::cos(turn * turns(i).phase)); });
+  directions("PalmerMirror", Deflector{PalmerMirror{.rotation_rate = frequency, .half_angle = tilt}, scanner},
              [&](PulseIndex i) {
                const Real angle = turn * turns(i).phase, off = tilt;
                return Direction{std::sin(off) * std::sin(angle), std::cos(off), std::sin(off) * std::cos(angle)};
              });
   const std::vector<double> tilts{0, 1_deg, 2_deg};
   // where a pulse and a line begin together, the tick may round to the end of the line before
-  const PolygonMirror polygon{.lines_per_second = rate / 8.0, .sweep = 6_deg, .facet_tilts = tilts};
+  const PolygonMirror polygon{.line_rate = rate / 8.0, .sweep = 6_deg, .facet_tilts = tilts};
   directions("PolygonMirror of three facets, a line in eight pulses", Deflector{polygon, scanner}, [&](PulseIndex i) {
     const bool before = i % 8 == 0 && polygon.angle(Tick::of(i, rate)) > 0;
     const Real phase = before ? 1 : static_cast<Real>(i % 8) / 8, angle = static_cast<Real>(6_deg) * (2 * phase - 1);
@@ -141,23 +139,23 @@ TEST_CASE("the phase of each optic") {
     return Direction{std::sin(aside), std::cos(aside) * std::cos(angle), std::cos(aside) * std::sin(angle)};
   });
   directions("FiberArray of 127 fibres at the pulse rate",
-             Deflector{FiberArray{.fibers = 127, .fibers_per_second = rate, .half_angle = tilt}, scanner},
+             Deflector{FiberArray{.fibers = 127, .fiber_rate = rate, .half_angle = tilt}, scanner},
              [&](PulseIndex i) { return above(tilt * (2 * static_cast<Real>(i % 127) / 126 - 1)); });
   std::vector<BeamAngles> entries;
   for (int k = 0; k < 1009; ++k) entries.push_back({0.5 * std::sin(k), 0.3 * std::cos(2 * k)});
   directions("PatternTable of 1009 entries at the pulse rate",
-             Deflector{PatternTable{.entries = entries, .entries_per_second = rate}, scanner}, [&](PulseIndex i) {
+             Deflector{PatternTable{.entries = entries, .entry_rate = rate}, scanner}, [&](PulseIndex i) {
                const Real azimuth = entries[i % 1009].azimuth, elevation = entries[i % 1009].elevation;
                return Direction{std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
                                 std::sin(elevation)};
              });
   directions("RotatingHead at half a turn a second",
-             Deflector{RotatingHead{.rate = pi}, Deflector{FixedBeam{}, scanner}}, [&](PulseIndex i) {
+             Deflector{RotatingHead{.angular_rate = pi}, Deflector{FixedBeam{}, scanner}}, [&](PulseIndex i) {
                const Real angle = turn * turns(i, 8).phase;
                return Direction{-std::sin(angle), std::cos(angle), 0};
              });
   const double apart =
-      worst(Deflector{RotatingHead{.rate = 10}, Deflector{FixedBeam{}, scanner}}, late, [&](PulseIndex i) {
+      worst(Deflector{RotatingHead{.angular_rate = 10}, Deflector{FixedBeam{}, scanner}}, late, [&](PulseIndex i) {
         const Real angle = std::remainder(10 * static_cast<Real>(i) / rate, turn);
         return Direction{-std::sin(angle), std::cos(angle), 0};
       });
@@ -168,7 +166,7 @@ TEST_CASE("the phase of each optic") {
   const double wedge = 0.3, index = 1.5;
   directions(
       "RisleyPrisms",
-      Deflector{RisleyPrisms{.prisms = {{.wedge = wedge, .turns_per_second = frequency, .refractive_index = index}}},
+      Deflector{RisleyPrisms{.prisms = {{.wedge = wedge, .rotation_rate = frequency, .refractive_index = index}}},
                 scanner},
       [&](PulseIndex i) {
         const Real inside =
@@ -176,15 +174,15 @@ TEST_CASE("the phase of each optic") {
         const Real off = std::asin(index * std::sin(wedge - inside)), angle = turn * turns(i).phase;
         return Direction{-std::sin(off) * std::sin(angle), std::cos(off), -std::sin(off) * std::cos(angle)};
       });
-  refused(quantity, "a mirror at 0 Hz", [] { OscillatingMirror{.cycles_per_second = 0}.validate(); });
-  refused(quantity, "a mirror at 1e13 Hz", [] { OscillatingMirror{.cycles_per_second = 1e13}.validate(); });
-  refused(quantity, "a cone at 1e13 Hz", [] { PalmerMirror{.turns_per_second = 1e13}.validate(); });
-  refused(quantity, "a polygon at 1e13 Hz", [] { PolygonMirror{.lines_per_second = 1e13}.validate(); });
-  refused(quantity, "fibres at 1e13 Hz", [] { FiberArray{.fibers_per_second = 1e13}.validate(); });
-  refused(quantity, "a table at 1e13 Hz", [] { PatternTable{.entries = {{}}, .entries_per_second = 1e13}.validate(); });
-  refused(quantity, "a head at 1e13 rad/s", [] { RotatingHead{.rate = 1e13}.validate(); });
+  refused(quantity, "a mirror at 0 Hz", [] { OscillatingMirror{.cycle_rate = 0}.validate(); });
+  refused(quantity, "a mirror at 1e13 Hz", [] { OscillatingMirror{.cycle_rate = 1e13}.validate(); });
+  refused(quantity, "a cone at 1e13 Hz", [] { PalmerMirror{.rotation_rate = 1e13}.validate(); });
+  refused(quantity, "a polygon at 1e13 Hz", [] { PolygonMirror{.line_rate = 1e13}.validate(); });
+  refused(quantity, "fibres at 1e13 Hz", [] { FiberArray{.fiber_rate = 1e13}.validate(); });
+  refused(quantity, "a table at 1e13 Hz", [] { PatternTable{.entries = {{}}, .entry_rate = 1e13}.validate(); });
+  refused(quantity, "a head at 1e13 rad/s", [] { RotatingHead{.angular_rate = 1e13}.validate(); });
   refused(quantity, "a head that starts at 1e12 rad", [] { RotatingHead{.start = 1e12}.validate(); });
-  refused(quantity, "a prism at 1e13 Hz", [] { RisleyPrisms{.prisms = {{.turns_per_second = 1e13}}}.validate(); });
+  refused(quantity, "a prism at 1e13 Hz", [] { RisleyPrisms{.prisms = {{.rotation_rate = 1e13}}}.validate(); });
   refused(quantity, "a prism that starts at 1e12 rad", [] { RisleyPrisms{.prisms = {{.start = 1e12}}}.validate(); });
 }
 
@@ -333,7 +331,7 @@ TEST_CASE("a whole survey") {
   };
   const Mount down{.boresight = rotation_about(axis::right, -90_deg)};
   const Platform source{StraightLine{.from = {0, 0, 1000}, .to = {0, 4e9, 1000}, .speed = 64}, down,
-                        Deflector{PolygonMirror{.lines_per_second = frequency, .sweep = 30_deg}, scanner}};
+                        Deflector{PolygonMirror{.line_rate = frequency, .sweep = 30_deg}, scanner}};
   const Plane plane;
   const Survey survey{source, SingleRay{}, plane, Receiver{}, FirstHit{}};
   auto workspace = survey.workspace();

@@ -42,8 +42,8 @@ TEST_CASE("the bounds of the directions leave NaN out") {
     rays.set_direction(2, {4, nan, -5});
     rays.size = size;
     rays.pad();
-    CHECK(rays.least == (size == 1 ? Vec3(infinity) : Vec3{1, -2, size == 2 ? 3.0 : -5.0}));
-    CHECK(rays.most == (size == 1 ? Vec3(-infinity) : Vec3{size == 2 ? 1.0 : 4.0, -2, 3}));
+    CHECK(rays.directions_min == (size == 1 ? Vec3(infinity) : Vec3{1, -2, size == 2 ? 3.0 : -5.0}));
+    CHECK(rays.directions_max == (size == 1 ? Vec3(-infinity) : Vec3{size == 2 ? 1.0 : 4.0, -2, 3}));
   }
 }
 

@@ -46,7 +46,7 @@ std::vector<AllHits::Entry> every_triangle(const MeshData& data, const SingleRay
   for (std::size_t i = 0; i < data.triangles.size(); ++i) {
     ClosestHit hit(far);
     intersect(data.triangle(i), static_cast<PrimitiveIndex>(i), ray, hit);
-    if (hit.met(0)) all.push_back({hit.range, hit.id});
+    if (hit.met(0)) all.push_back({hit.range[0], hit.id[0]});
   }
   std::sort(all.begin(), all.end());
   return all;
@@ -81,7 +81,7 @@ void compare_single(const MeshData& data, const TriangleMesh<Linear<>>& believed
     ClosestHit found(rays.far);
     mesh.closest(ray, found);
     counts.met += expected.met(0) ? 1U : 0U;
-    if (bits(found.range) != bits(expected.range[0]) || found.id != expected.id[0]) ++counts.closest;
+    if (bits(found.range[0]) != bits(expected.range[0]) || found.id[0] != expected.id[0]) ++counts.closest;
     AnyHit any(rays.far);
     mesh.closest(ray, any);
     if (any.found != expected.met(0)) ++counts.any;
@@ -160,7 +160,7 @@ TEST_CASE("a shape whose hits are random is asked from the ray's beginning, also
   double from = 0, to = 0;
   buffer.offer_first(asked, [&](const SingleRayPacket& sent, ClosestHit& first) {
     from = sent.near;
-    to = first.range;
+    to = first.range[0];
     first.offer(0, 50, 7);
   });
   CHECK(from == 2);

@@ -229,7 +229,7 @@ TEST_CASE("a survey, read, written and read again, gives equal settings") {
     CHECK(second.survey == first.survey);
     CHECK(second.warnings.empty());
     SurveySettings other = first.survey;
-    other.legs.front().scanner.scan_frequency += 1;  // what was compared can differ
+    other.legs.front().scanner.scan_rate += 1;  // what was compared can differ
     CHECK(other != first.survey);
   }
 }
@@ -270,7 +270,7 @@ TEST_CASE("settings that a program makes are written and read") {
   survey.scene.media = {
       {.absorption = 0.5},
       {.absorption = 0.1, .scattering = 0.2, .backscatter = 0.01, .min = Vec3{0, 1, 2}, .max = Vec3{3, 4, 5}}};
-  survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 1000, .scan_frequency = 10, .scan_angle = 0.3}}};
+  survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 1000, .scan_rate = 10, .scan_angle = 0.3}}};
   write_survey(folder / "own.xml", survey);
   const SurveySettings again = read_survey(folder / "own.xml").survey;
   CHECK(again.scene == survey.scene);
@@ -286,7 +286,7 @@ TEST_CASE("a survey is never written that would not be read") {
   SurveySettings survey;
   survey.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1}};
   survey.scene.parts = {{.source = ObjSource{.files = {data / "materials.obj"}}}};
-  survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 5000, .scan_frequency = 10}}};
+  survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 5000, .scan_rate = 10}}};
   write_survey(folder / "own.xml", survey);
   CHECK(read_survey(folder / "own.xml").survey.scanner.pulse_rates == std::vector<double>{5000});
   CHECK(read_survey(folder / "own.xml").warnings.empty());
@@ -364,8 +364,8 @@ TEST_CASE("a leg has the scanner's first rate, and resolutions give rates") {
           survey_text("", R"(<leg><platformSettings/><scannerSettings pulseFreq_hz="20000" verticalResolution_deg="0.24"
       horizontalResolution_deg="0.5" headRotateStop_deg="90"/></leg>)"))
           .survey;
-  CHECK(survey.legs[0].scanner.scan_frequency == support::relative(20000 * 0.24 / 240, 1e-12));
-  CHECK(survey.legs[0].scanner.head_speed == support::relative(radians(10), 1e-12));
+  CHECK(survey.legs[0].scanner.scan_rate == support::relative(20000 * 0.24 / 240, 1e-12));
+  CHECK(survey.legs[0].scanner.head_rate == support::relative(radians(10), 1e-12));
   CHECK(contains(faults_of(survey_text(
                      "", leg(R"(pulseFreq_hz="1e8" verticalResolution_deg="180" horizontalResolution_deg="1")"))),
                  "these resolutions need a scan frequency"));
@@ -646,7 +646,7 @@ TEST_CASE("templates may have templates, but none that is its own") {
       read_text(
           survey_text("", R"(<leg maxDuration_s="1"><platformSettings/><scannerSettings template="b"/></leg>)", two))
           .survey;
-  CHECK(survey.legs[0].scanner.scan_frequency == 30);
+  CHECK(survey.legs[0].scanner.scan_rate == 30);
   CHECK(survey.legs[0].scanner.scan_angle == radians(9));
   const std::string cycle = R"(<scannerSettings id="a" template="b"/><scannerSettings id="b" template="a"/>)";
   CHECK(contains(faults_of(survey_text("", leg(R"(template="a")"), cycle)), "is a template of itself"));
@@ -750,7 +750,7 @@ TEST_CASE("hostile documents are refused at once") {
     FAIL("was read");
   } catch (const XmlFaults& faults) {
     CHECK(contains(faults.what(), "there is no <survey>"));
-    CHECK(faults.warnings().size() == XmlReport::max_told);
+    CHECK(faults.warnings().size() == XmlReport::max_listed);
     CHECK(contains(faults.warnings().back(), "; more than 1000 are not listed"));
   }
   refuses("<document><scene id=\"s\"><part><filter type=\"objloader\">" + params + "</filter></part></scene>" +

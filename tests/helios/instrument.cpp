@@ -38,7 +38,7 @@ namespace {
 /// A beam straight ahead, 1000 times a second.
 ScannerSettings ahead(const ErrorFormulas& errors = {}) {
   ScannerSettings scanner{.id = "ahead", .pulse_rates = {1000}};
-  scanner.channels = {{.optic = RotatingOptic{}, .head_speed_max = radians(360), .errors = errors}};
+  scanner.channels = {{.optic = RotatingOptic{}, .head_rate_max = radians(360), .errors = errors}};
   return scanner;
 }
 
@@ -49,9 +49,9 @@ SurveySettings flight(const ScannerSettings& scanner, const PlatformSettings& pl
   leg.platform.position = {-50, 10, 60};
   leg.platform.speed = 200;
   leg.scanner.pulse_rate = 2000;
-  const double fastest = scanner.channels.front().scan_frequency_max;
-  leg.scanner.scan_frequency = fastest > 0 ? std::min(20.0, fastest) : 20;
-  leg.scanner.head_speed = radians(90);
+  const double fastest = scanner.channels.front().scan_rate_max;
+  leg.scanner.scan_rate = fastest > 0 ? std::min(20.0, fastest) : 20;
+  leg.scanner.head_rate = radians(90);
   leg.scanner.warm_up = 0.25;
   survey.legs = {leg, leg};
   survey.legs[1].platform.position.x += 100;
@@ -130,7 +130,7 @@ TEST_CASE("beams leave from where the trajectory and the beam origin are, and th
   ScannerSettings scanner = ahead();
   scanner.channels[0].beam_origin.position = {0, 0, 0.5};
   const Platform still{Tripod{.position = {1, 2, 3}}, Mount{.lever_arm = {0, 0, 1}},
-                       Instrument(scanner, {.head_speed = radians(90)}, 2)};
+                       Instrument(scanner, {.head_rate = radians(90)}, 2)};
   CHECK(still.size() == 2000);
   CHECK(still.duration().seconds() == 2);
   CHECK(length(still.pulse(0)->origin() - Vec3{1, 2, 4.5}) < 1e-12);
@@ -150,7 +150,7 @@ TEST_CASE("a scan continues that of an earlier instrument, if its running time i
   ScannerSettings scanner = ahead();
   scanner.channels[0].optic = OscillatingOptic{};
   scanner.channels[0].scan_angle_max = radians(20);
-  const LegScannerSettings settings{.scan_frequency = 4};
+  const LegScannerSettings settings{.scan_rate = 4};
   const Instrument whole(scanner, settings, 1), later(scanner, settings, 0.4, {.optic_time = 0.6});
   for (const PulseIndex i : {PulseIndex{0}, PulseIndex{177}, PulseIndex{399}})
     CHECK(length(later.pulse(i)->direction() - whole.pulse(600 + i)->direction()) < 1e-9);
@@ -176,7 +176,7 @@ TEST_CASE("errors by formulas are reported by platforms, whatever wraps the inst
   const Channels both{std::vector{exact, errs}};
   CHECK_FALSE(reported(both, 6).has_value());
   CHECK(length(reported(both, 7)->position - moved) < 1e-12);
-  const Deflector turned{RotatingHead{.rate = 0, .start = pi / 2}, errs};
+  const Deflector turned{RotatingHead{.angular_rate = 0, .start = pi / 2}, errs};
   CHECK(length(reported(turned, 3)->position - Vec3{-0.5, 0, 1}) < 1e-12);
   CHECK_FALSE(reported(Deflector{RotatingHead{}, exact}, 3).has_value());
   const WithPoseErrors with_lever{Platform{Tripod{}, mount, errs}, {.lever_arm_error = {1, 0, 0}}};
@@ -207,10 +207,10 @@ TEST_CASE("instruments that cannot be are refused with the attribute") {
   scanner.pulse_rates.clear();
   CHECK_THROWS_WITH_AS(Instrument(scanner, {}, 1), doctest::Contains("pulseFreq_hz"), SettingError);
   CHECK_NOTHROW(Instrument(scanner, {.pulse_rate = 10}, 1));
-  scanner.channels[0].scan_frequency_max = 50;
-  CHECK_THROWS_WITH_AS(Instrument(scanner, {.pulse_rate = 10, .scan_frequency = 60}, 1),
-                       doctest::Contains("scanFreq_hz"), SettingError);
-  CHECK_NOTHROW(Instrument(scanner, {.active = false, .pulse_rate = 10, .scan_frequency = 60}, 1));
+  scanner.channels[0].scan_rate_max = 50;
+  CHECK_THROWS_WITH_AS(Instrument(scanner, {.pulse_rate = 10, .scan_rate = 60}, 1), doctest::Contains("scanFreq_hz"),
+                       SettingError);
+  CHECK_NOTHROW(Instrument(scanner, {.active = false, .pulse_rate = 10, .scan_rate = 60}, 1));
 }
 
 }  // namespace pulsecast::helios

@@ -33,11 +33,11 @@ SurveySettings survey() {
   s.name = "plane";
   s.scanner.id = "mirror";
   s.scanner.pulse_rates = {1000};
-  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(50), .head_speed_max = radians(360)}};
+  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(50), .head_rate_max = radians(360)}};
   s.platform.mount.rotation = {{{Axis::x, radians(-90)}}};
   LegSettings leg;
   leg.platform.position = {0, 0, height};
-  leg.scanner.scan_frequency = 10;
+  leg.scanner.scan_rate = 10;
   leg.duration_max = 2;
   s.legs = {leg};
   return s;
@@ -72,7 +72,7 @@ TEST_CASE("each pulse that points down at a plane has one echo on it, on any num
   CHECK(scene.parts == 1);
   CHECK(scene.moving == 0);
   CHECK(scene.triangles == 2);
-  CHECK(scene.most == Vec3{100, 100, 0});
+  CHECK(scene.max == Vec3{100, 100, 0});
   const Cloud cloud = run(*simulation);
   CHECK(cloud.size() == 2000);
   CHECK(farthest_from_plane(cloud) < 0.05);  // obliquely, the echo of a footprint comes from before its middle

@@ -18,10 +18,10 @@ static_assert(!std::is_copy_constructible_v<Simulation> && !std::is_copy_assigna
 SurveySettings survey() {
   SurveySettings s;
   s.scanner.pulse_rates = {1000};
-  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(60), .head_speed_max = radians(360)}};
+  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(60), .head_rate_max = radians(360)}};
   LegSettings leg;
-  leg.scanner.scan_frequency = 10;
-  leg.scanner.head_speed = leg.scanner.head_stop = radians(90);
+  leg.scanner.scan_rate = 10;
+  leg.scanner.head_rate = leg.scanner.head_stop = radians(90);
   s.legs = {leg};
   return s;
 }
@@ -30,7 +30,7 @@ TEST_CASE("what can be checked without a scene is") {
   SurveySettings s = survey();
   CHECK(check_without_scene(s).empty());
   SUBCASE("a leg that scans faster than the device can") {
-    s.scanner.channels[0].scan_frequency_max = 5;
+    s.scanner.channels[0].scan_rate_max = 5;
     CHECK_THROWS_WITH_AS((void)check_without_scene(s), doctest::Contains("leg 0: scanFreq_hz"), SettingError);
     CHECK_THROWS_WITH_AS((void)check_without_scene(s, {"a.xml:3:5"}),
                          doctest::Contains("a.xml:3:5: leg 0: scanFreq_hz"), SettingError);

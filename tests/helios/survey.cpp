@@ -30,13 +30,13 @@ std::optional<double> flat(const Vec2&) { return 7; }
 SurveySettings survey_of(PlatformKind kind, const std::vector<Vec3>& places, double speed = 10) {
   SurveySettings s;
   s.scanner.pulse_rates = {1000};
-  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(60), .head_speed_max = radians(360)}};
+  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(60), .head_rate_max = radians(360)}};
   s.platform.kind = kind;
   for (const Vec3& place : places) {
     LegSettings leg;
     leg.platform.position = place;
     leg.platform.speed = speed;
-    leg.scanner.scan_frequency = 10;
+    leg.scanner.scan_rate = 10;
     s.legs.push_back(leg);
   }
   return s;
@@ -47,7 +47,7 @@ Vec3 origin(const CompiledSurvey& compiled, PulseIndex i) { return compiled.sour
 TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {4, 5, 6}});
   for (LegSettings& leg : s.legs) {
-    leg.scanner.head_speed = radians(90);
+    leg.scanner.head_rate = radians(90);
     leg.scanner.head_stop = radians(180);
   }
   s.platform.mount.position = {0, 0, 1.5};
@@ -86,7 +86,7 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SUBCASE("nor of more pulses than can be counted") {
     s.legs[1].duration_max = 1e9;
     s.legs[1].scanner.pulse_rate = 1e8;
-    s.legs[1].scanner.head_speed = 0;
+    s.legs[1].scanner.head_rate = 0;
     s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
   }
@@ -99,13 +99,13 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
   }
   SUBCASE("a leg that would never end is refused") {
-    s.legs[1].scanner.head_speed = 0;
+    s.legs[1].scanner.head_rate = 0;
     s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
     s.legs[1].scanner.head_stop = 1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat),
                          doctest::Contains("leg 1: headRotateStop_deg: the leg never ends"), SettingError);
-    s.legs[1].scanner.head_speed = -1;
+    s.legs[1].scanner.head_rate = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
   }
 }
@@ -123,7 +123,7 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
   CHECK(length(compiled.source.pulse(0)->direction() - axis::right) < 1e-9);
 
   SUBCASE("a head that outlasts the way is told of") {
-    s.legs[0].scanner.head_speed = radians(90);
+    s.legs[0].scanner.head_rate = radians(90);
     s.legs[0].scanner.head_stop = radians(900);
     const CompiledSurvey waits = compile_survey(s, flat);
     CHECK(waits.legs[0].duration.seconds() == 10);
@@ -146,8 +146,8 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
                          SettingError);
   }
   SUBCASE("the last leg says where the way ends, whatever the scanner could do there") {
-    for (ChannelSettings& channel : s.scanner.channels) channel.scan_frequency_min = 5;
-    s.legs.back().scanner.scan_frequency = 0;
+    for (ChannelSettings& channel : s.scanner.channels) channel.scan_rate_min = 5;
+    s.legs.back().scanner.scan_rate = 0;
     s.legs.back().duration_max = 4;
     const CompiledSurvey later = compile_survey(s, flat);
     CHECK(later.source.size() == compiled.source.size());
@@ -372,7 +372,7 @@ TEST_CASE("a platform that moves, and has but one leg, stays there") {
     CHECK(origin(compiled, 0) == Vec3{3, 4, 7});
     CHECK(compiled.source.pulse(1999)->pose.position == Vec3{3, 4, 7});
     s.legs[0].duration_max.reset();
-    s.legs[0].scanner.head_speed = radians(90);
+    s.legs[0].scanner.head_rate = radians(90);
     s.legs[0].scanner.head_stop = radians(360);
     CHECK(compile_survey(s, flat).source.size() == 4000);
   }
@@ -604,7 +604,7 @@ TEST_CASE("settings of a program have the limits of a document's") {
           "leg 1: verticalAngleMin_deg is -2291.831180523293 deg, but must be from -360 to 360: given in degrees, not "
           "radians?");
   refused([&](SurveySettings& o) { scanner(o).pulse_rate = 1e12; }, "leg 1: pulseFreq_hz is 1e+12 Hz");
-  refused([&](SurveySettings& o) { scanner(o).scan_frequency = 1e3; },
+  refused([&](SurveySettings& o) { scanner(o).scan_rate = 1e3; },
           "leg 1: scanFreq_hz is 1000 Hz: expected less than pulseFreq_hz, 1000 Hz");
   refused([&](SurveySettings& o) { scanner(o).vertical_angle_min = scanner(o).vertical_angle_max = 0.5; },
           "leg 1: verticalAngleMin_deg: no");
@@ -613,7 +613,7 @@ TEST_CASE("settings of a program have the limits of a document's") {
   refused([&](SurveySettings& o) { device(o).efficiency = 1.5; }, "opticalEfficiency is 1.5, but must be from 0 to 1");
   refused([&](SurveySettings& o) { device(o).range_min = device(o).range_max = 5; },
           "rangeMax_m is not beyond rangeMin_m");
-  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 1 + (device(o).scan_frequency_max = 8); },
+  refused([&](SurveySettings& o) { device(o).scan_rate_min = 1 + (device(o).scan_rate_max = 8); },
           "scanFreqMax_Hz is below");
   refused([&](SurveySettings& o) { device(o).errors.range = "1/0*THETA"; },
           "expr=\"1/0*THETA\" is not finite for any THETA");
@@ -632,7 +632,7 @@ TEST_CASE(
   LegScannerSettings& leg = s.legs[0].scanner;
   REQUIRE(compile_survey(s, flat).warnings.empty());
   leg.pulse_rate = 123;
-  leg.head_speed = 30;
+  leg.head_rate = 30;
   leg.head_stop = 360;
   leg.scan_angle = radians(70);
   s.scanner.channels[0].waveform.bin_size = 9e-9;
@@ -658,7 +658,7 @@ TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told 
     CHECK_THROWS_WITH_AS((void)compile_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat),
                          doctest::Contains("leg 0: movePerSec_m is "), SettingError);
   SurveySettings s = survey_of(stationary, {{}});
-  s.legs[0].scanner.head_speed = 1e-300;
+  s.legs[0].scanner.head_rate = 1e-300;
   s.legs[0].scanner.head_stop = 2;
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0 (duration) is "), SettingError);
 }
@@ -685,7 +685,7 @@ TEST_CASE("channels fire together, each from its own place") {
 TEST_CASE("noise of the platform is reported alone, as the settings say, and can be left out") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}});
   s.legs[0].duration_max = 10;
-  s.legs[0].scanner.scan_frequency = 0;
+  s.legs[0].scanner.scan_rate = 0;
   s.platform.position_noise = {
       NoiseSettings{.deviation = 0.1}, NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3},
       NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2}};
@@ -748,15 +748,15 @@ TEST_CASE("legs are beside where they should be by chance, alike for the same se
 TEST_CASE("what is wrong with an optic names its leg") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}, {}});
   for (LegSettings& leg : s.legs) leg.duration_max = 1;
-  s.scanner.channels[0].scan_frequency_max = 9;
-  s.legs[0].scanner.scan_frequency = 5;
+  s.scanner.channels[0].scan_rate_max = 9;
+  s.legs[0].scanner.scan_rate = 5;
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: scanFreq_hz is 10 Hz"), SettingError);
 }
 
 TEST_CASE("what a scanner or a drone cannot is noted once") {
   SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 0}, {20, 0, 0}, {40, 0, 0}, {60, 0, 0}});
   s.scanner.channels[0].optic = OscillatingOptic{};
-  for (LegSettings& leg : s.legs) leg.scanner.scan_frequency = 400;
+  for (LegSettings& leg : s.legs) leg.scanner.scan_rate = 400;
   s.platform.multicopter.yaw_speed = 0;
   s.platform.multicopter.pitch_offset = pi / 2;
   const CompiledSurvey compiled = compile_survey(s, flat);

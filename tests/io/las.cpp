@@ -484,8 +484,7 @@ TEST_CASE("the bytes of a file do not depend on how the pulses are cut into batc
   }
 }
 
-// ----------------------------------------------------------------------------------------------------------------
-// formats
+// ----------------------------------------------------------------------------------------- formats
 
 TEST_CASE("points of legacy formats hold what they can, and headers say which they are") {
   const Shot sideways{.direction = {0, 0, -1}, .scan_angle = pi, .channel = 77};
@@ -549,8 +548,7 @@ TEST_CASE("every format reads back, and tells the same places and times") {
   }
 }
 
-// -------------------------------------------------------------------------------------------------------------
-// intensities
+// ------------------------------------------------------------------------------------- intensities
 
 TEST_CASE("an intensity of amplitude has the full scale that it is given") {
   const Shot shot{.direction = {0, 0, -1}};
@@ -603,8 +601,7 @@ TEST_CASE(
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
-// waveforms
+// --------------------------------------------------------------------------------------- waveforms
 
 TEST_CASE("two returns of a pulse share one packet, in which their places are found") {
   const double c = speed_of_light;

@@ -112,8 +112,9 @@ std::filesystem::path exported(const std::filesystem::path& from, const std::fil
 
 Cloud scan(std::vector<Part<TriangleMesh<>>> parts) {
   const Scene<TriangleMesh<>> scene(std::move(parts));
-  const Deflector sweeping{PolygonMirror{.lines_per_second = 200_Hz}, Scanner{.pulse_rate = 20_kHz, .pulses = 20'000}};
-  const Platform platform{Tripod{.position = {0, 0, 0}}, Mount{}, Deflector{RotatingHead{.rate = 360_deg}, sweeping}};
+  const Deflector sweeping{PolygonMirror{.line_rate = 200_Hz}, Scanner{.pulse_rate = 20_kHz, .pulses = 20'000}};
+  const Platform platform{Tripod{.position = {0, 0, 0}}, Mount{},
+                          Deflector{RotatingHead{.angular_rate = 360_deg}, sweeping}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}, 7};
   Cloud cloud;
   run(survey, {}, cloud);

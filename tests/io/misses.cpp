@@ -44,9 +44,9 @@ Scene<TriangleMesh<>> plates() {
 
 /// A scan all around, with pulses of all fates but `below_threshold`.
 auto scan(const Scene<TriangleMesh<>>& scene) {
-  const PolygonMirror mirror{.lines_per_second = 97, .angle_min = -0.3, .angle_max = 0.3};
+  const PolygonMirror mirror{.line_rate = 97, .angle_min = -0.3, .angle_max = 0.3};
   return Survey{Platform{Tripod{}, Mount{},
-                         Deflector{RotatingHead{.rate = 2 * pi},
+                         Deflector{RotatingHead{.angular_rate = 2 * pi},
                                    Deflector{mirror, Scanner{.pulse_rate = 20e3, .pulses = 20'000}}}},
                 SingleRay{}, scene, Receiver{.range_max = 500}, FirstHit{}};
 }

@@ -178,7 +178,7 @@ TEST_CASE("sensors other than an OS1-64 that starts at encoder 0 are refused") {
   CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"),
                        SettingError);
   sensor = ouster_os1_64();
-  sensor.turns_per_second = 0;
+  sensor.rotation_rate = 0;
   CHECK_THROWS_WITH_AS(OusterPackets(sensor, {}, take), doctest::Contains("SpinningSensor::sequence_rate"),
                        SettingError);
   sensor.lasers.pop_back();

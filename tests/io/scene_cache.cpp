@@ -39,7 +39,7 @@ struct Secretive {
   std::size_t memory() const noexcept { return 0; }
   std::size_t material_count() const noexcept { return 1; }
   void closest(const RayBundle&, ClosestHits&) const noexcept {}
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {}; }
+  SurfaceInteraction surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {}; }
   Box box;
 };
 

@@ -103,7 +103,7 @@ TEST_CASE("a Velodyne calibration that is written reads back the same") {
     const SpinningSensor unit = unit_of(sheet, any, 0);
     const SpinningSensor read = velodyne_of(velodyne_text(unit), sheet);
     check_same(read, unit, 0, 0);
-    CHECK(read.turns_per_second == 20);
+    CHECK(read.rotation_rate == 20);
   }
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("metadata of an OS1 that is written reads back the same") {
     const SpinningSensor read = ouster_of(ouster_text(unit));
     check_same(read, unit, 1e-11, 1e-12);
     CHECK(read.sequence_rate == unit.sequence_rate);
-    CHECK(read.turns_per_second == unit.turns_per_second);
+    CHECK(read.rotation_rate == unit.rotation_rate);
   }
 }
 

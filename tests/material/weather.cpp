@@ -37,11 +37,11 @@ double quadrature(const Precipitation& p, const Function& f) {
   const std::array<double, 5> weights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                       0.2369268850561891};
   const int count = 2000;
-  const double half = (p.most - p.least) / (2 * count);
+  const double half = (p.diameter_max - p.diameter_min) / (2 * count);
   double sum = 0;
   for (int i = 0; i < count; ++i)
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const double d = p.least + half * (2 * i + 1 + nodes[k]);
+      const double d = p.diameter_min + half * (2 * i + 1 + nodes[k]);
       sum += weights[k] * half * f(d) * p.density * std::exp(-p.slope * d);
     }
   return sum;
@@ -54,9 +54,9 @@ const std::vector<Precipitation> precipitations{
     rain(50, 1.55e-6),
     snow(0.5, 0.905e-6),
     snow(5, 0.532e-6),
-    {.density = 3, .slope = 1e-3, .least = 1, .most = 2, .absorption = 0.5, .reflectance = 0.5},
-    {.density = 1e7, .slope = 2e3, .least = 1e-3, .most = 1.001e-3},
-    {.density = 1e7, .slope = 1, .least = 0, .most = 1e-3, .absorption = 1e3, .reflectance = 0.03},
+    {.density = 3, .slope = 1e-3, .diameter_min = 1, .diameter_max = 2, .absorption = 0.5, .reflectance = 0.5},
+    {.density = 1e7, .slope = 2e3, .diameter_min = 1e-3, .diameter_max = 1.001e-3},
+    {.density = 1e7, .slope = 1, .diameter_min = 0, .diameter_max = 1e-3, .absorption = 1e3, .reflectance = 0.03},
 };
 
 /// Light lost by and scattered straight back from a sphere, by its cross section and 1 sr.
@@ -170,8 +170,8 @@ TEST_CASE("rain is Marshall and Palmer's") {
   CHECK(p.slope == relative(4.1 * std::pow(10, -0.21) * 1e3, 1e-14));  // per m
   CHECK(rain(1, 0.905e-6).slope == relative(4100, 1e-14));
   Precipitation whole = p;
-  whole.least = 0;
-  whole.most = 1;
+  whole.diameter_min = 0;
+  whole.diameter_max = 1;
   CHECK(whole.extinction() * 1e3 == relative(0.365 * std::pow(10, 0.63), 1e-3));  // pi n0 / slope^3, per km
   CHECK(whole.number() == relative(p.density / p.slope, 1e-12));
   CHECK(p.extinction() > 0.98 * whole.extinction());  // what is cut off hardly counts
@@ -209,7 +209,7 @@ TEST_CASE(
 
 TEST_CASE("snow is Sekhon and Srivastava's, of flakes with the area of their mass") {
   const Precipitation p = snow(2, 0.905e-6);
-  const double flake = p.least / 0.1e-3;
+  const double flake = p.diameter_min / 0.1e-3;
   CHECK(flake == relative(3.97, 1e-3));
   CHECK(p.density * flake ==
         relative(2.5e3 * std::pow(2, -0.94) * 1e3, 1e-13));  // of melted diameters, 2500 R^-0.94 /(m^3 mm)
@@ -266,19 +266,19 @@ TEST_CASE("a drop's backscatter without absorption is its extinction by the lida
 
 TEST_CASE("the diameter of a uniform number is the inverse of the cumulative distribution") {
   for (const Precipitation& p : precipitations) {
-    CHECK(p.diameter(0) == p.least);
-    CHECK(p.diameter(1) == relative(p.most, 1e-12));
-    CHECK(p.diameter(1) <= p.most);
-    CHECK(p.cumulative(p.least) == 0);
-    CHECK(p.cumulative(p.most) == 1);
+    CHECK(p.diameter(0) == p.diameter_min);
+    CHECK(p.diameter(1) == relative(p.diameter_max, 1e-12));
+    CHECK(p.diameter(1) <= p.diameter_max);
+    CHECK(p.cumulative(p.diameter_min) == 0);
+    CHECK(p.cumulative(p.diameter_max) == 1);
     for (double u = 0.01; u < 1; u += 0.01) {
       const double d = p.diameter(u);
-      REQUIRE(d > p.least);
-      REQUIRE(d < p.most);
+      REQUIRE(d > p.diameter_min);
+      REQUIRE(d < p.diameter_max);
       REQUIRE(std::fabs(p.cumulative(d) - u) < 1e-9);
     }
     Precipitation part = p;
-    part.most = p.diameter(0.3);
+    part.diameter_max = p.diameter(0.3);
     CHECK(part.number() == relative(0.3 * p.number(), 1e-9));
   }
 }
@@ -312,13 +312,13 @@ TEST_CASE("precipitation that cannot be is refused by the name of its setting") 
   CHECK(refused({}) == "");
   for (const double bad : {-1.0, nan_value, infinity}) {
     CHECK(refused({.density = bad}) == "Precipitation::density");
-    CHECK(refused({.least = bad}) == "Precipitation::least");
+    CHECK(refused({.diameter_min = bad}) == "Precipitation::diameter_min");
     CHECK(refused({.absorption = bad}) == "Precipitation::absorption");
   }
   for (const double bad : {0.0, 0.9e-3, 1.1e9, -1.0, nan_value, infinity})
     CHECK(refused({.slope = bad}) == "Precipitation::slope");
   for (const double bad : {1e-4, 0.9e-4, nan_value, infinity})
-    CHECK(refused({.most = bad}) == "Precipitation::most (above least)");
+    CHECK(refused({.diameter_max = bad}) == "Precipitation::diameter_max (above diameter_min)");
   for (const double bad : {0.99, -20.0, nan_value, infinity})
     CHECK(refused({.lidar_ratio = bad}) == "Precipitation::lidar_ratio");
   for (const double bad : {-0.01, 1.01, nan_value})

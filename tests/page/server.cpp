@@ -127,7 +127,7 @@ TEST_CASE("news are what came since, and how far the run is") {
   CHECK(has(text, "\"last\":\"\""));
   CHECK(has(text, "\"name\":\"A\""));
   give(server, 0, 1000);
-  server.tell({.done = 1000, .total = 5000, .echoes = 1000, .seconds = 2});
+  server.show({.done = 1000, .total = 5000, .echoes = 1000, .seconds = 2});
   text = news(a, "run=2&after=");
   CHECK(has(text, "\"done\":1000,\"total\":5000,\"echoes\":1000,\"seconds\":2,"));
   CHECK(has(text, "\"more\":false,\"last\":\"999\"}"));

@@ -36,8 +36,7 @@ using namespace pulsecast::literals;
 
 namespace {
 
-// ------------------------------------------------------------------------------------------------ the closed form, on
-// its own
+// --------------------------------------------------------------------- the closed form, on its own
 
 using Real = long double;
 using Row = std::array<Real, 3>;
@@ -70,12 +69,11 @@ Matrix turn(std::size_t axis, Real angle_deg) {
   return m;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- the
-// flight
+// -------------------------------------------------------------------------------------- the flight
 
 const Vec3 start{512345.678, 5403210.987, 1234.5};  // as in UTM [m]
 const Vec3 lever_arm{0.3, -1.2, 0.7};
-constexpr double rate = 50e3, lines_per_second = 77.3, speed = 61.7;
+constexpr double rate = 50e3, line_rate = 77.3, speed = 61.7;
 
 /// The instrument looks down and sweeps to the right; then it is off by 1, -2 and 3 degrees about the axes of the body.
 Rotation boresight() {
@@ -89,7 +87,7 @@ auto airplane(double heading, const Vec3& climb = {}) {
   const Vec3 way{std::sin(heading), std::cos(heading), 0};
   return Platform{StraightLine{.from = start, .to = start + 500.0 * way + climb, .speed = speed},
                   Mount{lever_arm, boresight()},
-                  Deflector{PolygonMirror{.lines_per_second = lines_per_second, .sweep = 30_deg},
+                  Deflector{PolygonMirror{.line_rate = line_rate, .sweep = 30_deg},
                             Scanner{.pulse_rate = rate, .pulses = 400'000}}};
 }
 
@@ -107,7 +105,7 @@ struct Plane {
 
 /// Where the beam of slot i meets a plane, if the body flies with a heading [deg] and does not climb.
 Row expected_point(std::uint64_t i, Real heading_deg, const Plane& plane) {
-  const Real t = static_cast<Real>(i) / rate, lines = t * static_cast<Real>(lines_per_second);
+  const Real t = static_cast<Real>(i) / rate, lines = t * static_cast<Real>(line_rate);
   const Real sweep = 30 * (2 * (lines - std::floor(lines)) - 1);  // above forward [deg]
   const Row beam{0, std::cos(radians_of(sweep)), std::sin(radians_of(sweep))};
   const Matrix world_from_body = turn(2, -heading_deg);

@@ -58,7 +58,7 @@ TEST_CASE("legs stand end to end: their slots are numbered through, and time run
 
 TEST_CASE("each leg begins with its own clock at zero") {
   // a line of the mirror lasts 2 s, and the first leg ends in the middle of one
-  const Legs legs(std::vector{set_up(0, 1, 3, {.lines_per_second = 0.5}), set_up(0, 1, 3, {.lines_per_second = 0.5})});
+  const Legs legs(std::vector{set_up(0, 1, 3, {.line_rate = 0.5}), set_up(0, 1, 3, {.line_rate = 0.5})});
   for (PulseIndex i = 0; i < 3; ++i) CHECK(legs.pulse(i + 3)->direction() == legs.pulse(i)->direction());
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("a leg without pulses takes a number and nothing else") {
 }
 
 TEST_CASE("a blocked slot stays blocked in its leg") {
-  const Legs legs(std::vector{set_up(1, 4, 4), set_up(2, 4, 4, {.lines_per_second = 1, .angle_min = 0})});
+  const Legs legs(std::vector{set_up(1, 4, 4), set_up(2, 4, 4, {.line_rate = 1, .angle_min = 0})});
   CHECK(legs.pulse(3));
   CHECK_FALSE(legs.pulse(4));
   CHECK_FALSE(legs.pulse(5));

@@ -129,7 +129,7 @@ TEST_CASE(
 TEST_CASE("a blocked slot stays blocked on a platform") {
   const Platform platform{
       Tripod{}, Mount{},
-      Deflector{PolygonMirror{.lines_per_second = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};
+      Deflector{PolygonMirror{.line_rate = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};
   CHECK_FALSE(platform.pulse(0));
   CHECK_FALSE(platform.pulse(1));
   CHECK(platform.pulse(2));
@@ -137,8 +137,8 @@ TEST_CASE("a blocked slot stays blocked on a platform") {
 }
 
 TEST_CASE("a platform keeps the laws of a source and the size and ticks of what it carries") {
-  const Deflector device{RotatingHead{.rate = 0.1},
-                         Deflector{PolygonMirror{.lines_per_second = 77, .angle_min = -1, .angle_max = 0.5},
+  const Deflector device{RotatingHead{.angular_rate = 0.1},
+                         Deflector{PolygonMirror{.line_rate = 77, .angle_min = -1, .angle_max = 0.5},
                                    Scanner{.pulse_rate = 1e6 / 7, .pulses = 100000007}}};
   const Platform platform{Spinning{}, Mount{.lever_arm = {0.1, -0.2, 0.3}}, device};
   CHECK(support::source_laws(platform) == "");

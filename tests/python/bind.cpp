@@ -35,8 +35,7 @@ const Scene<TriangleMesh<>>& wall() {
 /// Two lines up and down the wall and beyond it.
 auto survey_of(PulseIndex pulses, double record) {
   const Scanner scanner{.pulse_rate = 10_kHz, .pulses = pulses};
-  const Platform stand{Tripod{.position = {0, 0, 2}}, Mount{},
-                       Deflector{PolygonMirror{.lines_per_second = 100_Hz}, scanner}};
+  const Platform stand{Tripod{.position = {0, 0, 2}}, Mount{}, Deflector{PolygonMirror{.line_rate = 100_Hz}, scanner}};
   return Survey{
       stand, SunflowerFootprint{7}, wall(), Receiver{}, FullWaveform{WaveformSettings{.record_length = record}}, 3};
 }

@@ -62,8 +62,8 @@ const Scene<TriangleMesh<>> ground({{.geometry = floor_mesh()}, {.geometry = wal
 constexpr PulseIndex slots = 5002;
 const Scanner scanner{.pulse_rate = 10_kHz, .pulses = slots, .laser = {.divergence = 3_mrad}};
 const Mount downwards{.lever_arm = {0.1, 0.2, 0.3}, .boresight = rotation_about(axis::right, -40_deg)};
-const Deflector mirror{
-    PolygonMirror{.lines_per_second = 50, .sweep = 60_deg, .angle_min = -50_deg, .angle_max = 40_deg}, scanner};
+const Deflector mirror{PolygonMirror{.line_rate = 50, .sweep = 60_deg, .angle_min = -50_deg, .angle_max = 40_deg},
+                       scanner};
 
 /// The law for a source, whose pose jumps.
 template <class Source>
@@ -117,7 +117,7 @@ TEST_CASE("a map that changes between runs is met by all their pulses, as it the
 
 TEST_CASE("a scene that moves by itself is met from where the pose has jumped, with what the surfaces do then") {
   BodyPose pose;
-  const auto motion = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {1, 2, 0}, .rate = 2});
+  const auto motion = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {1, 2, 0}, .angular_rate = 2});
   const MovingScene<TriangleMesh<>> scene({{.geometry = floor_mesh()}, {.geometry = wall_mesh(), .motion = motion}},
                                           {.to = 2});
   CHECK(support::change_laws(

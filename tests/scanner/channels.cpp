@@ -77,7 +77,8 @@ TEST_CASE("channels keep the laws of a source, of any number and size") {
 
 TEST_CASE("a spinning sensor of many beams draws one cone per beam, each beam turned on by its own delay") {
   const double rate = 10 * 360_deg;
-  const Deflector sensor{RotatingHead{.rate = -rate}, Channels{fan(32, 2000)}};  // ten turns a second to the right
+  const Deflector sensor{RotatingHead{.angular_rate = -rate},
+                         Channels{fan(32, 2000)}};  // ten turns a second to the right
   const Platform robot{Tripod{}, Mount{.lever_arm = {0, 0, 1.5}}, sensor};
   CHECK(support::source_laws(robot) == "");
   CHECK(support::wrapped_source_laws(robot, sensor) == "");
@@ -95,9 +96,9 @@ TEST_CASE("a spinning sensor of many beams draws one cone per beam, each beam tu
 
 TEST_CASE("channels may differ in laser and in optic, and one may be blocked while another is open") {
   std::vector<Deflector<PolygonMirror, Scanner>> two;
-  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_min = 0},
+  two.emplace_back(PolygonMirror{.line_rate = 50, .angle_min = 0},
                    Scanner{.pulses = 5000, .laser = {.wavelength = 1064_nm}});
-  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_max = 0},
+  two.emplace_back(PolygonMirror{.line_rate = 50, .angle_max = 0},
                    Scanner{.pulses = 5000, .laser = {.wavelength = 532_nm}});
   const Channels device{two};
   CHECK(support::source_laws(device) == "");
@@ -111,8 +112,7 @@ TEST_CASE("channels may differ in laser and in optic, and one may be blocked whi
   std::vector<Deflector<RisleyPrisms, Scanner>> three;
   for (const double aside : {-0.1, 0.0, 0.1})
     three.emplace_back(
-        RisleyPrisms{.prisms = {{.turns_per_second = 77}, {.turns_per_second = -33}}, .incident = {aside, 1, 0}},
-        Scanner{});
+        RisleyPrisms{.prisms = {{.rotation_rate = 77}, {.rotation_rate = -33}}, .incident = {aside, 1, 0}}, Scanner{});
   const Channels rosettes{three};
   CHECK(support::source_laws(rosettes) == "");
   CHECK(rosettes.pulse(0)->direction().x < rosettes.pulse(1)->direction().x);
@@ -172,7 +172,7 @@ TEST_CASE(
     "channels out of order are found wherever their optics open, and wherever a source of one's own goes astray") {
   // a mirror that is closed in the first 19 ms of a line, and at the end, too
   const auto pair = [](double first, double second) {
-    const PolygonMirror late{.lines_per_second = 33, .angle_min = 30_deg};
+    const PolygonMirror late{.line_rate = 33, .angle_min = 30_deg};
     std::vector<Deflector<PolygonMirror, Scanner>> two;
     two.emplace_back(late, Scanner{.pulses = 3200, .delay = first});
     two.emplace_back(late, Scanner{.pulses = 3200, .delay = second});

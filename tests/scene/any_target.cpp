@@ -46,8 +46,8 @@ struct Unique {
 static_assert(BundleTarget<Map> && BundleTarget<MapOrOwn> && BundleTarget<AnyTarget<Plane>> &&
               BundleTarget<AnyTarget<Unique, Plane>>);
 static_assert(!RayTarget<Map> && !RayTarget<MapOrOwn>);
-static_assert(AnswersRays<Meshes> && AnswersRays<Moving> && !AnswersRays<Plane> && !AnswersRays<Layered<Meshes>>);
-static_assert(AnswersRays<Map> && !AnswersRays<MapOrOwn>);
+static_assert(SceneQueries<Meshes> && SceneQueries<Moving> && SceneQueries<Layered<Meshes>> && !SceneQueries<Plane>);
+static_assert(SceneQueries<Map> && !SceneQueries<MapOrOwn>);
 template <class M>
 concept Bounded = requires(const M& map) {
   map.bounds();

@@ -26,7 +26,8 @@
 using namespace pulsecast;
 
 static_assert(DeterministicGeometry<TriangleMesh<>> && !DeterministicGeometry<VoxelGrid<TransmissiveVoxels>>);
-static_assert(TracesBundles<Scene<TriangleMesh<>>> && TracesBundles<MovingScene<TriangleMesh<>>>);
+static_assert(pulsecast::detail::TracesBundles<Scene<TriangleMesh<>>> &&
+              pulsecast::detail::TracesBundles<MovingScene<TriangleMesh<>>>);
 
 namespace {
 using Mesh = TriangleMesh<>;
@@ -58,20 +59,21 @@ std::vector<Ray> random_rays(support::Generator& random, std::size_t count) {
 }
 
 /// World that counts what it is asked for.
-struct Counted {
-  const Scene<Mesh>* scene;
+struct Counted : Scene<Mesh> {
   std::size_t* alone;
   std::size_t* together;
 
-  static constexpr bool time_dependent = false;
-  [[nodiscard]] bool deterministic() const noexcept { return true; }
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
     ++*alone;
-    return scene->closest_hit(ray);
+    return Scene::closest_hit(ray);
   }
   void closest(const RayBundle& rays, ClosestHits& hits) const noexcept {
     *together += rays.size;
-    scene->closest(rays, hits);
+    Scene::closest(rays, hits);
+  }
+  template <class Visitor>
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
+    Scene::closest(rays, hits, visit);
   }
 };
 
@@ -139,7 +141,7 @@ TEST_CASE("neighbouring rays are traced together in any order, and rays with nob
   for (int i = 0; i < 500; ++i) rays.push_back({.direction = normalize(Vec3{0.02 + 2e-5 * i, 1, 0.02})});
   rays.insert(rays.begin() + 100, Ray{.direction = axis::up});
   std::size_t alone = 0, together = 0;
-  const Counted counted{&scene, &alone, &together};
+  const Counted counted{scene, &alone, &together};
   std::vector<std::optional<RayHit>> hits(rays.size());
   closest_hits<Counted>(counted, rays, hits);
   CHECK(alone == 1);

@@ -66,8 +66,8 @@ concept Grounded = requires(const Map& map) {
 static_assert(Bounded<Layered<Discs, Discs>> && Grounded<Layered<Discs, Discs>>);
 static_assert(!Bounded<Layered<Discs, support::LeastRayTarget>> && !Grounded<Layered<Discs, support::LeastRayTarget>>);
 
-static_assert(OpticalTarget<Layered<Discs, Discs>> && OpticalTarget<Layered<Layered<Discs, Discs>, Discs>>);
-static_assert(!OpticalTarget<Layered<Discs, support::LeastRayTarget>>);
+static_assert(SceneQueries<Layered<Discs, Discs>> && SceneQueries<Layered<Layered<Discs, Discs>, Discs>>);
+static_assert(!SceneQueries<Layered<Discs, support::LeastRayTarget>>);
 
 }  // namespace
 

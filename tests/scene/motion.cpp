@@ -31,8 +31,8 @@ class Walker {
   explicit Walker(const Vec3& centre) : start_(centre), centre_(centre) {}
 
   void walk(const SteadyMotion& m, double seconds) {
-    const Rotation turn = rotation_about(m.axis, m.rate * seconds);
-    const Vec3 about = m.centre.value_or(centre_), spin = m.spin.value_or(m.rate * normalize(m.axis));
+    const Rotation turn = rotation_about(m.axis, m.angular_rate * seconds);
+    const Vec3 about = m.centre.value_or(centre_), spin = m.spin.value_or(m.angular_rate * normalize(m.axis));
     centre_ = about + turn * (centre_ - about) + seconds * m.velocity;
     if (length(spin) > 0) attitude_ = rotation_about(spin, length(spin) * seconds) * attitude_;
   }
@@ -80,7 +80,7 @@ Plan any_plan(support::Generator& any) {
       if (any.coin()) motion.velocity = any.point(2);
       if (any.coin()) {
         motion.axis = any.log_uniform(0.01, 100) * any.unit();
-        motion.rate = any.uniform(-3, 3);
+        motion.angular_rate = any.uniform(-3, 3);
       }
       if (any.coin()) motion.centre = any.point(5);
       if (any.whole(4) == 0) motion.spin = any.coin() ? Vec3{} : any.point(2);
@@ -104,16 +104,16 @@ std::vector<TimedPose> any_poses(support::Generator& any) {
 
 TEST_CASE("a body may orbit without turning, or turn otherwise than it orbits") {
   const Vec3 own{10, 0, 5};
-  const PartMotion cabin(SteadyMotion{.axis = axis::forward, .rate = pi / 2, .centre = Vec3{}, .spin = Vec3{}});
+  const PartMotion cabin(SteadyMotion{.axis = axis::forward, .angular_rate = pi / 2, .centre = Vec3{}, .spin = Vec3{}});
   CHECK(length(moved(cabin, 1, own + Vec3{1, 2, 3}, own) - Vec3{5 + 1, 2, -10 + 3}) < 1e-14);
-  const PartMotion moon(SteadyMotion{.rate = pi / 2, .centre = Vec3{}, .spin = Vec3{pi, 0, 0}});
+  const PartMotion moon(SteadyMotion{.angular_rate = pi / 2, .centre = Vec3{}, .spin = Vec3{pi, 0, 0}});
   CHECK(length(moved(moon, 1, own + Vec3{1, 2, 3}, own) - Vec3{1, 10 - 2, 5 - 3}) < 1e-14);
   const Box swept = cabin.swept({own, own}, {}, {0, 0}, {60, 0});
   CHECK(max_norm(swept.max) < length(own) + 1e-5);
 }
 
 TEST_CASE("a body stands before the start of the survey, and stays where a motion has ended") {
-  const PartMotion motion(SteadyMotion{.velocity = {2, 0, 0}, .rate = 0.1, .duration = 3});
+  const PartMotion motion(SteadyMotion{.velocity = {2, 0, 0}, .angular_rate = 0.1, .duration = 3});
   CHECK(moved(motion, -5, {1, 1, 1}) == Vec3{1, 1, 1});
   CHECK(length(moved(motion, 3, {}) - Vec3{6, 0, 0}) < 1e-14);
   CHECK(length(moved(motion, 1e9, {1, 0, 0}) - moved(motion, 3, {1, 0, 0})) < 1e-14);
@@ -121,8 +121,8 @@ TEST_CASE("a body stands before the start of the survey, and stays where a motio
 
 TEST_CASE("a loop there and back is after a year as exact as in the first second") {
   const Vec3 utm{5e5, 5.4e6, 300};
-  const PartMotion motion({{.motions = {{.velocity = {1.5, 0, 0.1}, .rate = 0.3, .duration = 0.7},
-                                        {.velocity = {-1.5, 0, -0.1}, .rate = -0.3, .duration = 0.7}}}},
+  const PartMotion motion({{.motions = {{.velocity = {1.5, 0, 0.1}, .angular_rate = 0.3, .duration = 0.7},
+                                        {.velocity = {-1.5, 0, -0.1}, .angular_rate = -0.3, .duration = 0.7}}}},
                           0);
   const double period = 0.7 + 0.7;
   const double passes = std::floor(3e7 / period);
@@ -136,7 +136,7 @@ TEST_CASE("a loop there and back is after a year as exact as in the first second
 }
 
 TEST_CASE("a wheel has turned after a year as far as its clock says") {
-  const PartMotion motion(SteadyMotion{.rate = 2 * pi * 12.5});
+  const PartMotion motion(SteadyMotion{.angular_rate = 2 * pi * 12.5});
   for (const double fraction : {0.0, 0.01, 0.33}) {
     const Tick late{31'536'000, fraction};
     CHECK(length(motion.at(late, {}).point({1, 0, 0}) - motion.at({0, fraction}, {}).point({1, 0, 0})) < 1e-12);
@@ -250,7 +250,7 @@ TEST_CASE("a step done again and again is a steady motion") {
 TEST_CASE("the velocity of a point is what a body does at that time") {
   const auto at = [](double seconds) { return Tick::of_seconds(seconds); };
   const PartMotion orbit(
-      SteadyMotion{.velocity = {0, 0, 1}, .rate = 2, .centre = Vec3{10, 0, 0}, .spin = Vec3{}, .duration = 5});
+      SteadyMotion{.velocity = {0, 0, 1}, .angular_rate = 2, .centre = Vec3{10, 0, 0}, .spin = Vec3{}, .duration = 5});
   // a Ferris wheel's cabin: every point of it moves as its centre does
   for (const double x : {-3.0, 0.0, 4.0})
     CHECK(length(orbit.velocity(at(0), {13, 0, 0}, {13 + x, 1, 0}) - Vec3{0, 6, 1}) < 1e-12);
@@ -328,7 +328,7 @@ TEST_CASE("what a body sweeps on a polygon of many turns and steps is inside of 
     const double turn = -all / passes;
     const Vec3 middle{0, 100, 0};
     const PartMotion motion(
-        {{.motions = {{.rate = turn, .centre = Vec3{}, .duration = 1},
+        {{.motions = {{.angular_rate = turn, .centre = Vec3{}, .duration = 1},
                       {.velocity = middle - rotation_about(axis::up, turn) * middle, .duration = 1}}}},
         0);
     const Vec3 start = middle + rotation_about(axis::up, all / 2) * Vec3{0, 100, 0};
@@ -349,7 +349,7 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
   CHECK(length(way.min - Vec3{29, -2, -3}) < 1e-5);
   CHECK(length(way.max - Vec3{37, 2, 3}) < 1e-5);
   const double radius = length(box.max);
-  const Box spin = PartMotion(SteadyMotion{.rate = 10}).swept(box, {}, {0, 0}, {1000, 0});
+  const Box spin = PartMotion(SteadyMotion{.angular_rate = 10}).swept(box, {}, {0, 0}, {1000, 0});
   CHECK(max_norm(spin.max) < radius + 1e-5);
   const PartMotion there_and_back(
       {{.motions = {{.velocity = {3, 0, 0}, .duration = 1}, {.velocity = {-3, 0, 0}, .duration = 1}}}}, 0);
@@ -361,7 +361,7 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
 TEST_CASE("what a body sweeps after very many short motions is inside of the box") {
   const MotionSequence rests{.motions = {{.duration = 0.01}}, .times = 40},
       steps{.motions = {{.velocity = axis::right, .duration = 0.01}}, .times = 1000};
-  const MotionSequence turn{.motions = {{.rate = 2 * pi, .centre = Vec3{}, .duration = 1}}},
+  const MotionSequence turn{.motions = {{.angular_rate = 2 * pi, .centre = Vec3{}, .duration = 1}}},
       way{.motions = {{.velocity = axis::right}}};
   const MotionSequence there{.motions = {{.velocity = axis::right, .duration = 1}}},
       back{.motions = {{.velocity = -axis::right, .duration = 1}}};
@@ -376,7 +376,7 @@ TEST_CASE("what a body sweeps after very many short motions is inside of the box
 }
 
 TEST_CASE("an archive of a run without motions is noticed") {
-  PartMotion motion(SteadyMotion{.rate = 1, .duration = 1});
+  PartMotion motion(SteadyMotion{.angular_rate = 1, .duration = 1});
   CHECK(motion.is_consistent());
   const auto empty = [](auto& runs, auto&...) { runs[0].end = runs[0].first; };
   motion.archive(empty);
@@ -400,7 +400,7 @@ TEST_CASE("a motion refuses what cannot be") {
   };
   refused({.velocity = {nan, 0, 0}, .duration = 1});
   refused({.axis = {0, 0, 0}, .duration = 1});
-  refused({.rate = infinity, .duration = 1});
+  refused({.angular_rate = infinity, .duration = 1});
   refused({.centre = Vec3{nan, 0, 0}, .duration = 1});
   refused({.spin = Vec3{0, infinity, 0}, .duration = 1});
   for (const double bad : {0.0, -1.0, 1e-7, nan}) refused({.duration = bad});

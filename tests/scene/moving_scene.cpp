@@ -83,7 +83,7 @@ std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
     for (std::uint64_t n = 1 + any.whole(3); s.motions.size() < n;) {
       SteadyMotion m{.velocity = any.point(any.log_uniform(0.01, 20)),
                      .axis = any.unit(),
-                     .rate = any.uniform(-2, 2),
+                     .angular_rate = any.uniform(-2, 2),
                      .duration = any.uniform(0.3, 3)};
       if (any.coin()) m.centre = any.point(10);
       s.motions.push_back(m);
@@ -97,7 +97,7 @@ std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
 
 TEST_CASE("a motion comes on top of the placement, and turns about the part's own centre if it has none of its own") {
   // twice as large, upright, facing north; it turns about up
-  const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))},
+  const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.angular_rate = pi / 2}))},
                     {.to = 5});
   CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).range == support::relative(8, 1e-12));
   CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).cos_incidence == support::relative(1, 1e-12));
@@ -217,11 +217,11 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
       {{.geometry = ball,
         .placement = {.translation = {10, 0, 0}},
         .object = 1,
-        .motion = moving({.rate = orbit, .centre = Vec3{}})},
+        .motion = moving({.angular_rate = orbit, .centre = Vec3{}})},
        {.geometry = box,
         .placement = {.translation = start},
         .object = 2,
-        .motion = moving({.velocity = drift, .rate = spin})},
+        .motion = moving({.velocity = drift, .angular_rate = spin})},
        {.geometry = floor,
         .placement = {.scale = 30, .translation = {0, 0, -9}},
         .object = 3,
@@ -230,7 +230,7 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
   const Scanner laser{.pulse_rate = 25e3, .pulses = 100'000};
   const Platform platform{
       Tripod{}, Mount{},
-      Deflector{RotatingHead{.rate = 4 * pi}, Deflector{PolygonMirror{.lines_per_second = 300}, laser}}};
+      Deflector{RotatingHead{.angular_rate = 4 * pi}, Deflector{PolygonMirror{.line_rate = 300}, laser}}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
   Cloud cloud, threads;
   run(survey, {.threads = 1}, cloud);

@@ -83,8 +83,8 @@ TEST_CASE("a batch gives the ranges that single rays and the pulses of a platfor
   MeshData mesh;
   for (int i = 0; i < 300; ++i) support::add_triangle(mesh, {random.point(20), random.point(20), random.point(20)});
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}});
-  const Deflector sensor{RotatingHead{.rate = 36'000},
-                         Deflector{PolygonMirror{.lines_per_second = 1000, .angle_min = -1, .angle_max = 1},
+  const Deflector sensor{RotatingHead{.angular_rate = 36'000},
+                         Deflector{PolygonMirror{.line_rate = 1000, .angle_min = -1, .angle_max = 1},
                                    Scanner{.pulse_rate = 100'000, .pulses = 700}}};
   const std::vector<Ray> rays = sensor_rays(sensor);
   const std::vector<SensorPose> poses = random_poses(random, 20);

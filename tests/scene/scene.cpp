@@ -71,9 +71,9 @@ struct Counted {
   void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     for (std::size_t j = 0; j < rays.size; ++j) nearest.offer(j, -rays.origin.z / rays.z[j], 0);
   }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept {
+  SurfaceInteraction surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept {
     ++asked;
-    return Surface{axis::up, 0};
+    return SurfaceInteraction{axis::up, 0};
   }
 };
 

@@ -19,7 +19,7 @@ SpinningSensor two_lasers() {
   return {.lasers = {{.elevation = 10_deg, .azimuth = 3_deg, .height = 0.01},
                      {.elevation = -5_deg, .height = -0.01, .delay = 20_us}},
           .sequence_rate = 10_kHz,
-          .turns_per_second = 10,
+          .rotation_rate = 10,
           .exit_radius = 0.02};
 }
 

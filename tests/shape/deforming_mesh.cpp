@@ -46,8 +46,8 @@ void require_same(const Mesh& mesh, const MeshData& data, Generator& any, double
       REQUIRE(hits.id[j] == expected.id[j]);
       REQUIRE(hits.range[j] == expected.range[j]);
       if (hits.met(j))
-        REQUIRE(mesh.surface(hits.primitive_of(j), rays, j).material ==
-                fresh.surface(hits.primitive_of(j), rays, j).material);
+        REQUIRE(mesh.surface(hits.primitive_of(j), rays, j).material_index ==
+                fresh.surface(hits.primitive_of(j), rays, j).material_index);
     }
   }
 }

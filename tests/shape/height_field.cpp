@@ -67,7 +67,7 @@ class RasterMesh {
     for (std::size_t j = 0; j < rays.size; ++j)
       if (nearest.met(j)) nearest.id[j] = numbers_[nearest.primitive_of(j)];
   }
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept {
     return mesh_.surface(i, rays, j);
   }
 
@@ -140,7 +140,7 @@ TEST_CASE("a slope is met where it is, from above and from below") {
   const Vec3 normal = normalize(Vec3{-0.5, 0.25, 1});
   for (const PrimitiveIndex i : {0U, 1U, 77U, 399U}) {
     CHECK(length(field.surface(i, bundle_of({}), 0).normal - normal) < 1e-12);
-    CHECK(field.surface(i, bundle_of({}), 0).material == 0);
+    CHECK(field.surface(i, bundle_of({}), 0).material_index == 0);
   }
 }
 
@@ -190,11 +190,11 @@ TEST_CASE("a pixel has the material of its two triangles, as in the mesh, in as 
     CHECK(field.material_count() == materials);
     CHECK(field.is_consistent());
     for (std::size_t i = 0; i < mesh.numbers().size(); ++i)
-      CHECK(field.surface(mesh.numbers()[i], bundle_of({}), 0).material == mesh.data().materials[i]);
+      CHECK(field.surface(mesh.numbers()[i], bundle_of({}), 0).material_index == mesh.data().materials[i]);
     // the pixel of column 5 and row 4 has a triangle to its south-east and one to its north-west
     const std::uint32_t own = raster.materials[4 * 23 + 5];
-    CHECK(field.surface(2 * (4 * 22 + 5), bundle_of({}), 0).material == own);
-    CHECK(field.surface(2 * (3 * 22 + 4) + 1, bundle_of({}), 0).material == own);
+    CHECK(field.surface(2 * (4 * 22 + 5), bundle_of({}), 0).material_index == own);
+    CHECK(field.surface(2 * (3 * 22 + 4) + 1, bundle_of({}), 0).material_index == own);
   }
   Raster alike = slope();
   alike.materials.assign(alike.heights.size(), 0);
@@ -299,7 +299,7 @@ TEST_CASE("packed heights give the hits of the same heights in floating point, t
       for (PrimitiveIndex i = 0; i < 2 * 60 * 46; ++i) {
         const Triangle a = field.triangle(i), b = reference.triangle(i);
         CHECK(std::memcmp(&a, &b, sizeof a) == 0);
-        CHECK(field.surface(i, bundle_of({}), 0).material == reference.surface(i, bundle_of({}), 0).material);
+        CHECK(field.surface(i, bundle_of({}), 0).material == reference.surface(i, bundle_of({}), 0).material_index);
       }
       const MeshData mesh = packed.mesh();
       CHECK(mesh.vertices == wide.mesh().vertices);

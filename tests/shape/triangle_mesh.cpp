@@ -62,9 +62,9 @@ TEST_CASE("a mesh is met where its triangles are") {
   CHECK(nearest.primitive_of(0) == 0);
   CHECK(nearest.primitive_of(1) == 1);
   CHECK(nearest.range[0] == doctest::Approx(std::sqrt(25.5)).epsilon(1e-15));
-  const Surface surface = mesh.surface(0, rays, 0);
+  const SurfaceInteraction surface = mesh.surface(0, rays, 0);
   CHECK(surface.normal == axis::up);
-  CHECK(surface.material == 3);
+  CHECK(surface.material_index == 3);
   CHECK(mesh.surface(1, rays, 1).material == 1);
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("without materials every triangle is of material 0") {
   data.materials.clear();
   const TriangleMesh<> mesh(data);
   CHECK(mesh.material_count() == 1);
-  CHECK(mesh.surface(1, bundle_of({}), 0).material == 0);
+  CHECK(mesh.surface(1, bundle_of({}), 0).material_index == 0);
 }
 
 TEST_CASE("a triangle without area has no normal and is never met") {
@@ -219,7 +219,8 @@ TEST_CASE("a mesh of up to 256 materials spends a byte on each, one of a single 
     CHECK(mesh.is_consistent());
     std::size_t different = 0;
     for (std::size_t i = 0; i < mesh.size(); ++i)
-      different += mesh.surface(static_cast<PrimitiveIndex>(i), bundle_of({}), 0).material == data.materials[i] ? 0 : 1;
+      different +=
+          mesh.surface(static_cast<PrimitiveIndex>(i), bundle_of({}), 0).material_index == data.materials[i] ? 0 : 1;
     CHECK(different == 0);
     return mesh.memory();
   };

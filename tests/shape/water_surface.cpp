@@ -49,7 +49,7 @@ Vec3 normal_of(const WaterSurface& surface, const Ray& ray) {
   ClosestHits nearest(rays);
   surface.closest(rays, nearest);
   REQUIRE(nearest.met(0));
-  const Surface found = surface.surface(nearest.primitive_of(0), rays, 0);
+  const SurfaceInteraction found = surface.surface(nearest.primitive_of(0), rays, 0);
   CHECK(found.material == 0);
   return found.normal;
 }
@@ -279,19 +279,19 @@ TEST_CASE("bundles, single rays and searches for any hit agree to the last bit")
       surface.closest(one, any);
       AllHits all(rays.near, rays.far);
       surface.closest(one, all);
-      REQUIRE(hit.range == nearest.range[j]);
-      REQUIRE(hit.id == nearest.id[j]);
+      REQUIRE(hit.range[0] == nearest.range[j]);
+      REQUIRE(hit.id[0] == nearest.id[j]);
       REQUIRE(any.found == hit.met(0));
       REQUIRE(all.hits().empty() != hit.met(0));
       if (!hit.met(0)) continue;
-      REQUIRE(hit.range > rays.near);
-      REQUIRE(hit.range <= rays.far);
-      REQUIRE(all.hits()[0] == AllHits::Entry{hit.range, hit.id});
+      REQUIRE(hit.range[0] > rays.near);
+      REQUIRE(hit.range[0] <= rays.far);
+      REQUIRE(all.hits()[0] == AllHits::Entry{hit.range[0], hit.id[0]});
       const Vec3 normal = surface.surface(hit.primitive_of(0), one, 0).normal;
       REQUIRE(normal == surface.surface(nearest.primitive_of(j), rays, j).normal);
       REQUIRE(length(normal) == relative(1, 1e-14));
       REQUIRE(normal.z > 0);
-      const Vec3 p = rays.origin + hit.range * rays.direction(j);
+      const Vec3 p = rays.origin + hit.range[0] * rays.direction(j);
       const Vec2 slope = surface.waves().slope({p.x, p.y}, rays.tick);
       REQUIRE(length(normal - normalize(Vec3{-slope.x, -slope.y, 1})) < 1e-5);
     }

@@ -76,7 +76,7 @@ class LeastGeometry {
       if (p.x * p.x + p.y * p.y <= 1) nearest.offer(j, range, 0);
     }
   }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {axis::up, 0}; }
+  SurfaceInteraction surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {axis::up, 0}; }
 
  private:
   Box bounds_{{-1, -1, 0}, {1, 1, 0}};

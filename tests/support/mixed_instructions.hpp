@@ -47,7 +47,7 @@ namespace {
   const Laser laser{.wavelength = 1.064e-6, .peak_power = 50, .pulse_length = 4e-9, .divergence = 5e-3};
   const Platform airplane{StraightLine{.from = {-40, 0, 100}, .to = {40, 3, 101}, .speed = 30},
                           Mount{.boresight = rotation_about(axis::right, -1.4)},
-                          Deflector{OscillatingMirror{.cycles_per_second = 20, .half_angle = 0.3},
+                          Deflector{OscillatingMirror{.cycle_rate = 20, .half_angle = 0.3},
                                     Scanner{.pulse_rate = 1000, .pulses = 2000, .laser = laser}}};
   std::vector<double> numbers;
   const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{},

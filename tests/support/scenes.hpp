@@ -39,7 +39,7 @@ class UnitBall {
         if (range > rays.near && range <= rays.far) nearest.offer(j, range, 0);
     }
   }
-  Surface surface(PrimitiveIndex, const RayBundle& rays, std::size_t j) const noexcept {
+  SurfaceInteraction surface(PrimitiveIndex, const RayBundle& rays, std::size_t j) const noexcept {
     ClosestHits nearest(rays);
     closest(rays, nearest);
     return {normalize(rays.origin + nearest.range[j] * rays.direction(j)), 0};

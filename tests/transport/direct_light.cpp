@@ -220,8 +220,8 @@ TEST_CASE("a velocity is that of the surface along the ray, positive away, in th
 
 TEST_CASE("each subray of a spinning plate has the velocity of its place") {
   const double rate = 0.01;
-  const auto spin =
-      std::make_shared<const PartMotion>(SteadyMotion{.axis = axis::up, .rate = rate, .centre = Vec3{0, 30, 0}});
+  const auto spin = std::make_shared<const PartMotion>(
+      SteadyMotion{.axis = axis::up, .angular_rate = rate, .centre = Vec3{0, 30, 0}});
   const MovingScene<Mesh> scene({{.geometry = plate(30), .motion = spin}}, {.to = 1});
   struct AllVelocities : Doppler {
     std::vector<Reflection>* seen = nullptr;
@@ -271,7 +271,7 @@ static_assert(!MissesCones<Asked> && MissesCones<AskedFirst>);
 /// A mirror that sweeps around, past a plate that fills a tenth of the turn.
 auto sweep(PulseIndex pulses, const Laser& laser) {
   return Platform{Tripod{}, Mount{},
-                  Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 180_deg},
+                  Deflector{PolygonMirror{.line_rate = 10, .sweep = 180_deg},
                             Scanner{.pulse_rate = 2000, .pulses = pulses, .laser = laser}}};
 }
 

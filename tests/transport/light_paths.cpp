@@ -43,7 +43,7 @@ using Mesh = TriangleMesh<>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 static_assert(Transport<LightPaths, World> && TracesVelocity<LightPaths, World>);
-static_assert(OpticalTarget<World> && OpticalTarget<MovingScene<Mesh>> && !OpticalTarget<support::LeastRayTarget>);
+static_assert(SceneQueries<World> && SceneQueries<MovingScene<Mesh>> && !SceneQueries<support::LeastRayTarget>);
 static_assert(!Transport<LightPaths, support::LeastRayTarget>);  // a map that tells no materials
 
 Vec3 any_across(support::Generator& any, const Vec3& d) { return normalize(cross(d, any.unit())); }

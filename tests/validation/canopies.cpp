@@ -72,7 +72,7 @@ Cosines cosines(const Foliage& foliage, double zenith) {
   return all;
 }
 
-// -------------------------------------------------------------------------------------------------------------- leaves
+// ------------------------------------------------------------------------------------------ leaves
 
 /// Adds an equilateral triangle of an area about a centre, whose normal and turn about it are drawn.
 void add_leaf(MeshData& mesh, const Vec3& centre, double area, const Foliage& foliage, support::Generator& random) {
@@ -120,7 +120,7 @@ Seen seen(const Survey& survey, double top, double thickness) {
   return all;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- slab
+// -------------------------------------------------------------------------------------------- slab
 
 constexpr double tile = 4;               ///< edge of a square of leaves, which is repeated along the flight [m]
 constexpr double leaf_area_index = 1.5;  ///< of a slab of 1 m [m^2/m^2]
@@ -170,7 +170,7 @@ Seen flight(const Map& map, double zenith) {
   return seen(survey, 0, 1);
 }
 
-// -------------------------------------------------------------------------------------------------------------- sphere
+// ------------------------------------------------------------------------------------------ sphere
 
 // Spheres of RAMI-IV: a radius of 0.5 m, leaves of 5 m^2 per m^2 of a sphere's cross section, in all directions.
 constexpr double radius = 0.5;

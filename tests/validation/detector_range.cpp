@@ -59,7 +59,7 @@ template <class Pattern, class D>
 double worst(double distance, const Pattern& footprint, const D& detector) {
   const Laser laser{.pulse_length = 4e-9, .divergence = 0.3e-3};
   const Platform source{Tripod{.position = station}, Mount{},
-                        Deflector{OscillatingMirror{.cycles_per_second = 37, .half_angle = radians(20)},
+                        Deflector{OscillatingMirror{.cycle_rate = 37, .half_angle = radians(20)},
                                   Scanner{.pulse_rate = 10e3, .pulses = 2000, .laser = laser}}};
   const auto map = wall(distance);
   const Survey survey{source, footprint, map, Receiver{}, detector};

@@ -61,10 +61,9 @@ TEST_CASE("energy by its fate, over a survey in which pulses have all of them") 
   const Chequers map;
   const Platform source{
       Tripod{.position = {0, 0, 2}}, Mount{},
-      Deflector{
-          RotatingHead{.rate = 36_deg},
-          Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 100_deg, .angle_min = -60_deg, .angle_max = 40_deg},
-                    Scanner{.pulse_rate = 5_kHz, .pulses = 50'000, .laser = {.divergence = 5_mrad}}}}};
+      Deflector{RotatingHead{.angular_rate = 36_deg},
+                Deflector{PolygonMirror{.line_rate = 20, .sweep = 100_deg, .angle_min = -60_deg, .angle_max = 40_deg},
+                          Scanner{.pulse_rate = 5_kHz, .pulses = 50'000, .laser = {.divergence = 5_mrad}}}}};
   const Survey survey{source, RingFootprint{5}, map, Receiver{.range_min = 3, .range_max = 50},
                       FullWaveform{WaveformSettings{.sample_interval = 1_ns, .threshold = 2e-6}}};
   const RunSummary summary = run(survey, {.threads = 2});

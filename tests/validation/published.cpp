@@ -30,7 +30,7 @@ namespace {
 constexpr double circle = std::numbers::pi;
 constexpr double light = 299'792'458;  // [m/s]
 
-// --------------------------------------------------------------------------------------------- waveforms by quadrature
+// ------------------------------------------------------------------------- waveforms by quadrature
 
 /// Light that returns from a range.
 struct Lit {
@@ -104,8 +104,7 @@ const char* name_of(EchoTiming timing) {
   return names[static_cast<std::size_t>(timing)];
 }
 
-// --------------------------------------------------------------------------------------------------------------
-// targets
+// ----------------------------------------------------------------------------------------- targets
 
 /// A white roof that the beam's axis meets at a range, turned aside by an angle.
 struct Roof {
@@ -184,8 +183,7 @@ std::vector<Lit> lit_by(const Result& result) {
   return lit;
 }
 
-// ------------------------------------------------------------------------------------------------------- cross
-// sections
+// ---------------------------------------------------------------------------------- cross sections
 
 /// Even light over the disc of a beam's 1/e^2 radius.
 class EvenFootprint {

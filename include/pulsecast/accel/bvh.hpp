@@ -85,7 +85,7 @@ class Bvh {
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
   /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
-  /// meet.
+  /// hit.
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
@@ -98,7 +98,7 @@ class Bvh {
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
 
-  /// True only if no ray of a cone comes near a primitive, as of one that `MissesCones`. Opens few nodes: a cone
+  /// True only if no ray of a cone comes near a primitive, as required by `MissesCones`. Opens few nodes: a cone
   /// between the leaves deep in the tree gets false.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     if (nodes_.empty() || cone.passes(bounds_)) return true;

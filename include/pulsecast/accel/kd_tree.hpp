@@ -75,7 +75,7 @@ class KdTree {
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
   /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
-  /// meet.
+  /// hit.
   template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {

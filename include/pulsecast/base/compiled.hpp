@@ -44,7 +44,7 @@ namespace PULSECAST_NAMESPACE::detail {
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Marks a build of the library by what a program must have in common with it: its version here, and all else in the
-/// namespace. A program of another build does not link, for want of this function.
+/// namespace. A program of another build does not link, because this function is missing.
 template <unsigned version>
 void compiled_library_of_this_build()
 #if defined(PULSECAST_COMPILED_SOURCE)

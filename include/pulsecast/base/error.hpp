@@ -23,7 +23,7 @@ inline std::string to_text(double value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-/// Texts in a row, as of a message. Compiled once, while each `+` of two texts is compiled anew where it stands.
+/// Concatenated texts, such as a message. Compiled once, while each `+` of two texts is compiled anew where it stands.
 [[gnu::noinline]] inline std::string joined(std::initializer_list<std::string_view> texts) {
   std::string all;
   for (const std::string_view text : texts) all.append(text);

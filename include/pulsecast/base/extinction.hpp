@@ -10,7 +10,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// How aerosols scatter by wavelength where the visibility is below 6 km; above, both are the same.
+/// Dependence of aerosol scattering on wavelength for a visibility below 6 km; above, both models are the same.
 enum class AerosolModel : std::uint8_t {
   kim,    ///< hardly by wavelength in haze, and not at all in fog. Source: Kim, McArthur & Korevaar 2001
   kruse,  ///< as in clear air, with a jump at 6 km; that of HELIOS++. Source: Kruse, McGlauchlin & McQuistan 1962

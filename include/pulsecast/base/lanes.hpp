@@ -11,9 +11,8 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector_math.hpp>
 
-/// Ticks, vectors and poses by the register: one in each of `simd::lane_count` lanes. A lane has the bits that a
-/// register of one tick or pose in all lanes has, so that a motion's pose does not depend on what is computed beside
-/// it.
+/// Ticks, vectors and poses in SIMD batches of `simd::lane_count`. A lane has the same bits as if all lanes held its
+/// tick or pose, so a motion's pose does not depend on the other lanes.
 namespace PULSECAST_NAMESPACE {
 
 /// One number in all lanes, with its sign if it is zero.

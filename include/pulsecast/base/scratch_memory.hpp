@@ -26,8 +26,8 @@ class ScratchItem {
   std::unique_ptr<ScratchItem> next_{};
 };
 
-/// Objects that calls leave for later calls, by their type. Several threads may use it at once. An object of type T
-/// tells whether it `fits(need)`, and if not, whether it is `outdated(need)`: of no use to anyone any more.
+/// Objects that calls leave for later calls, by type. Thread-safe. An object of type T returns whether it `fits(need)`,
+/// and if not, whether it is `outdated(need)`: no later call can use it.
 class ScratchMemory {
  public:
   /// Removes an object of type T that fits; null if there is none. Deletes outdated ones that it comes upon.
@@ -75,7 +75,7 @@ class ScratchMemory {
 
  private:
   template <class T>
-  static constexpr char key = 0;  // whose address tells types apart
+  static constexpr char key = 0;  // whose address identifies the type
 
   /// An object as one of type T; null if it is of another.
   template <class T>

@@ -26,7 +26,7 @@ template <class Before>
   return first;
 }
 
-/// Indices of the elements of a table before and behind a place; twice the outermost one where the place is beyond it.
+/// Indices of the elements of a table before and after a place; twice the outermost one where the place is beyond it.
 struct Neighbours {
   std::size_t before, behind;
   friend bool operator==(const Neighbours&, const Neighbours&) = default;

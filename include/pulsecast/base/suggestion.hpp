@@ -42,7 +42,7 @@ struct NearestName {
   std::size_t distance = 0;  ///< of the first 100 bytes
 };
 
-/// Known name of least edit distance from a word, the first of equals. Requires a known name.
+/// Known name of minimum edit distance from a word, the first of equals. Requires a known name.
 [[nodiscard]] inline NearestName nearest_name(std::string_view word, std::span<const std::string> known) {
   constexpr std::size_t longest = 100;  // bytes that count, as the time grows with their product
   NearestName nearest;

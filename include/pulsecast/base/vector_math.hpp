@@ -122,7 +122,7 @@ template <class V>
 }  // namespace detail
 
 /// Sine and cosine of angles [rad]; errors at most 1 ulp. sin(+-0) = +-0 and cos(0) = 1; NaN for infinities and NaN.
-/// Lanes beyond a million radians are asked of the C library one by one. Source: fdlibm s_sin.c.
+/// Lanes beyond a million radians are computed by the C library one by one. Source: fdlibm s_sin.c.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline SineCosine<V> sincos(const V& x) noexcept {
   const detail::Reduced<V> angle = detail::reduced(x);
@@ -143,12 +143,12 @@ template <class V>
   return both;
 }
 
-/// Sine of angles [rad], as by `sincos`.
+/// Sine of angles [rad], as computed by `sincos`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V sin(const V& x) noexcept {
   return sincos(x).sin;
 }
-/// Cosine of angles [rad], as by `sincos`.
+/// Cosine of angles [rad], as computed by `sincos`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V cos(const V& x) noexcept {
   return sincos(x).cos;
@@ -207,7 +207,7 @@ template <class V>
 }
 }  // namespace detail
 
-/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: as of `log_of_normal`.
+/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: that of `log_of_normal`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
   constexpr double least = std::numeric_limits<double>::min(), infinity = std::numeric_limits<double>::infinity();
@@ -222,7 +222,7 @@ template <class V>
 
 /// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2 |ln(result)| ulp. 1 for the
 /// exponent 0 and for the base 1; 0 for results below e^-708, and infinity for those above e^709. NaN for a base below
-/// 0, and for a NaN else.
+/// 0, and for NaN arguments otherwise.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V pow(const V& base, const V& exponent) noexcept {
   const V zero{};

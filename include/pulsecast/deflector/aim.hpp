@@ -31,7 +31,7 @@ namespace PULSECAST_NAMESPACE {
       origin};
 }
 
-/// Pose of a beam along a unit direction, by the shortest rotation from forward, so that its up axis turns least.
+/// Pose of a beam along a unit direction, by the shortest rotation from forward.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_along(const Vec3& direction) noexcept {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;

@@ -16,18 +16,18 @@ namespace PULSECAST_NAMESPACE {
 /// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included,
 /// and repeat.
 struct FiberArray {
-  std::uint32_t fibers = 128;        ///< number of fibres in the row
-  double fibers_per_second = 100e3;  ///< rate of change from fibre to fibre: best the pulse rate; at most 1e12 [Hz]
-  double half_angle = pi / 9;        ///< angle of the outermost fibres to either side of forward [rad]
+  std::uint32_t fibers = 128;  ///< number of fibres in the row
+  double fiber_rate = 100e3;   ///< fibres per second, best the pulse rate; at most 1e12 [Hz]
+  double half_angle = pi / 9;  ///< angle of the outermost fibres to either side of forward [rad]
 
   void validate() const {
     require_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
-    require_rate("FiberArray::fibers_per_second", fibers_per_second);
+    require_rate("FiberArray::fiber_rate", fiber_rate);
     require_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
   }
 
   /// Index of the lit fibre, from 0.
-  [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fibers_per_second, fibers); }
+  [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fiber_rate, fibers); }
 
   /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {

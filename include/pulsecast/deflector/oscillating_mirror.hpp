@@ -14,23 +14,23 @@ namespace PULSECAST_NAMESPACE {
 /// Motion of an oscillating mirror from one end to the other.
 enum class Swing : std::uint8_t {
   triangle,  ///< constant rate, and constant acceleration at the turning points
-  sine,      ///< harmonic, as of a resonant mirror
+  sine,      ///< harmonic, such as that of a resonant mirror
 };
 
 /// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a
 /// cycle is two lines.
 struct OscillatingMirror {
-  double cycles_per_second = 50;  ///< rate of full oscillations, at most 1e12 [Hz]
+  double cycle_rate = 50;         ///< full oscillations per second, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
   Swing swing = Swing::triangle;  ///< motion from end to end
   double turning_time =
       0;  ///< duration of a reversal, half before the end, half after; triangle: at most half a cycle, sine: 0 [s]
 
   void validate() const {
-    require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
+    require_rate("OscillatingMirror::cycle_rate", cycle_rate);
     require_within("OscillatingMirror::half_angle", half_angle, 0, pi, "rad");
-    require_within("OscillatingMirror::turning_time", turning_time, 0,
-                   swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
+    require_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycle_rate : 0,
+                   "s");
   }
 
   /// Elevation of the beam above forward [rad].
@@ -48,9 +48,9 @@ struct OscillatingMirror {
 
  private:
   [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept {
-    const simd::Doubles phase = t.phase(cycles_per_second);
+    const simd::Doubles phase = t.phase(cycle_rate);
     if (swing == Swing::sine) return -half_angle * simd::cos(simd::Doubles(2 * pi * phase));
-    const double turn = turning_time * cycles_per_second;  // [cycles]
+    const double turn = turning_time * cycle_rate;  // [cycles]
     const double rate =
         4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
     const simd::Doubles after =

@@ -15,13 +15,13 @@ namespace PULSECAST_NAMESPACE {
 /// the cone elliptical. The deviation from forward is the first half angle times the cosine upwards, and the second
 /// times the sine to the right.
 struct PalmerMirror {
-  double turns_per_second = 50;  ///< rate of turns around the cone, at most 1e12 [Hz]
-  double half_angle = pi / 9;    ///< half angle of the cone, upwards and downwards [rad]
+  double rotation_rate = 50;   ///< turns around the cone per second, at most 1e12 [Hz]
+  double half_angle = pi / 9;  ///< half angle of the cone, upwards and downwards [rad]
   std::optional<double>
       half_angle_across{};  ///< half angle of the cone to the right and left; circular cone if empty [rad]
 
   void validate() const {
-    require_rate("PalmerMirror::turns_per_second", turns_per_second);
+    require_rate("PalmerMirror::rotation_rate", rotation_rate);
     require_within("PalmerMirror::half_angle", half_angle, 0, pi / 2, "rad");
     if (half_angle_across) require_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
   }
@@ -32,7 +32,7 @@ struct PalmerMirror {
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
-    const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(turns_per_second)));
+    const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(rotation_rate)));
     const simd::Doubles across = half_angle_across.value_or(half_angle) * turn.sin, upwards = half_angle * turn.cos;
     const simd::Doubles off =
         simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // angle from forward [rad]

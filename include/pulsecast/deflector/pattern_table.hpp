@@ -22,11 +22,11 @@ struct BeamAngles {
 /// Beam directions from a table, taken in turn and repeated: any solid-state sensor, or the log of a real one.
 struct PatternTable {
   std::vector<BeamAngles> entries{};  ///< directions in the order of use; at least one
-  double entries_per_second = 100e3;  ///< rate of change from entry to entry: best the pulse rate; at most 1e12 [Hz]
+  double entry_rate = 100e3;          ///< entries per second, best the pulse rate; at most 1e12 [Hz]
 
   void validate() const {
     require_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
-    require_rate("PatternTable::entries_per_second", entries_per_second);
+    require_rate("PatternTable::entry_rate", entry_rate);
     for (const BeamAngles& e : entries) {
       require_angle("BeamAngles::azimuth", e.azimuth);
       require_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");
@@ -34,9 +34,7 @@ struct PatternTable {
   }
 
   /// Index of the current entry, from 0.
-  [[nodiscard]] std::size_t entry(Tick t) const noexcept {
-    return step_in_cycle(t, entries_per_second, entries.size());
-  }
+  [[nodiscard]] std::size_t entry(Tick t) const noexcept { return step_in_cycle(t, entry_rate, entries.size()); }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const BeamAngles& e = entries[entry(t)];

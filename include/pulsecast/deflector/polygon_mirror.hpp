@@ -17,15 +17,15 @@ namespace PULSECAST_NAMESPACE {
 /// next one takes over. The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside
 /// the gate are blocked; those on its ends pass, whatever the rounding of their time.
 struct PolygonMirror {
-  double lines_per_second = 100;  ///< rate of facets, at most 1e12 [Hz]
-  double sweep = 2 * pi / 3;      ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
-  double angle_min = -pi;         ///< lower end of the gate [rad]
-  double angle_max = pi;          ///< upper end of the gate [rad]
+  double line_rate = 100;     ///< lines, one per facet, per second; at most 1e12 [Hz]
+  double sweep = 2 * pi / 3;  ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
+  double angle_min = -pi;     ///< lower end of the gate [rad]
+  double angle_max = pi;      ///< upper end of the gate [rad]
   std::vector<double>
       facet_tilts{};  ///< deflection of each facet in turn out of the plane, to the right; none if empty [rad]
 
   void validate() const {
-    require_rate("PolygonMirror::lines_per_second", lines_per_second);
+    require_rate("PolygonMirror::line_rate", line_rate);
     require_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
     require_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
     require_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");
@@ -42,7 +42,7 @@ struct PolygonMirror {
     const double n = static_cast<double>(facet_tilts.size());
     // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase
     // does
-    const double line = std::round(n * t.phase(lines_per_second / n) - phases(TickLanes(t))[0]);
+    const double line = std::round(n * t.phase(line_rate / n) - phases(TickLanes(t))[0]);
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
 
@@ -57,8 +57,8 @@ struct PolygonMirror {
     const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
     const double wait = (left < 2 ? left : 1) - 2 * margin();
-    const double longest = 1e15 * lines_per_second;  // [cycles]: no survey is longer than 1e15 s
-    return wait > 0 ? t + Tick::of_seconds((wait < longest ? wait : longest) / lines_per_second) : t;
+    const double longest = 1e15 * line_rate;  // [cycles]: no survey is longer than 1e15 s
+    return wait > 0 ? t + Tick::of_seconds((wait < longest ? wait : longest) / line_rate) : t;
   }
 
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
@@ -81,7 +81,7 @@ struct PolygonMirror {
 
  private:
   /// Error of a phase: 16 units in its last place, and in that of a fraction of a second [cycles].
-  [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + lines_per_second); }
+  [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + line_rate); }
 
   /// Phases by which a gate is wider, for slots on its ends: rates of decimal digits stay together for 1e6 lines
   /// [cycles].
@@ -89,7 +89,7 @@ struct PolygonMirror {
 
   /// Phase of the line; one that rounding leaves just before the end of a line is the begin of the next one [cycles].
   [[nodiscard]] simd::Doubles phases(const TickLanes& t) const noexcept {
-    const simd::Doubles phase = t.phase(lines_per_second);
+    const simd::Doubles phase = t.phase(line_rate);
     return phase < 1 - rounding() ? phase : simd::Doubles{};
   }
   [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept { return sweep * (2.0 * phases(t) - 1.0); }

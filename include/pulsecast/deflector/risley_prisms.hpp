@@ -15,9 +15,8 @@ namespace PULSECAST_NAMESPACE {
 /// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end,
 /// towards which it bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;  ///< angle between the faces [rad]
-  double turns_per_second =
-      100;  ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
+  double wedge = pi / 10;          ///< angle between the faces [rad]
+  double rotation_rate = 100;      ///< positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
   double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
@@ -25,7 +24,7 @@ struct Prism {
 
 /// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from
 /// the front of the face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by
-/// that behind it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
+/// that after it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
 inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double ratio) noexcept {
   const simd::Doubles zero{}, ratios = zero + ratio, cosine = -dot(direction, normal);
   const simd::Doubles sine_squared = ratios * ratios * (1.0 - cosine * cosine);
@@ -53,7 +52,7 @@ struct RisleyPrisms {
     require_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
     for (const Prism& p : prisms) {
       require_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
-      require_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
+      require_within("Prism::rotation_rate", p.rotation_rate, -1e12, 1e12, "Hz");
       require_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
       require_angle("Prism::start", p.start);
     }
@@ -61,7 +60,7 @@ struct RisleyPrisms {
     require_positive("RisleyPrisms::incident (length)", length(incident), "");
   }
 
-  /// Unit direction of the beam behind the last wedge; empty at total reflection.
+  /// Unit direction of the beam after the last wedge; empty at total reflection.
   [[nodiscard]] std::optional<Vec3> direction(Tick t) const noexcept {
     Vec3Lanes light;
     if (directions(TickLanes(t), light)[0] == 0) return std::nullopt;
@@ -86,12 +85,12 @@ struct RisleyPrisms {
   }
 
  private:
-  /// Unit directions behind the last wedge; returns the lanes without total reflection.
+  /// Unit directions after the last wedge; returns the lanes without total reflection.
   simd::Mask directions(const TickLanes& t, Vec3Lanes& light) const noexcept {
     simd::Mask passes = all_lanes();
     light = Vec3Lanes(normalize(incident));
     for (const Prism& p : prisms) {
-      const auto turn = simd::sincos(simd::Doubles(p.start + 2 * pi * t.phase(p.turns_per_second)));
+      const auto turn = simd::sincos(simd::Doubles(p.start + 2 * pi * t.phase(p.rotation_rate)));
       const auto wedge = simd::sincos(p.wedge);
       const double aside = p.inclined_exit ? -wedge.sin : wedge.sin;
       const Vec3Lanes square(-axis::forward), inclined{turn.sin * aside, simd::Doubles{} - wedge.cos, turn.cos * aside};

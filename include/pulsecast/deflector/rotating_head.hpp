@@ -10,13 +10,13 @@ namespace PULSECAST_NAMESPACE {
 
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
-  double rate = 2 * pi;  ///< angular rate, positive to the left about an upward axis; from -1e12 to 1e12, rounded as
-                         ///< turns a second [rad/s]
-  double start = 0;      ///< angle at the survey's start, from -2 pi to 2 pi [rad]
-  Vec3 axis = axis::up;  ///< axis of rotation, of any length but zero
+  double angular_rate = 2 * pi;  ///< positive to the left about an upward axis; from -1e12 to 1e12, rounded as
+                                 ///< turns per second [rad/s]
+  double start = 0;              ///< angle at the survey's start, from -2 pi to 2 pi [rad]
+  Vec3 axis = axis::up;          ///< axis of rotation, of any length but zero
 
   void validate() const {
-    require_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");
+    require_within("RotatingHead::angular_rate", angular_rate, -1e12, 1e12, "rad/s");
     require_angle("RotatingHead::start", start);
     require_positive("RotatingHead::axis (length)", length(axis), "");
   }
@@ -27,7 +27,7 @@ struct RotatingHead {
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Instrument, frame::Instrument>& poses) const noexcept {
-    const simd::Doubles angle = start + 2 * pi * t.phase(rate / (2 * pi));
+    const simd::Doubles angle = start + 2 * pi * t.phase(angular_rate / (2 * pi));
     poses = PoseLanes<frame::Instrument, frame::Instrument>{RotationLanes::about(pulsecast::normalize(axis), angle)};
     return all_lanes();
   }

@@ -17,8 +17,8 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
   for (std::size_t e = 0; e < echoes.size(); ++e) echoes[e].number = static_cast<std::uint8_t>(e + 1);
 }
 
-/// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so
-/// that none of the optional members is lost:
+/// Base of detectors around another one, `inner`. It forwards all members that a derived detector does not define, the
+/// optional ones included:
 ///
 ///     template <Detector Inner>
 ///     struct LastEcho : DetectorAdaptor<Inner> {
@@ -31,8 +31,8 @@ template <Detector Inner>
 struct DetectorAdaptor {
   Inner inner;  ///< detector inside
 
-  static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< as of the detector inside
-  static constexpr bool reads_velocity = ReadsVelocity<Inner>;                     ///< as of the detector inside
+  static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< that of `inner`
+  static constexpr bool reads_velocity = ReadsVelocity<Inner>;                     ///< that of `inner`
 
   /// Validates the detector inside. @throws SettingError
   void validate() const {

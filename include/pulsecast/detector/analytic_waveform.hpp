@@ -158,7 +158,7 @@ class AnalyticWaveform {
   struct Finder {
     const AnalyticWaveform& detector;
     const PulseShape& shape;
-    double min_separation;     ///< as of `merge_or_append` [s]
+    double min_separation;     ///< see `merge_or_append` [s]
     std::vector<Peak>& peaks;  ///< those found
 
     EdgeAgeMoments ages{};        ///< reflections

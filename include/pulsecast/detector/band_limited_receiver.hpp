@@ -32,9 +32,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of finite bandwidth, as real ones are: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and
-/// the form of the laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. Noise
-/// makes it listen to the whole gate.
+/// Receiver of finite bandwidth: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and the form of the
+/// laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. With noise it samples
+/// the whole gate.
 template <PulseForm Form = GammaPulse>
 class BandLimitedReceiver {
  public:
@@ -46,7 +46,7 @@ class BandLimitedReceiver {
   /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
-  static constexpr bool runs_without_reflections = true;  ///< true: noise is heard without light
+  static constexpr bool runs_without_reflections = true;  ///< true: noise is detected without light
   /// Scratch memory of one worker.
   using Workspace = BandLimitedSamples::Workspace;
 

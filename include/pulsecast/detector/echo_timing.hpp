@@ -18,9 +18,8 @@ namespace PULSECAST_NAMESPACE {
 /// instruments do, and are corrected by what the estimator gives for a flat target at normal incidence. Sources: Wagner
 /// et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
-  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows:
-  /// unbiased for an echo of
-  /// any length. What media send back does not count; an echo that is theirs has the range of its peak.
+  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument measures:
+  /// unbiased for an echo of any length. Returns of media do not count; an echo of a medium has the range of its peak.
   true_range,
   /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or
   /// the steps of a

@@ -27,11 +27,11 @@ struct FmcwSettings {
   double bandwidth = 1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from
                            ///< 1e6 to 1e12 [Hz]
   double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
-  double threshold = 1e-12;       ///< least power of an echo, greater than 0 [W]
+  double threshold = 1e-12;       ///< minimum power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
   bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum
                                   ///< efficiency, has the power of the noise
-  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
+  bool speckle = false;           ///< adds fields of random phases, such as those of rough surfaces, in place of powers
   std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 
   /// @throws SettingError
@@ -52,15 +52,15 @@ struct FmcwSettings {
 
 /// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a
 /// share of the light that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that
-/// both range and radial velocity are known. Beats have a sign, as of a receiver of both quadratures. The spectrum of
-/// each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order of power, and
-/// in order of frequency where powers are alike: the latter are wrong if surfaces of different velocities overtake each
-/// other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different powers, as where two peaks are
-/// one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the middle. The
-/// laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean.
-/// Continuous returns, which stand still, are in the spectrum, of which only what is near to surfaces is searched. It
-/// needs a target that knows velocities, such as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla &
-/// Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+/// both range and radial velocity are known. Beats have a sign, as a receiver of both quadratures measures it. The
+/// spectrum of each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order
+/// of power, and in order of frequency where powers are similar: the latter are wrong if surfaces of different
+/// velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
+/// powers, such as two peaks that are one in the other sweep. Surfaces do not move from one sweep to the next. The
+/// range is that in the middle. The laser's peak power is its power while it measures. Amplitudes are the powers of
+/// both sweeps' peaks, in the mean. Continuous returns, which stand still, are in the spectrum, of which only what is
+/// near to surfaces is searched. It needs a `VelocityTarget`, such as `Scene` and `MovingScene`. Source: Amann, Bosch,
+/// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   /// @throws SettingError for settings out of range
@@ -90,7 +90,7 @@ class Fmcw {
     std::array<std::vector<Peak>, 2> peaks;  ///< of the sweeps
     std::vector<Echo> echoes;                ///< of the pulse
   };
-  /// Scratch memory for so many reflections.
+  /// Scratch memory for `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w;
     w.lines.reserve(reflections);
@@ -159,7 +159,7 @@ class Fmcw {
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 
-  /// Amplitude of the spectrum of a sine through the window of Hann, at so many periods from its own; 1 at 0.
+  /// Amplitude of the spectrum of a sine through the window of Hann, at `x` periods from its own; 1 at 0.
   /// Source: Harris 1978.
   [[nodiscard]] static double window(double x) noexcept {
     const double square = x * x;

@@ -31,9 +31,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// What turns the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's
-/// reflections, sorted by range, and gives them section by section, as `IdealSamples`. It is told of each laser before
-/// the first pulse by `prepare`. `timing_reach` is the time beside a maximum whose samples define its place [s], or 0
+/// Conversion of the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's
+/// reflections, sorted by range, and returns them section by section, as `IdealSamples` does. `prepare` receives each
+/// laser before the first pulse. `timing_reach` is the time beside a maximum whose samples define its place [s], or 0
 /// for those next to it.
 template <class R>
 concept WaveformReceiver = std::copyable<R> &&
@@ -71,7 +71,7 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as of the receiver
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< that of the receiver
 
   /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }

@@ -25,7 +25,7 @@ struct PhaseShiftSettings {
   /// coarsest the ambiguity c / 2f [Hz].
   std::vector<double> frequencies{1e6, 10e6, 120e6};
   double contrast = 1;       ///< modulated share of the power, in (0, 1]
-  double threshold = 1e-12;  ///< least modulated power of an echo at the finest frequency [W]
+  double threshold = 1e-12;  ///< minimum modulated power of an echo at the finest frequency [W]
   double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
 
   /// @throws SettingError
@@ -43,7 +43,7 @@ struct PhaseShiftSettings {
     require_within("PhaseShiftSettings::deviation", deviation, 0, 1e20, "W");
   }
 
-  /// Ranges of targets that cannot be told apart differ by this [m].
+  /// Difference of ranges that cannot be distinguished [m].
   [[nodiscard]] double ambiguity() const noexcept { return 0.5 * speed_of_light / frequencies.front(); }
 };
 

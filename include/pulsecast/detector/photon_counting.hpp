@@ -37,7 +37,7 @@ struct PhotonCountingSettings {
   double jitter = 0;                              ///< standard deviation of a detection's time [s]
   std::size_t shots = 1;                          ///< pulses of the laser for one histogram, at most 10,000
   double bin = 1e-9;                              ///< width of the histogram's bins [s]
-  std::size_t threshold = 1;                      ///< least count of a peak of the histogram
+  std::size_t threshold = 1;                      ///< minimum count of a peak of the histogram
   std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
@@ -89,7 +89,7 @@ class PhotonCounting {
   struct Count {
     double time;          ///< since the laser's pulse [s]
     std::uint32_t pixel;  ///< number of the pixel
-    std::uint32_t label;  ///< index of the reflection, that of the continuous return behind all reflections, or `none`
+    std::uint32_t label;  ///< index of the reflection, that of the continuous return after all reflections, or `none`
   };
   /// Scratch memory of one worker.
   struct Workspace {
@@ -244,8 +244,8 @@ class PhotonCounting {
     }
   }
 
-  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least as many as the
-  /// one behind.
+  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least that of the
+  /// bin after.
   void find_echoes(const DetectorInput& input, Workspace& w) const noexcept {
     const double watts =
         energy_per_count(input.emitter.laser) / (input.emitter.laser.pulse_length * static_cast<double>(s_.shots));

@@ -126,8 +126,8 @@ struct Receiver {
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
-  /// Share of the light that the receiver sees by range, all if empty, as by `aperture_overlap`: linear between rows,
-  /// constant beyond them; ranges ascend.
+  /// Share of the light that the receiver sees by range, as computed by `aperture_overlap`: linear between rows,
+  /// constant beyond them; ranges ascend. All light if empty.
   SharedArray<OverlapAtRange> overlap{};
 
   void validate() const {
@@ -194,7 +194,7 @@ class LinkBudget {
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }
-  /// Share of the received power that the air takes away on a short way, both ways [1/m].
+  /// Share of the received power lost per metre of range, on both ways [1/m].
   [[nodiscard]] double loss() const noexcept { return -both_ways_; }
   /// Radius of the aperture [m].
   [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }

@@ -59,7 +59,7 @@ struct ReceiverChain {
     return bandwidth > 0 ? LowPass::of_bandwidth(bandwidth) : LowPass{pulse_length / std::sqrt(8 * std::numbers::ln2)};
   }
 
-  /// One-sided density of the noise before the low-pass, at a signal of so much power [W^2/Hz]: of the amplifier, and
+  /// One-sided density of the noise before the low-pass, at a power `signal` [W] [W^2/Hz]: of the amplifier, and
   /// shot noise of signal, background and dark current.
   [[nodiscard]] double density(double signal, double wavelength) const noexcept {
     constexpr double charge = 1.602176634e-19;  // [C]. Source: SI, exact (26th CGPM, 2018)

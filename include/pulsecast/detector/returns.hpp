@@ -20,11 +20,11 @@ namespace PULSECAST_NAMESPACE {
 enum class ReturnMode : std::uint8_t {
   first,               ///< the nearest
   last,                ///< the farthest
-  strongest,           ///< that of the greatest amplitude; the nearest of equals
+  strongest,           ///< that of the maximum amplitude; the nearest of equals
   first_and_last,      ///< both; one, if they are the same
   strongest_and_last,  ///< both; if they are the same, that and the second strongest
-  n_nearest,           ///< the first so many
-  n_strongest,         ///< the strongest so many, in order of range
+  n_nearest,           ///< the first `n`
+  n_strongest,         ///< the strongest `n`, in order of range
 };
 
 /// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`. Kept
@@ -73,8 +73,8 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   }
 
  private:
-  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has
-  /// few echoes.
+  /// Removes the weakest echoes, the farther one of equals, until `number` are left; `held` at the end stay. A pulse
+  /// has few echoes.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -98,10 +98,10 @@ SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
 template <Detector Inner>
 SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
 
-/// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
+/// Treatment of echoes that arrive after the next pulse left (multiple pulses in the air).
 enum class RangeAmbiguity : std::uint8_t {
   folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
-  resolved,  ///< knows their pulse; those that arrive while another leaves are lost nevertheless
+  resolved,  ///< assigns them to their pulse; those that arrive while another leaves are lost
 };
 
 /// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse leaves are lost: blind
@@ -109,8 +109,8 @@ enum class RangeAmbiguity : std::uint8_t {
 template <Detector Inner>
 class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the pulse rate [Hz], the detector inside, the range behind the exit that is blind [m], and what becomes of
-  /// ranges. @throws SettingError
+  /// Takes the pulse rate [Hz], the detector inside, the blind range after the exit [m], and the treatment of ranges.
+  /// @throws SettingError
   MultiplePulsesInAir(double pulse_rate, Inner inside, double blind = 0, RangeAmbiguity in_air = RangeAmbiguity::folded)
       : DetectorAdaptor<Inner>{validated(std::move(inside))},
         ambiguity_(0.5 * speed_of_light / pulse_rate),
@@ -120,7 +120,7 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
     require_within("MultiplePulsesInAir (blind)", blind, 0, ambiguity_, "m");
   }
 
-  /// Range behind which ranges are folded [m].
+  /// Range beyond which ranges are folded [m].
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
   /// Echoes of the detector inside, without those in blind zones.

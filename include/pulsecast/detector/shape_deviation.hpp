@@ -19,10 +19,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Waveform detector that also tells how far each echo's shape is from that of a flat target: `Echo::shape_deviation`,
-/// in thousandths of the echo's maximum, the mean over the samples within a pulse length of the echo. 0 is a flat
-/// target; slopes, edges and leaves have more. The detector inside keeps waveforms: its `record_length` is greater than
-/// 0, and echoes beyond the record have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
+/// Waveform detector that adds each echo's deviation from the shape of a flat target, `Echo::shape_deviation`: the mean
+/// over the samples within a pulse length of the echo, in thousandths of the echo's maximum. 0 is a flat target;
+/// slopes, edges and leaves have more. The detector inside keeps waveforms: its `record_length` is greater than 0, and
+/// echoes beyond the record have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
 template <class Inner>
 class ShapeDeviation : public DetectorAdaptor<Inner> {
  public:

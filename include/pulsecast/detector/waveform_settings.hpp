@@ -30,9 +30,9 @@ namespace PULSECAST_NAMESPACE {
 struct WaveformSettings {
   double sample_interval =
       0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-9;       ///< least power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
+  double threshold = 1e-9;       ///< minimum power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
   double separation = 0;         ///< closer peaks merge, with the greater height [s]
-  double prominence = 0;         ///< least rise of the lower of two peaks above the valley between them [W]
+  double prominence = 0;         ///< minimum rise of the lower of two peaks above the valley between them [W]
   double window = 1e-9;          ///< an echo is the highest peak within this time before and after it [s]
   double dead_time = 0;          ///< no other echo within this time after an echo's peak [s]
   std::size_t returns_max = 15;  ///< number of echoes kept, in order of range; from 1 to 255

@@ -24,8 +24,8 @@ using PrimitiveIndex = std::uint32_t;
 struct BundleOrigin {
   Vec3 origin{};                                         ///< common origin of the rays [m]
   double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
-  double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
-  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
+  double near = 0;                                       ///< hits are farther than this range, at least 0 [m]
+  double far = std::numeric_limits<double>::infinity();  ///< hits are not beyond this range [m]
   std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
 
   double wavelength = 1.064e-6;    ///< wavelength of the light [m]
@@ -46,8 +46,8 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;  ///< one number per ray
 
   alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
-  Vec3 least,
-      most;  ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 directions_min;  ///< minimum of each component of the directions, NaN left out; infinite if nothing is left
+  Vec3 directions_max;  ///< their maximum
 
   RayBundle() noexcept {}  // leaves the directions unset
   /// Takes the common properties, and leaves the directions unset.
@@ -73,8 +73,8 @@ struct RayBundle : BundleOrigin {
   }
   /// Range that ray j has to be beyond to count [m].
   [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
-  [[nodiscard]] double direction_min(int k) const noexcept { return least[k]; }  ///< component k of `least`
-  [[nodiscard]] double direction_max(int k) const noexcept { return most[k]; }   ///< component k of `most`
+  [[nodiscard]] double direction_min(int k) const noexcept { return directions_min[k]; }
+  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {
@@ -83,8 +83,8 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
-  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and
-  /// `most`. To be called once the directions are set.
+  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds
+  /// `directions_min` and `directions_max`. To be called once the directions are set.
   void pad() noexcept {
     PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
@@ -92,8 +92,8 @@ struct RayBundle : BundleOrigin {
     if (size == 1) {
       const auto number = [](double d, double otherwise) noexcept { return std::isnan(d) ? otherwise : d; };
       constexpr double infinity = std::numeric_limits<double>::infinity();
-      least = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
-      most = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
+      directions_min = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
+      directions_max = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
       return;
     }
     for (int k = 0; k < 3; ++k) {
@@ -103,8 +103,8 @@ struct RayBundle : BundleOrigin {
         low = simd::min(d, low);  // NaN fails every comparison
         high = simd::max(d, high);
       }
-      least[k] = simd::min(low);
-      most[k] = simd::max(high);
+      directions_min[k] = simd::min(low);
+      directions_max[k] = simd::max(high);
     }
   }
 
@@ -115,15 +115,15 @@ struct RayBundle : BundleOrigin {
       y[j] = other.y[j];
       z[j] = other.z[j];
     }
-    least = other.least;
-    most = other.most;
+    directions_min = other.directions_min;
+    directions_max = other.directions_max;
   }
 };
 
-/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less.
-/// Triangles heed the ranges; other shapes may meet a ray before it begins.
+/// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at most their minimum.
+/// Triangles respect the ranges; other shapes may be hit before a ray begins.
 struct StaggeredBundle : RayBundle {
-  alignas(64) Column begin;  ///< ray j meets nothing up to this range; set for `padded_size()` rays [m]
+  alignas(64) Column begin;  ///< ray j has no hits up to this range; set for `padded_size()` rays [m]
 
   StaggeredBundle() noexcept {}
   /// Takes the common properties, and leaves the directions and ranges unset.
@@ -148,51 +148,69 @@ struct StaggeredBundle : RayBundle {
   return rays;
 }
 
-/// Closest hit so far of each ray of a bundle. At exactly equal range the smallest id wins.
-struct ClosestHits {
+/// Closest hit so far of each ray of a bundle, or of a single ray. At exactly equal range the smallest id wins.
+template <std::size_t capacity>
+struct Closest {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
 
-  alignas(64) std::array<double, RayBundle::capacity> range;      ///< range of the hit [m]; `far` without a hit
-  alignas(64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower;
-                                                                  ///< `none` if nothing was met
-  std::uint64_t part = 0;                                         ///< part under test, in the upper half
+  alignas(capacity > 1 ? 64 : 8) std::array<double, capacity> range;  ///< range of the hit [m]; `far` without a hit
+  /// Part in the upper half, primitive in the lower; `none` without a hit.
+  alignas(capacity > 1 ? 64 : 8) std::array<std::uint64_t, capacity> id;
+  std::uint64_t part = 0;  ///< part under test, in the upper half
 
   /// No hits so far of a bundle's rays.
-  explicit ClosestHits(const RayBundle& rays) noexcept {
+  explicit Closest(const RayBundle& rays) noexcept requires(capacity == RayBundle::capacity) {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
+      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane hits nothing
       id[j] = none;
     }
   }
+  /// No hit so far of a single ray, up to a range [m].
+  explicit Closest(double far) noexcept requires(capacity == 1) : range{far}, id{none} {}
 
   /// True if ray j has a hit.
-  [[nodiscard]] bool met(std::size_t j) const noexcept { return id[j] != none; }
+  [[nodiscard]] bool met(std::size_t j) const noexcept { return id[slot(j)] != none; }
   /// Part that ray j hits.
-  [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept { return static_cast<std::uint32_t>(id[j] >> 32); }
+  [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept {
+    return static_cast<std::uint32_t>(id[slot(j)] >> 32);
+  }
   /// Primitive of that part that ray j hits.
-  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept { return static_cast<PrimitiveIndex>(id[j]); }
+  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept {
+    return static_cast<PrimitiveIndex>(id[slot(j)]);
+  }
 
   /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.
   void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
     const std::uint64_t candidate = part | primitive;
-    if (at < range[j] || (at == range[j] && candidate < id[j])) {
-      range[j] = at;
-      id[j] = candidate;
+    if (at < range[slot(j)] || (at == range[slot(j)] && candidate < id[slot(j)])) {
+      range[slot(j)] = at;
+      id[slot(j)] = candidate;
     }
   }
 
   /// Largest range at which ray j can still find a closer hit [m].
-  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[j]; }
-  /// Largest range at which any ray of the bundle can still find a closer hit [m].
-  [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
+  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[slot(j)]; }
+  /// Largest range at which any ray can still find a closer hit [m]; minus infinity for NaN.
+  template <class Rays>
+  [[nodiscard]] double limit(const Rays& rays) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;
-    simd::Doubles last = simd::Doubles{} - infinity;
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
-      last = simd::max(simd::load<simd::Doubles>(range[j]), last);
-    return simd::max(last);
+    const double one = range[0] > -infinity ? range[0] : -infinity;
+    if constexpr (capacity > 1) {
+      if (rays.size == 1) return one;
+      simd::Doubles last = simd::Doubles{} - infinity;
+      for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
+        last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+      return simd::max(last);
+    }
+    return one;
   }
+
+ private:
+  static constexpr std::size_t slot(std::size_t j) noexcept { return capacity > 1 ? j : 0; }
 };
+
+using ClosestHits = Closest<RayBundle::capacity>;  ///< of a bundle
+using ClosestHit = Closest<1>;                     ///< of a single ray
 
 /// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still
 /// takes any [m], `limit(rays)` that of all rays; `part` is the part under test, in the upper half.

@@ -27,7 +27,7 @@ struct SingleRayPacket {
   Vec3 origin{};                   ///< origin [m]
   Vec3 toward = axis::forward;     ///< direction, of length `direction_length`
   double direction_length = 1;     ///< 1 in the world, 1/scale in an instance
-  double near = 0;                 ///< nothing is met at this range or before it, at least 0 [m]
+  double near = 0;                 ///< hits are farther than this range, at least 0 [m]
   Tick tick{};                     ///< time
   std::uint64_t seed = 0;          ///< as in `BundleOrigin`
   PulseIndex pulse = 0;            ///< as in `BundleOrigin`
@@ -64,44 +64,10 @@ struct SingleRayPacket {
   return rays;
 }
 
-/// Closest hit so far of a single ray. At exactly equal range the smallest id wins.
-struct ClosestHit {
-  static constexpr std::uint64_t none = ClosestHits::none;  ///< id of no hit
-
-  double range;             ///< range of the hit [m]; the greatest that counts without a hit
-  std::uint64_t id = none;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
-  std::uint64_t part = 0;   ///< part under test, in the upper half
-
-  /// No hit so far, up to a range [m].
-  explicit ClosestHit(double far) noexcept : range(far) {}
-
-  [[nodiscard]] bool met(std::size_t) const noexcept { return id != none; }  ///< true if the ray has a hit
-  /// Part that the ray hits.
-  [[nodiscard]] std::uint32_t part_of(std::size_t) const noexcept { return static_cast<std::uint32_t>(id >> 32); }
-  /// Primitive of that part that the ray hits.
-  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t) const noexcept { return static_cast<PrimitiveIndex>(id); }
-
-  /// Records a hit with a primitive of the current part, if it is closer than the one before.
-  void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
-    const std::uint64_t candidate = part | primitive;
-    if (at < range || (at == range && candidate < id)) {
-      range = at;
-      id = candidate;
-    }
-  }
-
-  [[nodiscard]] double limit_of(std::size_t) const noexcept { return range; }  ///< as in `ClosestHits`
-  /// Largest range at which the ray can still find a closer hit [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return range > -infinity ? range : -infinity;
-  }
-};
-
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
 struct AnyHit {
-  double far;              ///< greatest range that counts [m]; minus infinity once something is met
-  bool found = false;      ///< true once something is met
+  double far;              ///< greatest range that counts [m]; minus infinity after the first hit
+  bool found = false;      ///< true after the first hit
   std::uint64_t part = 0;  ///< part under test, in the upper half
 
   /// Nothing found so far, up to a range [m].
@@ -158,7 +124,7 @@ class AllHits {
     return std::nextafter(last_.range, -std::numeric_limits<double>::infinity());  // others may be at the same range
   }
 
-  /// Adds a hit with a primitive of the current part, if it is among the closest that are asked for.
+  /// Adds a hit with a primitive of the current part, if it is among the closest that are requested.
   void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
     const Entry hit{at, part | primitive};
     if (!(at <= limit_) || !(last_ < hit)) return;
@@ -173,7 +139,7 @@ class AllHits {
     if (full()) limit_ = hits_[capacity - 1].range;
   }
 
-  /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
+  /// Offers the hits of a shape that finds the closest one only: `closest(ray, hit)` from each hit on.
   template <class Closest>
   void offer_chain(SingleRayPacket ray, const Closest& closest) noexcept {
     for (;;) {
@@ -181,8 +147,8 @@ class AllHits {
       next.part = part;
       closest(ray, next);
       if (!next.met(0)) return;
-      offer(0, next.range, next.primitive_of(0));
-      ray.near = next.range;
+      offer(0, next.range[0], next.primitive_of(0));
+      ray.near = next.range[0];
     }
   }
 
@@ -193,7 +159,7 @@ class AllHits {
     ClosestHit first(limit_);
     first.part = part;
     closest(ray, first);
-    if (first.met(0)) offer(0, first.range, first.primitive_of(0));
+    if (first.met(0)) offer(0, first.range[0], first.primitive_of(0));
   }
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
@@ -205,7 +171,7 @@ class AllHits {
 
  private:
   double near_, limit_, far_;
-  Entry last_;  ///< the last hit before those that are asked for
+  Entry last_;  ///< the last hit before the requested ones
   std::size_t size_ = 0;
   std::array<Entry, capacity> hits_;
 };

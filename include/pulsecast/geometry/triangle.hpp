@@ -36,7 +36,7 @@ struct Triangle {
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 
-  /// Barycentric weights of a, b and c at the point that a ray meets, none negative; they sum to one. A third each
+  /// Barycentric weights of a, b and c at the point that a ray hits, none negative; they sum to one. A third each
   /// without area.
   [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
     const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
@@ -65,7 +65,7 @@ struct TrianglePacket {
   };
   Corner a, b, c;  ///< corners of the triangles
 
-  /// Of so many triangles, at least one; `triangle_of(n)` returns the `Triangle` or `TriangleRef` of the n-th.
+  /// Takes at least one triangle; `triangle_of(n)` returns the `Triangle` or `TriangleRef` of the n-th.
   // always inlined, so that a test reads its operands from registers
   template <class TriangleOf>
   [[gnu::always_inline]] TrianglePacket(std::size_t size, const TriangleOf& triangle_of) noexcept {

@@ -19,7 +19,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
-/// Scanners of documents as stages of the library, for platforms, maps and surveys of one's own.
+/// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// State of an instrument beside its settings.
@@ -76,7 +76,7 @@ static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument> && SkipsB
 /// Options of the receivers of a scanner.
 struct ReceiverOptions {
   double record_length = 0;  ///< length of the waveforms that are kept; 0: none [s]
-  bool noise = false;        ///< adds noise: a quarter of the least power of an echo, as its standard deviation
+  bool noise = false;        ///< adds noise: a quarter of the minimum power of an echo, as its standard deviation
 };
 
 /// Receivers of a scanner for `Survey`, each distinct one of its channels once: footprint, aperture and detector. All

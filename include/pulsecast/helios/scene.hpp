@@ -116,7 +116,7 @@ class SceneBuilder {
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
            std::vector<SurveyPart>& all);
   static Placement placement_of(const PartSettings& part, const TransformSettings& transform);
-  void tell_shared_objects(const std::vector<SurveyPart>& all);
+  void warn_of_shared_objects(const std::vector<SurveyPart>& all);
   static Box box_of(const SurveyPart& part);
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);
   void move(std::vector<SurveyPart>& all);

@@ -44,7 +44,7 @@ struct TrajectorySettings {
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
   bool sync_clock = false;                     ///< start the clock at the time in the file; `syncGPSTime`
-  bool teleports = false;  ///< jump to the start as by a leg without pulses: the optic starts anew. `teleportToStart`
+  bool teleports = false;  ///< jump to the start, like a leg without pulses: the optic restarts. `teleportToStart`
   std::optional<double> start{};  ///< on the clock of the file, default its first sample; `tStart` [s]
   std::optional<double> end{};    ///< on the clock of the file, default its last sample; `tEnd` [s]
 
@@ -67,11 +67,11 @@ struct LegPlatformSettings {
 struct LegScannerSettings {
   bool active = true;                          ///< `active`
   double pulse_rate = 0;                       ///< default: the scanner's first; `pulseFreq_hz` [Hz]
-  double scan_frequency = 0;                   ///< `scanFreq_hz` [Hz]
+  double scan_rate = 0;                        ///< `scanFreq_hz` [Hz]
   std::optional<double> scan_angle{};          ///< half angle, default the device's limit; `scanAngle_deg` [rad]
   std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
   std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
-  double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
+  double head_rate = 0;                        ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
   std::optional<double> divergence{};  ///< of all channels; by default each one's own. `beamDivergence_rad` [rad]
@@ -80,7 +80,7 @@ struct LegScannerSettings {
 
   void validate() const {
     require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
-    require_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    require_not_negative("scanFreq_hz", scan_rate, "Hz");
     if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
     require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
     require_not_negative("opticsWarmupPhase_s", warm_up, "s");

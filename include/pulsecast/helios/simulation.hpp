@@ -79,9 +79,9 @@ class Simulation {
     bool waveform_noise = false;   ///< add receiver noise
     bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
     bool library_physics = false;  ///< true: the library's own physics, not that of HELIOS++: docs/surveys.md
-    bool light_paths = false;      ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
-    bool platform_noise = true;    ///< true: as in the survey; false: none
-    bool leg_noise = true;         ///< true: random leg offsets as in the survey; false: none
+    bool light_paths = false;  ///< true: multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
+    bool platform_noise = true;                   ///< true: as in the survey; false: none
+    bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
     std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
@@ -118,7 +118,7 @@ class Simulation {
 
   /// Size of a loaded scene.
   struct Scene {
-    Vec3 least{}, most{};                              ///< corners of the bounding box, in the world [m]
+    Vec3 min{}, max{};                                 ///< corners of the bounding box, in the world [m]
     std::size_t parts = 0, moving = 0, triangles = 0;  ///< number of parts, of moving ones among them, of triangles
     std::size_t memory = 0;                            ///< memory held; shared data counts once [byte]
     bool empty = true;                                 ///< true: no bounding box
@@ -150,7 +150,7 @@ class Simulation {
   virtual RunSummary run(const RunOptions& options, const Sink& sink) const = 0;
 
   /// Replaces the receivers. Scene and legs remain.
-  virtual void receive(const ReceiverOverrides& how) = 0;
+  virtual void receive(const ReceiverOverrides& overrides) = 0;
   /// Simulates blocks, in any order. Equal blocks give equal samples, except for the time, on any number of threads.
   [[nodiscard]] virtual std::vector<Sample> sample(std::span<const SampleBlock> blocks, unsigned threads) const = 0;
   /// Counts the echoes of single slots.

@@ -72,7 +72,7 @@ class SurveyCompiler {
     Tick start{};
     SurveyPath path;  // of the leg before, and then of the leg
     double optic_time = 0;
-    std::unordered_set<std::string> noted;  // limits that a leg before met
+    std::unordered_set<std::string> noted;  // limits that an earlier leg reached
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
@@ -125,8 +125,8 @@ class SurveyCompiler {
            leg.platform.trajectory->teleports;
   }
 
-  /// Sets the path of a leg. A plan that goes on does so where the whole slots of the leg before ended. Returns the
-  /// delay by that [s].
+  /// Sets the path of a leg. A plan continues where the whole slots of the leg before ended. Returns the delay by that
+  /// [s].
   [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
     const SurveyPath& planned = paths_[k].path;
     const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
@@ -180,7 +180,7 @@ PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, con
   const LegPaths paths(survey, ground, options);
   CompiledSurvey compiled = detail::SurveyCompiler(survey, paths, options).compile();
   if (options.leg_places.empty())
-    compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else told by the reader
+    compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else reported by the reader
   return compiled;
 }
 

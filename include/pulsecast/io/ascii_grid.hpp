@@ -29,15 +29,13 @@ struct AsciiGrid {
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
-/// Reads an Esri ASCII grid, a raster of heights as text, whose coordinates are in metres; the file does not tell its
-/// reference system. Keywords of any case and order come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`,
-/// `yllcorner` or `yllcenter`, `cellsize` or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from
-/// the north; line ends count as blanks. NaN, values not within 1e15 m, and the value for missing ones become NaN.
-/// Memory is the raster, whose size the size of the file bounds.
-/// @throws SettingError for settings out of range
-/// @throws FileError with the line if known, for a keyword that is unknown, repeated or missing, and for too few, too
-/// many or no heights Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; for `dx` and `dy`, the GDAL
-/// manual, AAIGrid driver.
+/// Reads an Esri ASCII grid, a raster of heights as text, whose coordinates are in metres; the file has no reference
+/// system. Keywords of any case and order come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or
+/// `yllcenter`, `cellsize` or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from the north; line
+/// ends count as blanks. NaN, values not within 1e15 m, and the value for missing ones become NaN. Memory is the
+/// raster, whose size the size of the file bounds. @throws SettingError for settings out of range @throws FileError
+/// with the line if known, for a keyword that is unknown, repeated or missing, and for too few, too many or no heights
+/// Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; for `dx` and `dy`, the GDAL manual, AAIGrid driver.
 [[nodiscard]] AsciiGrid read_ascii_grid(const std::filesystem::path& path, const AsciiGridSettings& settings = {});
 
 /// True for the extension `.asc`, in any case.
@@ -95,7 +93,7 @@ class FileWords {
   }
 
   [[nodiscard]] std::size_t line() const noexcept { return line_; }  ///< number of the line of the last word, from 1
-  [[nodiscard]] bool is_open() const noexcept { return is_open_; }   ///< true if the file ended right behind a word
+  [[nodiscard]] bool is_open() const noexcept { return is_open_; }   ///< true if the file ended directly after a word
   [[nodiscard]] const InputFile& file() const noexcept { return file_; }  ///< the file itself
 
   /// Throws a `FileError` about the line of the last word, or another one.

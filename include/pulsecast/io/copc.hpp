@@ -92,7 +92,7 @@ class CopcRecords {
 
  private:
   static constexpr std::size_t info_size = 160, info_at = 375,
-                               extended_header_size = 60;  // [byte]; info_at: behind the header
+                               extended_header_size = 60;  // [byte]; info_at: after the header
 
   void write_hierarchy(OutputFile& file, const LasEncoder& encoder, const CopcRoot& root,
                        std::vector<CopcEntry> entries) {
@@ -149,8 +149,8 @@ class CopcRecords {
 /// at once. `docs/performance.md` has the figures.
 class CopcWriter : public detail::LasFileWriter<detail::CopcRecords> {
  public:
-  /// @throws SettingError for settings out of range, or that LAZ cannot meet
-  /// @throws FileError if the file cannot be made
+  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError if the file cannot
+  /// be made
   explicit CopcWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), LazWriter::compressible(std::move(settings)), detail::CopcRecords(threads)) {}
 };

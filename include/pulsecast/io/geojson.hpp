@@ -92,11 +92,11 @@ class HullOfStream {
 ///   on a line have none.
 ///
 /// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and
-/// GDAL read that member; RFC 7946 knows longitude and latitude of WGS 84 only, so that readers bound to it misplace
-/// coordinates in metres. Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another
-/// begins; one that comes back has new features. Footprints are written as their time ends, a trajectory with its leg:
-/// memory grows with the points of one leg's trajectory, and the corners of one footprint. Only `close()` completes the
-/// file: see `OutputFile`. Throws a `FileError`.
+/// GDAL read that member; RFC 7946 allows longitude and latitude of WGS 84 only, so strict readers misplace coordinates
+/// in metres. Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another begins; one
+/// that comes back has new features. Footprints are written as their time ends, a trajectory with its leg: memory grows
+/// with the points of one leg's trajectory, and the corners of one footprint. Only `close()` completes the file: see
+/// `OutputFile`. Throws a `FileError`.
 class GeoJsonWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

@@ -46,8 +46,8 @@ struct GeoTiff {
 /// not where tiles are left out of 16 bits without a value for missing heights. Throws a `FileError`, with the byte if
 /// known, for a raster that is incomplete, rotated, sheared, in degrees, in feet but for its heights, of depths, or
 /// without a place by tags or a world file. Masks and alpha bands are not applied, with a warning. Memory is the raster
-/// and one strip or row of tiles, as far as read, not as claimed by the header. A picture with a colour table, as a map
-/// of land cover, is a raster of the numbers in the table. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for
+/// and one strip or row of tiles, as far as read, not as claimed by the header. A picture with a colour table, such as
+/// a map of land cover, is a raster of the numbers in the table. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for
 /// GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 

@@ -110,7 +110,7 @@ class KittiWriter {
     return points;
   }
 
-  /// Creates the folders. Throws a `FileError` if there are scans, which another sequence would leave behind its own.
+  /// Creates the folders. Throws a `FileError` if there are scans of an earlier sequence.
   [[nodiscard]] const std::filesystem::path& new_folder() const {
     for (const std::string_view name : {"velodyne", "labels"}) {
       const std::filesystem::path folder = folder_ / name;

@@ -45,7 +45,7 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   items.push_back({14, layout.record() - layout.extras});                                        // BYTE14
   LasBytes<34> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
-  d.put(4, std::uint8_t{3});   // version 3.4, revision 3, as of LASzip
+  d.put(4, std::uint8_t{3});   // version 3.4, revision 3, that of LASzip
   d.put(5, std::uint8_t{4});
   d.put(6, std::uint16_t{3});
   d.put(12, chunk);
@@ -170,17 +170,17 @@ class LazRecords {
 }  // namespace detail
 
 /// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as
-/// by LASzip. Chunks of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the
+/// LASzip does. Chunks of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the
 /// file are the same for any number. Throws a `SettingError` for another format, or for waveforms. With intensities
-/// scaled to the greatest amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
+/// scaled to the maximum amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
-  /// @throws SettingError for settings out of range, or that LAZ cannot meet
-  /// @throws FileError if the file cannot be made
+  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError if the file cannot
+  /// be made
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 
-  /// Settings, if LAZ can meet them. Throws a `SettingError` for another format, or for waveforms.
+  /// Settings, if LAZ supports them. Throws a `SettingError` for another format, or for waveforms.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
       throw SettingError("LasSettings::format", static_cast<double>(settings.format), "",

@@ -45,7 +45,7 @@ struct McapChannel {
   std::string schema_encoding = "ros2msg";  ///< language of the schema
   std::string schema{};                     ///< definition of the type
   std::string message_encoding = "cdr";     ///< encoding of the messages
-  /// Further texts by their keys. The profile "ros2" asks for the quality of service, in YAML; empty: that of the
+  /// Further texts by their keys. The profile "ros2" requires the quality of service, in YAML; empty: that of the
   /// player
   std::map<std::string, std::string> metadata{{"offered_qos_profiles", ""}};
 };

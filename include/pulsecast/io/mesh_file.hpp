@@ -19,13 +19,13 @@ namespace PULSECAST_NAMESPACE::io {
 /// Reads a mesh file. Nodes that show the same mesh share it, where their transforms differ by rotation, uniform scale
 /// and translation, within 1e-6; others share one with their shear or reflection applied, with a warning. Polygons are
 /// triangulated; points, lines and triangles without area are left out, with a warning. Animations are not played.
-/// Materials: colour and opacity by the base colour; a reflectance of 0.5; opacity and transmission as of glass with
+/// Materials: colour and opacity by the base colour; a reflectance of 0.5; opacity and transmission those of glass with
 /// the index of the file; specular colour as `read_mtl`; metals of a roughness up to 0.1 are mirrors, other surfaces of
 /// glTF have facets of that roughness. Throws a `FileError` for a file that is missing or damaged, or has a coordinate
 /// beyond 1e12; a `SettingError` for settings out of range. Limits: nodes are nested at most 1000 deep. A file is
 /// refused that has strips (PLY), or requires an extension of glTF other than those for materials, lights, transforms
-/// of texture coordinates and Draco. Warnings tell of other extensions that move meshes, of bones and morph targets,
-/// and of coordinates that single precision rounds by more than a millimetre.
+/// of texture coordinates and Draco. Warnings report other extensions that move meshes, bones and morph targets, and
+/// coordinates that single precision rounds by more than a millimetre.
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 

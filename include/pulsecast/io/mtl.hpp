@@ -25,13 +25,13 @@ struct MaterialLibrary {
 
 /// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is
 /// `helios_reflectance`, a fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and
-/// `helios_classification` count, too. Of light that goes on tell `illum`, `Ni`, `Tf`, `Pm` and keys of this library,
-/// see docs/surveys.md; of pictures `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`,
+/// `helios_classification` count, too. Multi-bounce light is set by `illum`, `Ni`, `Tf`, `Pm` and keys of this library,
+/// see docs/surveys.md; pictures by `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`,
 /// without their options. Other keys are ignored. The first of equal names counts. Keys before the first name describe
 /// the material "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
-/// Surface without a description. It scatters alike in all directions, as in HELIOS++, which defined the extra keys.
+/// Surface without a description. It scatters equally in all directions, as in HELIOS++, which defined the extra keys.
 [[nodiscard]] inline Material undescribed(std::string name) {
   return {.name = std::move(name), .scattering = Scattering::direction_independent};
 }

@@ -134,7 +134,7 @@ class NpzWriter {
   void operator()(const EchoBatch& batch) { columns_.add(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file
+  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
   void add(const PointBuffer& points) { columns_.add(points_.of(points)); }
 
   /// Writes the arrays, and gives the file its name. Throws a `FileError`.

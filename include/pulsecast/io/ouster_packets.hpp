@@ -27,13 +27,13 @@ struct OusterFormat {
 
   /// Columns of a turn.
   [[nodiscard]] static std::size_t frame_columns(const SpinningSensor& sensor) noexcept {
-    return static_cast<std::size_t>(std::nearbyint(sensor.sequence_rate / sensor.turns_per_second));
+    return static_cast<std::size_t>(std::nearbyint(sensor.sequence_rate / sensor.rotation_rate));
   }
 
   static void validate(const SpinningSensor& sensor) {
     require_within("SpinningSensor::lasers (number)", static_cast<double>(sensor.lasers.size()), lasers, lasers, "");
     require_within("SpinningSensor::start", sensor.start, pi - 1e-9, pi + 1e-9, "rad");  // encoder 0
-    const double columns = sensor.sequence_rate / sensor.turns_per_second;
+    const double columns = sensor.sequence_rate / sensor.rotation_rate;
     const bool is_mode = columns == 512 || columns == 1024 || columns == 2048;
     if (!is_mode)
       throw SettingError("SpinningSensor::sequence_rate (sequences a turn)", columns, "", "512, 1024 or 2048");

@@ -60,12 +60,12 @@ class OutputEncoder {
 
 /// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete.
 /// Until then, or if the program is killed, the final name keeps its former content. Destruction without `commit()`
-/// leaves nothing behind. Throws a `FileError` that names the final path at every failure; after one to write, nothing
-/// can be written or committed. With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again
-/// or overwritten. The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On
-/// a file system without locks, the second takes the name, and the first fails at its commit. The content is on the
-/// disk before the renaming, so that a power cut leaves no incomplete file under the final name. Limits: a power cut
-/// may lose the name until the folder itself is written to the disk.
+/// removes the temporary file. Throws a `FileError` that names the final path at every failure; after one to write,
+/// nothing can be written or committed. With an encoder, bytes pass through it, a megabyte at a time, and cannot be
+/// read again or overwritten. The temporary file is locked: a second `OutputFile` of the same name, in any program, is
+/// refused. On a file system without locks, the second takes the name, and the first fails at its commit. The content
+/// is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name. Limits: a
+/// power cut may lose the name until the folder itself is written to the disk.
 class OutputFile {
  public:
   /// Opens and locks the temporary file of `path`; with an `encoder`, bytes pass through it.
@@ -133,7 +133,7 @@ class OutputFile {
   /// never commits.
   void forget_name() noexcept { file_.remove(); }
 
-  /// Continues behind bytes that others wrote to the temporary file; without an encoder.
+  /// Continues after bytes that others wrote to the temporary file; without an encoder.
   void continue_at(std::uint64_t position) {
     PULSECAST_ASSERT(!encoder_);
     require_open();
@@ -212,7 +212,7 @@ class OutputFile {
   };
 
   static constexpr std::size_t capacity = std::size_t{1}
-                                          << 20;  // bytes passed on at a time: the cost of calls is negligible
+                                          << 20;  // bytes forwarded at a time: the cost of calls is negligible
 
   [[nodiscard]] static std::error_code system_error(int number) {
     return {number != 0 ? number : EIO, std::generic_category()};

@@ -87,7 +87,7 @@ class PacketFrame {
 
 }  // namespace detail
 
-/// Writes packets to a capture file of the classic form, as of tcpdump: frames of Ethernet, IPv4 and UDP, each
+/// Writes packets to a capture file of the classic form, that of tcpdump: frames of Ethernet, IPv4 and UDP, each
 /// undivided whatever its length. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`. Source:
 /// IETF draft-ietf-opsawg-pcap, 4 and 5.
 class PcapWriter {

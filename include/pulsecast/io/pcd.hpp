@@ -55,7 +55,7 @@ namespace detail {
 inline constexpr std::uint64_t lzf_size_max = 4'129'776'230;
 static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max());
 
-/// Bytes compressed by LZF, behind their sizes with and without compression. Source: PCD file format 0.7,
+/// Bytes compressed by LZF, after their sizes with and without compression. Source: PCD file format 0.7,
 /// binary_compressed.
 [[nodiscard]] inline std::vector<std::byte> pcd_compressed(std::span<const std::byte> bytes) {
   std::array<std::uint32_t, 2> sizes{0, static_cast<std::uint32_t>(bytes.size())};
@@ -89,8 +89,8 @@ class PcdWriter {
   void operator()(const EchoBatch& batch) { write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws
-  /// FileError
+  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
+  /// @throws FileError
   void add(const PointBuffer& points) { write(points_.of(points)); }
 
   /// Compresses the points if so set, completes the header, and gives the file its name. Throws a `FileError`.

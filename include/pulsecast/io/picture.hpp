@@ -17,9 +17,9 @@
 /// Pictures of surfaces: PNG, JPEG, BMP, TGA, GIF, PSD and PNM, read by stb_image.
 namespace PULSECAST_NAMESPACE::io {
 
-/// How pictures are read.
+/// Settings of `read_picture`.
 struct PictureSettings {
-  std::size_t max_pixels = std::size_t{1} << 26;  ///< greatest number of pixels
+  std::size_t max_pixels = std::size_t{1} << 26;  ///< maximum number of pixels
   /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For files that are
   /// not trusted.
   bool isolated = false;

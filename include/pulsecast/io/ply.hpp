@@ -25,11 +25,11 @@ struct PlySettings {
   void validate() const { detail::require_packable(layout, points); }
 };
 
-/// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout.
-/// Source: Turk 1994, The PLY Polygon File Format. Streams: memory does not grow with the number of points.
-/// Readers know coordinates by the names x, y and z, and many keep them in single precision only: set
-/// `PointSettings::origin` for those. Times since a scan's start count from tick 0, except of scans that `add` appends.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout. Source:
+/// Turk 1994, The PLY Polygon File Format. Streams: memory does not grow with the number of points. Readers find
+/// coordinates by the names x, y and z, and many keep them in single precision only: set `PointSettings::origin` for
+/// those. Times since a scan's start count from tick 0, except of scans that `add` appends. Only `close()` completes
+/// the file: see `OutputFile`. Throws a `FileError`.
 class PlyWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -42,8 +42,8 @@ class PlyWriter {
   void operator()(const EchoBatch& batch) { file_.write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file @throws
-  /// FileError
+  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
+  /// @throws FileError
   void add(const PointBuffer& points) { file_.write(points_.of(points)); }
 
   /// Completes the header, and gives the file its name. Throws a `FileError`.

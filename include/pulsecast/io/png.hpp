@@ -212,9 +212,9 @@ class ImageWriter {
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`: some million places, between
-  /// pixels too; none beside a pixel of shade 0. Without points it frames the picture.
-  /// @throws SettingError as `Raster::validate` and `Placement::validate`, or for another number of shades
+  /// Draws a raster behind the points, in shades of grey from 1 to 255, see `hillshade`: some million places, between
+  /// pixels too; none beside a pixel of shade 0. Without points it frames the picture. @throws SettingError as
+  /// `Raster::validate` and `Placement::validate`, or for another number of shades
   void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Placement& placement = {}) {
     raster.validate();
     placement.validate();

@@ -28,7 +28,7 @@ enum class VoxelNormals : std::uint8_t {
 
 /// Position of the lattice of voxels.
 enum class VoxelLattice : std::uint8_t {
-  at_cloud,      ///< begins at the least coordinates; along an axis without extent, voxels are centred on the cloud
+  at_cloud,      ///< begins at the minimum coordinates; along an axis without extent, voxels are centred on the cloud
   at_multiples,  ///< faces at integer multiples of the voxel size, so that adjacent clouds share a lattice
 };
 

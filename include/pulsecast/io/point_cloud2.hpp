@@ -89,7 +89,7 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 }
 
 /// Length of a message up to its data, without the encapsulation header [byte]. A number is aligned to its size; a
-/// string is its length, and its bytes with a zero behind them. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
+/// string is its length, then its bytes and a zero. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
 [[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, const std::string& frame_id) noexcept {
   const auto aligned = [](std::size_t at) { return (at + 3) / 4 * 4; };
   const auto with_string = [&](std::size_t at, const std::string& text) { return aligned(at) + 4 + text.size() + 1; };
@@ -102,9 +102,9 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 }  // namespace detail
 
 /// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`, in place of its former content:
-/// little-endian CDR behind an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
-/// `stamp_ns`. Once `message` has grown to the longest scan, it allocates nothing.
-/// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
+/// little-endian CDR after an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
+/// `stamp_ns`. Once `message` has grown to the longest scan, it allocates nothing. @throws SettingError for more than
+/// 2^32 - 1 bytes of points, and as `stamp_ns`
 inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
                                    std::vector<std::byte>& message) {
   const PointLayout& layout = scan.layout();

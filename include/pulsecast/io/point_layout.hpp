@@ -47,7 +47,7 @@ enum class PointQuantity : std::uint8_t {
   azimuth,          ///< angle of the point from the x axis to the y axis, in the frame of the points [rad]
   elevation,        ///< angle of the point above the plane of x and y [rad]
   reflectance,      ///< as `Echo::reflectance`: 1 for a white surface at normal incidence
-  reflectivity,     ///< the same as instruments tell it, from 0 to 255: `reflectivity_byte`
+  reflectivity,     ///< the same as instruments encode it, from 0 to 255: `reflectivity_byte`
   photons,          ///< photons at the echo's peak per pulse length: amplitude by photon energy
   amplitude,        ///< as `Echo::amplitude` [W]
   width,            ///< as `Echo::width` [s]
@@ -71,7 +71,7 @@ enum class PointQuantity : std::uint8_t {
   near_infrared,    ///< as `PointColour::near_infrared`, from 0 to 1; NaN if unknown
   packed_rgb,       ///< 65536 red + 256 green + blue, of 8 bits each; NaN if unknown
   packed_rgb_bits,  ///< float32 of the bits of `packed_rgb`, as PCL and ROS have it; 0 if unknown
-  attribute  ///< attribute of the object, by the field's name, as of `PointSettings::attributes`; NaN if it has none
+  attribute  ///< attribute of the object, by the field's name, see `PointSettings::attributes`; NaN if it has none
 };
 
 /// Field of a point record: a quantity times a scale.
@@ -91,7 +91,7 @@ struct PointLayout {
   /// Layout of fields one after another, without gaps.
   [[nodiscard]] static PointLayout packed(const std::vector<PointField>& fields) { return PointLayout{}.with(fields); }
 
-  /// This layout with more fields behind its own, without gaps.
+  /// This layout with further fields at its end, without gaps.
   [[nodiscard]] PointLayout with(const std::vector<PointField>& more) const {
     PointLayout layout = *this;
     for (const PointField& field : more) {
@@ -132,7 +132,7 @@ namespace layouts {
           {"z", FieldType::float32, PointQuantity::z}};
 }
 
-/// Points of a map: coordinates in double precision, and whatever an echo tells.
+/// Points of a map: coordinates in double precision, and all values of an echo.
 [[nodiscard]] inline PointLayout map() {
   return PointLayout::packed({{"x", FieldType::float64, PointQuantity::x},
                               {"y", FieldType::float64, PointQuantity::y},
@@ -188,7 +188,7 @@ namespace layouts {
 }
 
 /// Fields of Autoware's PointXYZIRCAEDT, 32 bytes. Source: autowarefoundation, data types of point clouds: time_stamp
-/// since the scan's start [ns]; return types are not told.
+/// since the scan's start [ns]; return types are left out.
 [[nodiscard]] inline PointLayout autoware() {
   return PointLayout::packed(xyz_float())
       .with({{"intensity", FieldType::uint8, PointQuantity::reflectivity},
@@ -200,8 +200,8 @@ namespace layouts {
              {"time_stamp", FieldType::uint32, PointQuantity::time, 1e9}});
 }
 
-/// Labels of a point, to go behind another layout's fields: `layouts::velodyne().with(layouts::labels())`. Part,
-/// material, normal and velocity need `PointSettings::surfaces`.
+/// Labels of a point, to append to another layout: `layouts::velodyne().with(layouts::labels())`. Part, material,
+/// normal and velocity need `PointSettings::surfaces`.
 [[nodiscard]] inline std::vector<PointField> labels() {
   return {{"classification", FieldType::uint16, PointQuantity::classification},
           {"object", FieldType::uint32, PointQuantity::object},
@@ -215,8 +215,8 @@ namespace layouts {
           {"velocity_z", FieldType::float32, PointQuantity::velocity_z}};
 }
 
-/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY know, to go behind another layout's
-/// fields. Colours need `PointSettings::colours`. 0 if unknown, which is black.
+/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY expect, to append to another layout.
+/// Colours need `PointSettings::colours`. 0 if unknown, which is black.
 [[nodiscard]] inline std::vector<PointField> colours() {
   return {{"red", FieldType::uint8, PointQuantity::red, 255},
           {"green", FieldType::uint8, PointQuantity::green, 255},
@@ -237,8 +237,8 @@ namespace layouts {
   return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}};
 }
 
-/// Attributes of a point's object, a field each, to go behind another layout's fields: of `ObjectAttributes::names`.
-/// NaN where an object has none, and 0 in integers.
+/// Attributes of a point's object, a field each, to append to another layout: `ObjectAttributes::names`. NaN where an
+/// object has none, and 0 in integers.
 [[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names,
                                                         FieldType type = FieldType::float64) {
   std::vector<PointField> fields;

@@ -50,11 +50,11 @@ struct PointSettings {
   MotionDistortion distortion = MotionDistortion::kept;  ///< distortion of points in the sensor's frame
   PointAxes axes = PointAxes::right_forward_up;          ///< axes of the coordinates
   Vec3 origin{};                       ///< place in the world that has coordinates 0, for points in the world [m]
-  std::vector<std::uint16_t> rings{};  ///< ring of each channel, as of `SpinningSensor::rings`; empty: the channel
+  std::vector<std::uint16_t> rings{};  ///< ring of each channel, see `SpinningSensor::rings`; empty: the channel
   double start_time = 0;               ///< clock time at tick 0 [s]
   Laser laser{};                       ///< laser, for `PointQuantity::photons`
-  SurfaceQuery surfaces{};             ///< surfaces of echoes, as of `surfaces_of`; empty: they are unknown
-  PointColours colours{};              ///< colours of echoes, as of `colours_of`; empty: they are unknown
+  SurfaceQuery surfaces{};             ///< surfaces of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};              ///< colours of echoes, see `colours_of`; empty: unknown
   ObjectAttributes attributes{};       ///< attributes of objects, for `PointQuantity::attribute`
 
   void validate() const {
@@ -64,7 +64,7 @@ struct PointSettings {
   }
 };
 
-/// Reflectance as instruments tell it in a byte: percents from 0 to 100 for surfaces up to white ones; above, 10 a
+/// Reflectance as instruments encode it in a byte: percents from 0 to 100 for surfaces up to white ones; above, 10 a
 /// doubling, up to 255. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, for the first part and the limit;
 /// makers do not publish the second.
 [[nodiscard]] inline double reflectivity_byte(double reflectance) noexcept {
@@ -150,7 +150,7 @@ class PointEncoder {
   /// Start of the scan.
   [[nodiscard]] Tick scan_start() const noexcept { return start_; }
 
-  /// Sets the start of the scan, from which its times count. The sensor's pose is asked for it now.
+  /// Sets the start of the scan, from which its times count. Evaluates the sensor's pose for it now.
   void begin_scan(Tick start) {
     start_ = start;
     if (settings_.sensor && settings_.distortion == MotionDistortion::removed)

@@ -11,7 +11,7 @@
 namespace PULSECAST_NAMESPACE::io {
 
 /// Reads a measured laser pulse: a text of two columns, time [ns] from any origin and power in any unit, by increasing
-/// time. `#` begins a comment, and a first row without numbers is a header. Powers below 0, as of noise about a
+/// time. `#` begins a comment, and a first row without numbers is a header. Powers below 0, such as noise about a
 /// baseline, count as 0. Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MeasuredPulse read_pulse_form(const std::filesystem::path& path);
 

@@ -197,7 +197,7 @@ template <class P>
 }  // namespace detail
 
 /// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of
-/// each, so that files already read need not be read again. Throws a `FileError` if one cannot be read.
+/// each, so that files already read are not read again. Throws a `FileError` if one cannot be read.
 [[nodiscard]] inline Fingerprint scene_key(
     const SceneSources& sources,
     const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint) {

@@ -21,7 +21,7 @@
 #include <pulsecast/sensor/ouster.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>
 
-/// Files by which decoders know the lasers of a sensor, written and read.
+/// Writers and readers of the files that describe a sensor's lasers to decoders.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in radians, heights in
@@ -127,7 +127,7 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
   file.write(text::joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
-                           text::to_text(sensor.turns_per_second),
+                           text::to_text(sensor.rotation_rate),
                            "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
   file.write(text::joined(
       {"  \"beam_altitude_angles\": ", detail::json_list(altitudes),

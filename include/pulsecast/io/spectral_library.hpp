@@ -164,8 +164,8 @@ class SpectrumReader {
     const auto [low, high] = std::minmax_element(
         samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
     const double shortest = low->wavelength;
-    const bool told = unit_.has_value();
-    if (!told)
+    const bool given = unit_.has_value();
+    if (!given)
       unit_ = shortest >= 100   ? WavelengthUnit::nanometre
               : shortest < 0.01 ? WavelengthUnit::metre
                                 : WavelengthUnit::micrometre;
@@ -180,7 +180,7 @@ class SpectrumReader {
     }
     const std::string name = names[static_cast<std::size_t>(*unit_)];
     if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all between 100 nm and 1 mm");
-    return "wavelengths in " + name + (told ? ", by the header" : ", by the values " + range);
+    return "wavelengths in " + name + (given ? ", by the header" : ", by the values " + range);
   }
 
   std::string take_reflectances(ReflectanceScale& scale) {
@@ -189,10 +189,10 @@ class SpectrumReader {
                            })->reflectance;
     const std::string reach = "its values reach " + text::to_text(largest);
     const bool many = largest > 1.5;
-    const bool told = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
-    scale = told ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;
+    const bool given = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
+    scale = given ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;
     const bool percent = scale == ReflectanceScale::percent;
-    if (scale_ && !told) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
+    if (scale_ && !given) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
     if (percent && largest <= 1) warn(scale_line_, "its header says percent, but " + reach + " only");
     Oddity clipped;
     for (Row& sample : samples_) {
@@ -203,7 +203,7 @@ class SpectrumReader {
     if (clipped.count > 0)
       warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
     return std::string("reflectance in ") + (percent ? "percent" : "fractions") +
-           (told ? ", by the header" : ", as " + reach);
+           (given ? ", by the header" : ", as " + reach);
   }
 
   /// Samples with those of equal wavelength averaged.

@@ -26,9 +26,9 @@ struct TextFileSettings {
   void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
-/// Columns of a text file of points behind its own.
+/// Further columns of a text file of points, after the standard ones.
 struct PointTextColumns {
-  PointColours colours{};         ///< colours of echoes, as of `colours_of`; empty: no columns of colours
+  PointColours colours{};         ///< colours of echoes, see `colours_of`; empty: no columns of colours
   ObjectAttributes attributes{};  ///< attributes of objects, a column each
 };
 
@@ -39,9 +39,9 @@ struct PointTextColumns {
 /// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals;
 /// gpsTime [s] has 9. The others are integers: return number, returns of the pulse, index of the pulse, object, class.
 /// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated
-/// here. Further columns follow if they are asked for: red, green and blue, from 0 to 255, nan if unknown; and the
-/// attributes of the point's object in order of their names, in the shortest form that reads back the same, nan if it
-/// has none. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// here. Further columns follow on request: red, green and blue, from 0 to 255, nan if unknown; and the attributes of
+/// the point's object in order of their names, in the shortest form that reads back the same, nan if it has none. Only
+/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

@@ -100,7 +100,7 @@ struct VelodyneFormat {
 /// `VelodynePackets packets(velodyne_vlp_16(), {.returns = PacketReturns::last}, std::ref(file))`. After construction,
 /// it allocates nothing. Of dual returns, even blocks hold the last and odd ones the strongest; the second strongest if
 /// the strongest is the last; the same if there is only one. Distances are from the sensor's axis; beyond what 16 bits
-/// hold, they are 0, as without a return. Decoders know the times of firings from the manual: a sensor with other rates
+/// hold, they are 0, as without a return. Decoders take the times of firings from the manual: a sensor with other rates
 /// or delays is decoded wrong.
 using VelodynePackets = detail::PacketStream<detail::VelodyneFormat>;
 static_assert(EchoSink<VelodynePackets> && ChoosesShots<VelodynePackets>);

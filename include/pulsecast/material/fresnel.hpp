@@ -20,7 +20,7 @@ struct FresnelSplit {
   [[nodiscard]] double refracted() const noexcept { return 1 - reflected; }  ///< share refracted
 };
 
-/// Splits light that meets a face at a cosine of incidence, by the index beyond the face over that before it. At angles
+/// Splits light that hits a face at a cosine of incidence, by the index beyond the face over that before it. At angles
 /// beyond the critical one, all is reflected. Source: Fresnel's equations, Born & Wolf 1999, 1.5.2.
 [[nodiscard]] inline FresnelSplit fresnel_split(double cos_incidence, double relative_index) noexcept {
   const double sine2 = (1 - cos_incidence * cos_incidence) / (relative_index * relative_index);
@@ -48,7 +48,7 @@ struct FresnelSplit {
 /// Light at a pane. All orders of reflection between its faces are counted, each as if it left where the first does.
 struct PaneSplit {
   double reflected = 0;    ///< share reflected
-  double transmitted = 0;  ///< share let through
+  double transmitted = 0;  ///< transmitted share
   double shift = 0;        ///< distance along the normal by which the ray seems to begin nearer to the pane [m]
   double delay = 0;        ///< optical path from face to face, less the path of the shifted ray between them [m]
   double cos_inside = 1;   ///< cosine between the ray inside and the normal
@@ -58,7 +58,7 @@ struct PaneSplit {
   }
 };
 
-/// Splits light at a pane in a medium, of air if not told. Source: sum of the geometric series of reflections, for each
+/// Splits light at a pane in a medium, by default air. Source: sum of the geometric series of reflections, for each
 /// polarisation; Born & Wolf 1999, 7.6, without interference.
 [[nodiscard]] inline PaneSplit pane_split(double cos_incidence, const SmoothInterface& pane,
                                           const Medium& around = {}) noexcept {

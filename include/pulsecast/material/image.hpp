@@ -43,7 +43,7 @@ struct Image {
   /// True if pixels have an opacity, as their last channel.
   [[nodiscard]] bool has_opacity() const noexcept { return channels == 2 || channels == 4; }
 
-  /// Channels of the pixel at texture coordinates, as of `texel_at`.
+  /// Channels of the pixel at texture coordinates, see `texel_at`.
   [[nodiscard]] std::span<const std::uint8_t> at(const Vec2& texture) const noexcept {
     return {samples.data() + texel_at(width, height, texture) * channels, channels};
   }

@@ -35,7 +35,7 @@ struct MediumRegion {
   std::array<std::size_t, 3> cells{1, 1, 1};
   /// Factors of the medium's coefficients by cell, x fastest and z slowest; all 1 if empty.
   SharedArray<float> densities{};
-  /// Particles that the medium is the mean of: a beam meets them one by one, as long as they are few. None by default.
+  /// Particles whose mean is the medium: a beam hits them one by one, as long as they are few. None by default.
   Precipitation particles{};
 
   /// Rain or snow in a box.

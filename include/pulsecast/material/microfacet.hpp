@@ -38,8 +38,8 @@ struct Microfacets {
     return fresnel_split(cos_incidence, index).reflected;
   }
 
-  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and what hides one on
-  /// the way there hides it on the way back. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
+  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and masking is the
+  /// same on both ways. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
   [[nodiscard]] double backscatter(double cos_incidence) const noexcept {
     if (!(cos_incidence > 0)) return 0;
     return pi * reflected(1) * density(cos_incidence) / (4 * cos_incidence * (1 + hidden(cos_incidence)));

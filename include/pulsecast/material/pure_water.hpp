@@ -80,10 +80,9 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
 
 }  // namespace detail
 
-/// Index of refraction of water relative to air, for a wavelength in vacuum, from 0.35 to 1.1 um [m].
-/// Source: Quan & Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated as by Huibers 1997. Relative to
-/// air: Zhang, Hu & He 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by
-/// 1e-3 at 1.06 um.
+/// Index of refraction of water relative to air, for a wavelength in vacuum, from 0.35 to 1.1 um [m]. Source: Quan &
+/// Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated by Huibers 1997. Relative to air: Zhang, Hu & He
+/// 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by 1e-3 at 1.06 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);

@@ -36,9 +36,9 @@ struct ReflectanceMap {
   Image image{};  ///< picture
   std::array<double, 3> wavelengths{612e-9, 549e-9,
                                     465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
-  /// If not zero, the mean of red, green and blue: the picture tells a pattern alone, and the reflectance is that of
-  /// the material times the ratio of a pixel to the mean, at most 1. For light that the picture does not show, as of
-  /// 1064 nm.
+  /// If not zero, the mean of red, green and blue: the picture is a pattern, and the reflectance is that of the
+  /// material times the ratio of a pixel to the mean, at most 1. For wavelengths that the picture does not show, such
+  /// as 1064 nm.
   Vec3 mean{};
 
   /// Map of a pattern: the mean is that of all pixels, and 1 for a channel that is black.

@@ -10,7 +10,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ways in which a smooth surface passes light on.
+/// Kinds of specular reflection and transmission.
 enum class InterfaceKind : std::uint8_t {
   none,    ///< not at all
   mirror,  ///< reflects a share of it, at any incidence
@@ -20,13 +20,13 @@ enum class InterfaceKind : std::uint8_t {
   water,       ///< the same, of water
 };
 
-/// Smooth surface that passes light on, for a transport that follows it, as `LightPaths`. What the surface scatters
-/// itself, by `Material::reflectance`, as dirt on a window does, is neither reflected nor let through.
+/// Surface that reflects or transmits light specularly, for a transport that follows it, such as `LightPaths`. What the
+/// surface scatters itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
 struct SmoothInterface {
-  InterfaceKind kind = InterfaceKind::none;  ///< way in which light is passed on
+  InterfaceKind kind = InterfaceKind::none;  ///< kind of reflection and transmission
   double reflectance = 0;                    ///< of a mirror: share of the light that it reflects, in [0, 1]
   double thickness = 0;                      ///< of a pane: distance of its faces [m]
-  Medium inside{};                           ///< of panes and bodies: medium behind the surface, against its normal
+  Medium inside{};                           ///< of panes and bodies: medium beyond the surface, against its normal
 
   /// Mirror that reflects a share of the light.
   [[nodiscard]] static SmoothInterface mirror(double reflectance = 0.95) noexcept {
@@ -41,8 +41,8 @@ struct SmoothInterface {
     return {.kind = InterfaceKind::dielectric, .inside = soda_lime};
   }
 
-  /// Surface of water of a kind, as of `water(JerlovType::coastal_1, 532e-9)`. For the glint of waves that the scene
-  /// has not, and foam, see `Scattering::microfacet` and `Material::reflectance`.
+  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. For foam and the glint of waves that are not
+  /// modelled, see `Scattering::microfacet` and `Material::reflectance`.
   [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
     return {.kind = InterfaceKind::water, .inside = inside};
   }
@@ -53,9 +53,9 @@ struct SmoothInterface {
     inside.validate();
   }
 
-  /// True if light goes on from the surface.
+  /// True if the surface reflects or transmits light specularly.
   [[nodiscard]] bool passes_light() const noexcept { return kind != InterfaceKind::none; }
-  /// True if all rays of a pencil that meet a plane of it go on as a pencil: mirrors and panes.
+  /// True if coaxial rays that hit a plane of it stay coaxial: mirrors and panes.
   [[nodiscard]] bool keeps_pencils() const noexcept {
     return kind == InterfaceKind::mirror || kind == InterfaceKind::pane;
   }

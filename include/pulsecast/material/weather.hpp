@@ -42,7 +42,7 @@ namespace detail {
 
 /// Haze of a visibility, from 1 to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
 /// 2001. Lidar ratio: 50 sr, of polluted continental air at 0.532 um (Li et al. 2022, 20 sr and more below the 70 sr of
-/// CALIPSO's version 4); not known to hold at other wavelengths. Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over
+/// CALIPSO's version 4); unverified at other wavelengths. Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over
 /// India). @throws SettingError out of range
 [[nodiscard]] inline Medium haze(double visibility, double wavelength) {
   require_within("haze (visibility)", visibility, 1e3, 1e5, "m");
@@ -64,9 +64,8 @@ namespace detail {
 
 /// Smoke of fires of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
 /// `extinction` by Kim 2001, measured in haze and fog, not smoke. Lidar ratio: 70 sr at 0.532 um (Li et al. 2022, from
-/// 65 to 75 sr over the Atlantic); not known to hold at other wavelengths. Scattered: 0.92 at 0.55 um, from 0.88 for
-/// grass to 0.97 for boreal forest (Sayer et al. 2014).
-/// @throws SettingError out of range
+/// 65 to 75 sr over the Atlantic); unverified at other wavelengths. Scattered: 0.92 at 0.55 um, from 0.88 for grass to
+/// 0.97 for boreal forest (Sayer et al. 2014). @throws SettingError out of range
 [[nodiscard]] inline Medium smoke(double visibility, double wavelength) {
   require_within("smoke (visibility)", visibility, 1, 1e5, "m");
   require_within("smoke (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -105,20 +104,20 @@ template <int order>
 /// diffraction into a cone of about wavelength / D, which wide receivers take for light that was not lost (van de Hulst
 /// 1957). All that is lost counts as scattered.
 struct Precipitation {
-  double density = 0;       ///< N(D) extrapolated to D = 0: number per volume and diameter [1/m^4]
-  double slope = 1;         ///< decline of the distribution with diameter, from 1e-3 to 1e9 [1/m]
-  double least = 0.1e-3;    ///< least diameter [m]
-  double most = 6e-3;       ///< greatest diameter [m]
-  double lidar_ratio = 20;  ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
-  double absorption = 0;    ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
+  double density = 0;            ///< N(D) extrapolated to D = 0: number per volume and diameter [1/m^4]
+  double slope = 1;              ///< decline of the distribution with diameter, from 1e-3 to 1e9 [1/m]
+  double diameter_min = 0.1e-3;  ///< minimum diameter [m]
+  double diameter_max = 6e-3;    ///< maximum diameter [m]
+  double lidar_ratio = 20;       ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
+  double absorption = 0;  ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
   double reflectance =
       0;  ///< share of the light reflected by the front of a particle at normal incidence, at most 8 pi / lidar_ratio
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
     require_within("Precipitation::slope", slope, 1e-3, 1e9, "1/m");
-    require_not_negative("Precipitation::least", least, "m");
-    require_positive("Precipitation::most (above least)", most - least, "m");
+    require_not_negative("Precipitation::diameter_min", diameter_min, "m");
+    require_positive("Precipitation::diameter_max (above diameter_min)", diameter_max - diameter_min, "m");
     require_within("Precipitation::lidar_ratio", lidar_ratio, 1, std::numeric_limits<double>::max(), "sr");
     require_not_negative("Precipitation::absorption", absorption, "1/m");
     require_within("Precipitation::reflectance", reflectance, 0, std::min(1.0, 8 * std::numbers::pi / lidar_ratio), "");
@@ -126,16 +125,19 @@ struct Precipitation {
 
   /// Particles per volume [1/m^3].
   [[nodiscard]] double number() const noexcept {
-    return density / slope * std::exp(-slope * least) * detail::lower_gamma<1>(slope * (most - least));
+    return density / slope * std::exp(-slope * diameter_min) *
+           detail::lower_gamma<1>(slope * (diameter_max - diameter_min));
   }
-  /// Share of the particles up to a diameter between `least` and `most` [m].
+  /// Share of the particles up to a diameter between `diameter_min` and `diameter_max` [m].
   [[nodiscard]] double cumulative(double diameter) const noexcept {
-    return detail::lower_gamma<1>(slope * (diameter - least)) / detail::lower_gamma<1>(slope * (most - least));
+    return detail::lower_gamma<1>(slope * (diameter - diameter_min)) /
+           detail::lower_gamma<1>(slope * (diameter_max - diameter_min));
   }
   /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of `cumulative`.
   [[nodiscard]] double diameter(double uniform) const noexcept {
-    return std::clamp(least - std::log1p(-uniform * detail::lower_gamma<1>(slope * (most - least))) / slope, least,
-                      most);
+    return std::clamp(
+        diameter_min - std::log1p(-uniform * detail::lower_gamma<1>(slope * (diameter_max - diameter_min))) / slope,
+        diameter_min, diameter_max);
   }
 
   /// Area that a particle of a diameter [m] takes out of a beam [m^2].
@@ -143,21 +145,21 @@ struct Precipitation {
     return std::numbers::pi / 2 * diameter * diameter;
   }
   /// Differential cross section for scattering straight back of a particle of a diameter [m] [m^2/sr]: by the shadow,
-  /// of its front, reflectance / (4 pi), as of a mirror sphere; of its inside, what brings both to `lidar_ratio`,
-  /// weakened by absorption.
+  /// of its front, reflectance / (4 pi), that of a mirror sphere; of its inside, the rest to `lidar_ratio`, weakened by
+  /// absorption.
   [[nodiscard]] double backscatter_cross_section(double diameter) const noexcept {
     return std::numbers::pi / 4 * diameter * diameter * (front() + inside() * std::exp(-absorption * diameter));
   }
 
   /// Extinction coefficient [1/m].
   [[nodiscard]] double extinction() const noexcept {
-    return std::numbers::pi / 2 * density * detail::second_moment(slope, least, most);
+    return std::numbers::pi / 2 * density * detail::second_moment(slope, diameter_min, diameter_max);
   }
   /// Backscatter coefficient [1/(m sr)].
   [[nodiscard]] double backscatter() const noexcept {
     return std::numbers::pi / 4 * density *
-           (front() * detail::second_moment(slope, least, most) +
-            inside() * detail::second_moment(slope + absorption, least, most));
+           (front() * detail::second_moment(slope, diameter_min, diameter_max) +
+            inside() * detail::second_moment(slope + absorption, diameter_min, diameter_max));
   }
   /// Mean of `backscatter_cross_section` over the particles [m^2/sr].
   [[nodiscard]] double mean_backscatter_cross_section() const noexcept {
@@ -193,8 +195,8 @@ struct Precipitation {
   require_within("rain (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
   return {.density = 8e6,
           .slope = 4100 * std::pow(rate_mm_per_hour, -0.21),
-          .least = 0.1e-3,
-          .most = 6e-3,
+          .diameter_min = 0.1e-3,
+          .diameter_max = 6e-3,
           .lidar_ratio = 20,
           .absorption = wavelength < 0.7e-6 ? 0 : 6 * pure_water_absorption(wavelength),
           .reflectance = 0.02};
@@ -211,8 +213,8 @@ struct Precipitation {
   const double flake = std::sqrt(4 / std::numbers::pi) * std::cbrt(std::numbers::pi / 6 / 0.012);
   return {.density = 2.5e6 * std::pow(rate_mm_per_hour, -0.94) / flake,
           .slope = 2290 * std::pow(rate_mm_per_hour, -0.45) / flake,
-          .least = 0.1e-3 * flake,
-          .most = 5e-3 * flake,
+          .diameter_min = 0.1e-3 * flake,
+          .diameter_max = 5e-3 * flake,
           .lidar_ratio = 33,
           .absorption = 0,
           .reflectance = 0};

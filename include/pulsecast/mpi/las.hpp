@@ -62,7 +62,7 @@ class MpiLasPiece final : public MpiPiece {
     return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
   }
 
-  /// Finished records, for a position behind `number` points. Throws a `FileError` if coordinates do not fit.
+  /// Finished records, for a position after `number` points. Throws a `FileError` if coordinates do not fit.
   [[nodiscard]] std::span<const std::byte> located(const Vec3& first, std::uint64_t number, std::uint64_t packets_at) {
     const std::size_t size = encoder_.layout().record();
     encoder_.choose_offset(first);
@@ -113,10 +113,10 @@ struct MpiLasShare {
 }  // namespace detail
 
 /// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError`
-/// for intensities scaled to the greatest amplitude.
+/// for intensities scaled to the maximum amplitude.
 class MpiLas final : public MpiOutput {
  public:
-  /// Collective. @throws SettingError for intensities scaled to the greatest amplitude @throws FileError
+  /// Collective. @throws SettingError for intensities scaled to the maximum amplitude @throws FileError
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
       : MpiOutput(group),
         settings_(detail::mpi_las_settings(std::move(settings))),

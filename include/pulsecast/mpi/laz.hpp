@@ -180,7 +180,7 @@ class MpiLaz final : public MpiOutput {
     gathered_.erase(chunk);
   }
 
-  /// First process: sends the positions of chunks behind which no size is missing.
+  /// First process: sends the positions of chunks before which no size is missing.
   void place_chunks() {
     for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end();
          next = sizes_.find(sizes_of_placed_.size())) {

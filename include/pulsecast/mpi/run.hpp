@@ -54,7 +54,7 @@ class MpiPartSink {
   bool empty_shots_;
 };
 
-/// Simulation of part of a survey, as by `run(survey, options, sink)`.
+/// Simulation of part of a survey, as `run(survey, options, sink)`.
 using MpiSimulate = std::function<RunSummary(const RunOptions& options, const MpiPartSink& sink)>;
 
 namespace detail {

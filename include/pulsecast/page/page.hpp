@@ -71,7 +71,7 @@ struct PageSettings {
   std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; larger clouds are thinned
   double position_step = 0;            ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
   int effort = 6;                      ///< compression level, 1 to 9
-  PointColours colours{};              ///< colours of points, as of `colours_of`; empty: without
+  PointColours colours{};              ///< colours of points, see `colours_of`; empty: without
 
   void validate() const {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
@@ -130,8 +130,8 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 
 }  // namespace detail
 
-/// Whole page as HTML, without other files or network requests. With `live`, it has no points and asks its own server
-/// for them.
+/// Whole page as HTML, without other files or network requests. With `live`, it has no points and loads them from its
+/// own server.
 [[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns,
                                            bool live = false) {
   std::string out;

@@ -81,7 +81,7 @@ class PageServer {
 
   /// Removes all points and starts another run, whose points have the colours of the settings.
   void begin(PageSurvey survey) { begin(std::move(survey), settings_.colours); }
-  /// As above, with other colours of points, as of another scene.
+  /// As above, with other colours of points, such as those of another scene.
   void begin(PageSurvey survey, PointColours colours) {
     const std::lock_guard lock(mutex_);
     settings_.colours = std::move(colours);
@@ -99,7 +99,7 @@ class PageServer {
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
   /// Sets the progress shown.
-  void tell(const Progress& progress) {
+  void show(const Progress& progress) {
     const std::lock_guard lock(mutex_);
     progress_ = progress;
   }

@@ -23,7 +23,7 @@ struct BlockFlight {
   double overlap = 0.3;   ///< share of the swath common to neighbouring lines, in [0, 0.99]
   double heading = 0;     ///< heading of the first line, clockwise from north [rad]
   double speed = 60;      ///< ground speed [m/s]
-  double run_in = 0;      ///< extension of each line before and behind the area [m]
+  double run_in = 0;      ///< extension of each line before and after the area [m]
 
   void validate() const {
     if (area.empty())

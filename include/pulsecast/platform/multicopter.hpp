@@ -24,7 +24,7 @@ namespace PULSECAST_NAMESPACE {
 /// Waypoint of a multicopter.
 struct FlightPoint {
   Vec3 position{};   ///< position in the world [m]
-  double hover = 0;  ///< least duration of the stay; 0 to pass, with smooth turns [s]
+  double hover = 0;  ///< minimum duration of the stay; 0 to pass, with smooth turns [s]
 };
 
 /// Flight at the waypoints between the first and the last.

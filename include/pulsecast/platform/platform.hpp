@@ -11,6 +11,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/stage_arguments.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -18,6 +18,7 @@
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -98,49 +98,50 @@ struct RunRequest {
   }
 };
 
-/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, of colours
-/// only if asked. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with
-/// the result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for
-/// colours of a survey without any.
+/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, colours only
+/// on request. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the
+/// result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for colours of
+/// a survey without any.
 template <class Run>
-[[nodiscard]] Batch run(const RunRequest& asked, PointExtras extras, const Run& run) {
-  asked.validate();
-  if (asked.colours && !extras.colours) throw pybind11::value_error("run colours: the points of this survey have none");
-  if (!asked.colours) extras.colours = {};
+[[nodiscard]] Batch run(const RunRequest& request, PointExtras extras, const Run& run) {
+  request.validate();
+  if (request.colours && !extras.colours)
+    throw pybind11::value_error("run colours: the points of this survey have none");
+  if (!request.colours) extras.colours = {};
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) {
     return std::chrono::duration<double>(Clock::now() - from).count();
   };
-  const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
+  const bool has_callback = !request.callback.is_none(), reports = !request.progress.is_none();
   std::stop_source stopping;
-  RowSink rows({asked.pulses, asked.columns, std::move(extras)});
-  auto handed_over = Clock::now(), told = handed_over;
+  RowSink rows({request.pulses, request.columns, std::move(extras)});
+  auto delivered = Clock::now(), reported = delivered;
 
   InterruptWatch watch(stopping);
   RunOptions options{
-      .threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
-  if (asked.end) options.end = *asked.end;
+      .threads = request.threads, .first = request.first, .stride = request.stride, .stop = stopping.get_token()};
+  if (request.end) options.end = *request.end;
   options.progress = [&](const Progress& p) {
-    if (!tells || (p.done < p.total && seconds_since(told) < 0.1)) return;
-    told = Clock::now();
+    if (!reports || (p.done < p.total && seconds_since(reported) < 0.1)) return;
+    reported = Clock::now();
     const pybind11::gil_scoped_acquire gil;
-    asked.progress(p.done, p.total, p.echoes, p.seconds);
+    request.progress(p.done, p.total, p.echoes, p.seconds);
   };
-  const auto hand_over = [&] {
+  const auto deliver = [&] {
     const pybind11::gil_scoped_acquire gil;
-    asked.callback(rows.take());
-    handed_over = Clock::now();
+    request.callback(rows.take());
+    delivered = Clock::now();
   };
   const auto sink = [&](const EchoBatch& batch) {
     rows(batch);
-    const bool is_due = (asked.every_pulses > 0 && rows.pulses() >= asked.every_pulses) ||
-                        (asked.every_seconds > 0 && seconds_since(handed_over) >= asked.every_seconds);
-    if (hands_over && is_due) hand_over();
+    const bool is_due = (request.every_pulses > 0 && rows.pulses() >= request.every_pulses) ||
+                        (request.every_seconds > 0 && seconds_since(delivered) >= request.every_seconds);
+    if (has_callback && is_due) deliver();
   };
   RunSummary summary;
   watch.during([&] { summary = run(options, sink); });
   const bool interrupted = watch.interrupted();
-  if (hands_over && rows.pulses() > 0) hand_over();
+  if (has_callback && rows.pulses() > 0) deliver();
   Batch result = rows.take();
   result.summary = summary;
   if (!interrupted) return result;

@@ -26,7 +26,6 @@
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/closest_hits.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
@@ -184,7 +183,7 @@ template <class World>
   return rows.take();
 }
 
-/// True for each ray that meets anything.
+/// True for each ray with a hit.
 template <class World>
 [[nodiscard]] pybind11::array_t<bool> occluded(const World& scene, const RayTable& rays, unsigned threads) {
   pybind11::array_t<bool> all(static_cast<pybind11::ssize_t>(rays.size()));
@@ -298,7 +297,7 @@ Class& bind_ray_queries(Class&& bound) {
       "Structured array of all hits, by ray and then by range: " + row);
   add(
       "occluded", [](const World& s, const RayTable& r, unsigned t) { return python::occluded(s, r, t); },
-      "Boolean array: True for each ray that meets anything.");
+      "Boolean array: True for each ray with a hit.");
   bound.def(
       "run_batch",
       [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions,

@@ -12,12 +12,13 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in
-/// `Legs`. Another is emitters of one device behind different optics:
-/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
+/// Pulse source of one of several types, for uses that require a single type, such as platforms of different kinds in
+/// `Legs`, or emitters of one device with different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror,
+/// Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:

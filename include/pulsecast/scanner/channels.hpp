@@ -13,6 +13,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

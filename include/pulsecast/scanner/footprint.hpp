@@ -126,7 +126,7 @@ class SunflowerFootprint {
       const double angle = golden_angle * static_cast<double>(j);
       offsets_[j] = {radius * std::sin(angle), radius * std::cos(angle)};
     }
-    detail::match_moments(offsets_);  // else slopes would be met too near or too far
+    detail::match_moments(offsets_);  // else slopes would be hit too near or too far
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
@@ -140,9 +140,9 @@ class SunflowerFootprint {
 /// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam,
 /// mapped so that the second moments are the beam's. Rows follow the order of the multiples of the golden ratio, so
 /// that neighbours across are far apart up. Pareto-optimal in docs/tradeoff.md. Edges and wires that are upright or
-/// level in the beam, as on buildings, are sampled as exactly as by twice as many subrays in rings. Oblique ones are
-/// sampled as exactly as by as many on a sunflower. Source: Niederreiter 1992, ch. 3, for the order; columns and rows
-/// from inverting the normal distribution.
+/// level in the beam, such as those of buildings, are sampled as exactly as with twice the number of subrays in rings,
+/// oblique ones as exactly as with the same number on a sunflower. Source: Niederreiter 1992, ch. 3, for the order;
+/// columns and rows from inverting the normal distribution.
 class LatticeFootprint {
  public:
   /// `subrays` from 1 to 100,000; 19 are Pareto-optimal in docs/tradeoff.md, more exact on a facade than any rings.
@@ -215,7 +215,7 @@ class LatticeFootprint {
 static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> &&
               Footprint<LatticeFootprint>);
 
-/// Footprint that hands every subray with its hit on to the sinks (`EchoBatch::subrays`), for studies of footprints:
+/// Footprint that forwards every subray with its hit to the sinks (`EchoBatch::subrays`), for studies of footprints:
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
@@ -226,9 +226,9 @@ struct WithSubrayRecord : Pattern {
 
 static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
-/// Footprint that a survey turns about the axis of each pulse's beam, by an angle of its own:
-/// `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge then meets other subrays from pulse to pulse, so that
-/// errors of neighbours do not repeat. For round beams only.
+/// Footprint that a survey turns about the axis of each pulse's beam, by a different angle for each pulse:
+/// `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge is then hit by different subrays from pulse to pulse, so
+/// that errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
   static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
@@ -283,9 +283,9 @@ class SubrayDirections {
   /// Room for up to `size` subrays of any laser, which `assign` sets.
   [[nodiscard]] static SubrayDirections room(std::size_t size) { return {size, Laser{.waist_diameter = 1}}; }
 
-  /// Offset of a subray and its share of the energy, as of a `Footprint`.
+  /// Offset of a subray and its share of the energy, as in a `Footprint`.
   struct Subray {
-    Vec2 offset;   ///< in units of the 1/e^2 radius, as of a `Footprint`
+    Vec2 offset;   ///< in units of the 1/e^2 radius
     double share;  ///< of the pulse's energy, without unit
   };
   /// Replaces the subrays by `subray(j)`, of which there must be room for `size`. Changes all copies.

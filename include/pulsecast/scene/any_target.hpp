@@ -13,39 +13,21 @@
 #include <variant>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/scene/find_hits.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-namespace detail {
-struct VisitsHits {
-  void operator()(const RayHit&) const noexcept {}
-};
-}  // namespace detail
-
-/// Scan target that answers queries by single rays, as `Scene` does.
-template <class T>
-concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, double range,
-                               detail::VisitsHits& visitor) {
-  { t.closest_hit(ray) }
-  noexcept->std::same_as<std::optional<RayHit>>;
-  { t.occluded(ray, range) }
-  noexcept->std::same_as<bool>;
-  { t.all_hits(ray, visitor) }
-  noexcept->std::same_as<std::size_t>;
-  { t.surface(hit, ray) }
-  noexcept->std::same_as<SurfaceInteraction>;
-};
 
 /// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>,
 /// MovingScene<TriangleMesh<>>>`. Holds its target by value, and must outlive the survey as any map must.
 /// `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered` does.
 template <Target First, Target... Others>
 class AnyTarget {
+  static constexpr bool answers = SceneQueries<First> && (SceneQueries<Others> && ...);
+
  public:
   /// Takes a target of one of the types.
-  template <class Map>
-  requires std::constructible_from<std::variant<First, Others...>, Map> AnyTarget(Map target)
+  template <class Target>
+  requires std::constructible_from<std::variant<First, Others...>, Target> AnyTarget(Target target)
       : target_(std::move(target)) {}  // NOLINT(google-explicit-constructor): implicit by purpose
 
   /// Nearest hit of each ray of the bundle, as of the target.
@@ -53,10 +35,11 @@ class AnyTarget {
     std::visit([&](const auto& target) noexcept { find_hits(target, rays, hits); }, target_);
   }
 
-  /// As above, with the material and normal at each hit. Exists if all types have it.
-  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
-      requires(OpticalTarget<First> && (OpticalTarget<Others> && ...)) {
-    std::visit([&](const auto& target) noexcept { target.closest(rays, hits, surfaces); }, target_);
+  /// As above, and visits the surfaces. This query and the next three exist if all types have `SceneQueries`.
+  template <class Visitor>
+  requires(answers) void closest(const StaggeredBundle& rays, std::span<Hit> hits,
+                                 const Visitor& visit) const noexcept {
+    std::visit([&](const auto& target) noexcept { target.closest(rays, hits, visit); }, target_);
   }
 
   /// True only if no ray of a cone meets anything, as of the target; false of a target that cannot tell.
@@ -64,25 +47,23 @@ class AnyTarget {
     return std::visit([&](const auto& target) noexcept { return detail::misses_cone(target, cone); }, target_);
   }
 
-  /// Closest hit of a ray; empty for a miss. This query and the next three exist if all types have them.
-  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept
-      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+  /// Closest hit of a ray; empty for a miss.
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept requires(answers) {
     return std::visit([&](const auto& target) noexcept { return target.closest_hit(ray); }, target_);
   }
   /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
   [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept
-      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+      requires(answers) {
     return std::visit([&](const auto& target) noexcept { return target.occluded(ray, range); }, target_);
   }
   /// Calls `visitor(hit)` with every `RayHit` of a ray, as `Scene::all_hits`. Returns the number of calls.
   template <class Visitor>
-  requires(AnswersRays<First>&&...&& AnswersRays<Others>) std::size_t all_hits(const Ray& ray, Visitor&& visitor)
+  requires(answers) std::size_t all_hits(const Ray& ray, Visitor&& visitor)
   const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
     return std::visit([&](const auto& target) { return target.all_hits(ray, visitor); }, target_);
   }
   /// Surface at a hit of the same ray, in the world.
-  [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept
-      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+  [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept requires(answers) {
     return std::visit([&](const auto& target) noexcept { return target.surface(hit, ray); }, target_);
   }
 

@@ -6,44 +6,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <utility>
 
-#include <pulsecast/geometry/bundle.hpp>
-#include <pulsecast/geometry/ray.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/concepts.hpp>
 
-// clang-format off
-// version 14 breaks up compound requirements
 namespace PULSECAST_NAMESPACE {
 
-/// World that gives the range of a ray's closest hit, as `Scene` and `MovingScene` do.
-template <class W>
-concept GivesRanges = requires(const W world, const Ray& ray) {
-  { world.closest_hit(ray)->range } noexcept -> std::convertible_to<double>;
-};
-
-/// Result of `world.closest_hit(ray)`: `std::optional<RayHit>` of a scene.
-template <GivesRanges World>
-using ClosestHitOf = decltype(std::declval<const World&>().closest_hit(std::declval<const Ray&>()));
-
-/// World that also finds the closest hits of a bundle, equal to those of its rays alone. `deterministic()` is true if they do not depend on the
-/// rays' key, `time_dependent` if they do on the tick.
-template <class W>
-concept TracesBundles = GivesRanges<W> && std::same_as<ClosestHitOf<W>, std::optional<RayHit>> &&
-    requires(const W world, const RayBundle& rays, ClosestHits& hits) {
-  { world.closest(rays, hits) } noexcept;
-  { world.deterministic() } noexcept -> std::same_as<bool>;
-  typename std::bool_constant<W::time_dependent>;
-};
-// clang-format on
+/// Result of `map.closest_hit(ray)`: `std::optional<RayHit>` of a scene, `std::optional<Hit>` of a `RayTarget`.
+template <class Target>
+requires(RayTarget<Target> || SceneQueries<Target>) using ClosestHitOf =
+    decltype(std::declval<const Target&>().closest_hit(std::declval<const Ray&>()));
 
 namespace detail {
+/// Scene that also finds the closest hits of a bundle, equal to those of its rays alone. `deterministic()` is true if
+/// they do not depend on the rays' key, `time_dependent` if they do on the tick.
+template <class S>
+concept TracesBundles = requires(const S scene, const RayBundle& rays, ClosestHits& hits) {
+  scene.closest(rays, hits);
+  scene.deterministic();
+  S::time_dependent;
+};
+
 /// Cell of a unit vector on the faces of a cube: 0.05 wide at the centre of a face.
 [[nodiscard]] inline std::uint32_t direction_cell(const Vec3& d) noexcept {
   constexpr double per_half = 20;  // by bench/batch.cpp: with 25 or 30, bundles are too small; with 12, too wide
@@ -56,8 +43,8 @@ namespace detail {
 }
 
 /// Closest hits of rays of one origin and the same limits, some of which are named by `numbers`.
-template <TracesBundles World>
-void trace_bundle(const World& world, std::span<const Ray> rays, std::span<const std::uint64_t> numbers,
+template <TracesBundles Scene>
+void trace_bundle(const Scene& scene, std::span<const Ray> rays, std::span<const std::uint64_t> numbers,
                   std::span<std::optional<RayHit>> hits) noexcept {
   const auto number = [&](std::size_t j) noexcept { return static_cast<std::size_t>(numbers[j] & 0xFFFF); };
   RayBundle bundle = bundle_of(rays[number(0)]);
@@ -65,7 +52,7 @@ void trace_bundle(const World& world, std::span<const Ray> rays, std::span<const
   for (std::size_t j = 0; j < bundle.size; ++j) bundle.set_direction(j, rays[number(j)].direction);
   bundle.pad();
   ClosestHits nearest(bundle);
-  world.closest(bundle, nearest);
+  scene.closest(bundle, nearest);
   for (std::size_t j = 0; j < bundle.size; ++j) {
     std::optional<RayHit>& hit = hits[number(j)] = std::nullopt;
     if (nearest.met(j)) hit = RayHit{nearest.range[j], nearest.part_of(j), nearest.primitive_of(j)};
@@ -73,22 +60,22 @@ void trace_bundle(const World& world, std::span<const Ray> rays, std::span<const
 }
 }  // namespace detail
 
-/// Closest hit of each ray, the same as `world.closest_hit` gives, one per ray. Of up to 512 consecutive rays with one
+/// Closest hit of each ray, the same as `map.closest_hit` gives, one per ray. Of up to 512 consecutive rays with one
 /// origin, `near` and `far`, those of about one direction are traced together, in whatever order they come; for a
-/// moving world they need one tick, too. Directions are unit vectors. Allocates nothing.
-template <GivesRanges World>
-void closest_hits(const World& world, std::span<const Ray> rays, std::span<ClosestHitOf<World>> hits) noexcept {
+/// moving scene they need one tick, too. Directions are unit vectors. Allocates nothing.
+template <class Target>
+void closest_hits(const Target& target, std::span<const Ray> rays, std::span<ClosestHitOf<Target>> hits) noexcept {
   std::size_t first = 0;
-  if constexpr (TracesBundles<World>) {
+  if constexpr (SceneQueries<Target> && detail::TracesBundles<Target>) {
     constexpr std::size_t least = 4, most = 32;  // rays of a bundle; two or three cost less alone
     std::array<std::uint64_t, 512> order;        // cell and number
-    while (world.deterministic() && first < rays.size()) {
+    while (target.deterministic() && first < rays.size()) {
       const Ray& one = rays[first];
       std::size_t count = 0;
       for (; count < order.size() && first + count < rays.size(); ++count) {
         const Ray& ray = rays[first + count];
         const bool together = ray.origin == one.origin && ray.near == one.near && ray.far == one.far &&
-                              (!World::time_dependent || ray.tick == one.tick);
+                              (!Target::time_dependent || ray.tick == one.tick);
         if (!together || !(std::fabs(dot(ray.direction, ray.direction) - 1) < 1e-6)) break;
         order[count] = std::uint64_t{detail::direction_cell(ray.direction)} << 16U | count;
       }
@@ -97,23 +84,23 @@ void closest_hits(const World& world, std::span<const Ray> rays, std::span<Close
       for (std::size_t from = 0, to = 0; from < count; from = to) {
         while (to < count && to - from < most && cell(to) == cell(from)) ++to;
         if (to - from >= least) {
-          detail::trace_bundle(world, rays.subspan(first), std::span(order).subspan(from, to - from),
+          detail::trace_bundle(target, rays.subspan(first), std::span(order).subspan(from, to - from),
                                hits.subspan(first));
         } else {
           for (std::size_t k = from; k < to; ++k) {
             const std::size_t number = first + (order[k] & 0xFFFF);
-            hits[number] = world.closest_hit(rays[number]);
+            hits[number] = target.closest_hit(rays[number]);
           }
         }
       }
       first += count;
       if (count == 0) {  // a ray of NaN
-        hits[first] = world.closest_hit(rays[first]);
+        hits[first] = target.closest_hit(rays[first]);
         ++first;
       }
     }
   }
-  for (; first < rays.size(); ++first) hits[first] = world.closest_hit(rays[first]);
+  for (; first < rays.size(); ++first) hits[first] = target.closest_hit(rays[first]);
 }
 
 }  // namespace PULSECAST_NAMESPACE

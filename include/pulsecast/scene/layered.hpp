@@ -6,45 +6,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
 #include <type_traits>
-#include <utility>
-#include <variant>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/scene/find_hits.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-namespace detail {
-
-/// Target through which light can go on, with surfaces as of a `Scene`.
-template <class Map>
-concept OpticalLayer = OpticalTarget<Map> && TellsSurfaces<Map>;
-
-template <class Map>
-using RayHitOf = std::remove_cvref_t<decltype(*std::declval<const Map&>().closest_hit(std::declval<const Ray&>()))>;
-
-}  // namespace detail
-
-/// Hit of a ray in one of several targets.
-template <class... Maps>
-struct LayerHit {
-  double range = 0;                               ///< distance from the ray's origin [m]
-  std::variant<detail::RayHitOf<Maps>...> hit{};  ///< of the target of its index
-};
 
 /// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties go to the first
 /// target. Refers to its targets, which must outlive it. A target assigned anew, as by `Scene::with_placements`, is met
 /// as it then is.
 template <Target First, Target... Others>
 class Layered {
-  static constexpr bool optical = detail::OpticalLayer<First> && (detail::OpticalLayer<Others> && ...);
+  static constexpr bool answers = SceneQueries<First> && (SceneQueries<Others> && ...);
 
  public:
   /// Refers to the targets.
@@ -63,25 +43,26 @@ class Layered {
         },
         targets_);
   }
-  /// As above, with the material and normal at each hit. This query and the next three exist if all targets have them:
-  /// light goes on there.
-  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
-      requires(optical) {
+  /// As above, and visits the surfaces. This query and the next three exist if all targets have `SceneQueries`.
+  template <class Visitor>
+  requires(answers) void closest(const StaggeredBundle& rays, std::span<Hit> hits,
+                                 const Visitor& visit) const noexcept {
     std::apply(
         [&](const First* first, const Others*... others) noexcept {
-          first->closest(rays, hits, surfaces);
-          (add(*others, rays, hits, surfaces), ...);
+          first->closest(rays, hits, visit);
+          (add(*others, rays, hits, visit), ...);
         },
         targets_);
   }
 
   /// Closest hit of a ray; empty for a miss.
-  [[nodiscard]] std::optional<LayerHit<First, Others...>> closest_hit(Ray ray) const noexcept requires(optical) {
-    std::optional<LayerHit<First, Others...>> nearest;
-    each([&]<std::size_t i>(const auto& map) noexcept {
-      const auto hit = map.closest_hit(ray);
+  [[nodiscard]] std::optional<RayHit> closest_hit(Ray ray) const noexcept requires(answers) {
+    std::optional<RayHit> nearest;
+    each([&](std::uint32_t i, const auto& target) noexcept {
+      const std::optional<RayHit> hit = target.closest_hit(ray);
       if (!hit || (nearest && !(hit->range < nearest->range))) return;
-      nearest = {hit->range, decltype(nearest->hit)(std::in_place_index<i>, *hit)};
+      nearest = hit;
+      nearest->layer = hit->layer * size + i;  // a layer may be a `Layered` itself
       ray.far = std::min(ray.far, hit->range);
     });
     return nearest;
@@ -89,19 +70,20 @@ class Layered {
 
   /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
   [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept
-      requires(optical) {
+      requires(answers) {
     return std::apply([&](const auto*... targets) noexcept { return (targets->occluded(ray, range) || ...); },
                       targets_);
   }
 
-  /// Surface at a hit of the same ray, in the world. Its `part` is that of the target met.
-  [[nodiscard]] SurfaceInteraction surface(const LayerHit<First, Others...>& hit, const Ray& ray) const noexcept
-      requires(optical) {
-    SurfaceInteraction point;
-    each([&]<std::size_t i>(const auto& map) noexcept {
-      if (const auto* of = std::get_if<i>(&hit.hit)) point = map.surface(*of, ray);
+  /// Surface at a hit of the same ray, in the world. Its `part` is that of the target hit.
+  [[nodiscard]] SurfaceInteraction surface(RayHit hit, const Ray& ray) const noexcept requires(answers) {
+    SurfaceInteraction surface;
+    const std::uint32_t layer = hit.layer % size;
+    hit.layer /= size;
+    each([&](std::uint32_t i, const auto& target) noexcept {
+      if (i == layer) surface = target.surface(hit, ray);
     });
-    return point;
+    return surface;
   }
 
   /// True only if no ray of a cone meets anything in any target.
@@ -141,26 +123,27 @@ class Layered {
 
  private:
   /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
-  template <class Map>
-  static void add(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
+  template <class Target>
+  static void add(const Target& target, const RayBundle& rays, std::span<Hit> hits) noexcept {
     alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)>
         memory;  // not initialised, as most bundles have one ray
     const std::span<Hit> others(reinterpret_cast<Hit*>(memory.data()), rays.size);
-    find_hits(map, up_to(hits, rays), others);
+    find_hits(target, up_to(hits, rays), others);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (is_nearer(others[j], hits[j])) hits[j] = others[j];
   }
-  template <class Map>
-  static void add(const Map& map, const StaggeredBundle& rays, std::span<Hit> hits,
-                  std::span<HitSurface> surfaces) noexcept {
+  template <class Target, class Visitor>
+  static void add(const Target& target, const StaggeredBundle& rays, std::span<Hit> hits,
+                  const Visitor& visit) noexcept {
     std::array<Hit, RayBundle::capacity> others;
-    std::array<HitSurface, RayBundle::capacity> of_others;
-    map.closest(up_to(hits, rays), others, of_others);
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      if (!is_nearer(others[j], hits[j])) continue;
-      hits[j] = others[j];
-      surfaces[j] = of_others[j];
-    }
+    const auto visit_nearer = [&](std::size_t first, std::size_t end, const SurfaceInteraction& surface) noexcept {
+      for (std::size_t j = first; j < end; ++j) {
+        if (!is_nearer(others[j], hits[j])) continue;
+        hits[j] = others[j];
+        visit(j, j + 1, surface);
+      }
+    };
+    target.closest(up_to(hits, rays), others, visit_nearer);
   }
 
   /// Rays as far as the farthest of their hits.
@@ -176,15 +159,14 @@ class Layered {
     return !std::isnan(hit.range) && !(other.range >= hit.range);
   }
 
-  /// Calls `visit.operator()<i>(target)` for each target, in order.
+  /// Calls `visit(i, target)` for each target, in order.
   template <class Visitor>
   void each(const Visitor& visit) const noexcept {
-    [&]<std::size_t... i>(std::index_sequence<i...>) noexcept {
-      (visit.template operator()<i>(*std::get<i>(targets_)), ...);
-    }
-    (std::index_sequence_for<First, Others...>());
+    std::uint32_t i = 0;
+    std::apply([&](const auto*... targets) noexcept { (visit(i++, *targets), ...); }, targets_);
   }
 
+  static constexpr std::uint32_t size = 1 + sizeof...(Others);
   std::tuple<const First*, const Others*...> targets_;
 };
 

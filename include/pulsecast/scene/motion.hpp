@@ -28,9 +28,9 @@ namespace PULSECAST_NAMESPACE {
 /// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves
 /// along. A helix if the velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
-  Vec3 velocity{};       ///< [m/s]
-  Vec3 axis = axis::up;  ///< direction, of any non-zero length
-  double rate = 0;       ///< right-handed about the axis [rad/s]
+  Vec3 velocity{};          ///< [m/s]
+  Vec3 axis = axis::up;     ///< direction, of any non-zero length
+  double angular_rate = 0;  ///< right-handed about the axis [rad/s]
   std::optional<Vec3>
       centre{};  ///< point of the axis in the world at the motion's start [m]; empty for the body's own centre
   std::optional<Vec3>
@@ -40,7 +40,7 @@ struct SteadyMotion {
   void validate() const {
     require_finite("SteadyMotion::velocity (length)", length(velocity), "m/s");
     require_positive("SteadyMotion::axis (length)", length(axis), "");
-    require_finite("SteadyMotion::rate", rate, "rad/s");
+    require_finite("SteadyMotion::angular_rate", angular_rate, "rad/s");
     if (centre) require_finite("SteadyMotion::centre (length)", length(*centre), "m");
     if (spin) require_finite("SteadyMotion::spin (length)", length(*spin), "rad/s");
     if (!(duration >= 1e-6)) throw SettingError("SteadyMotion::duration", duration, "s", "at least 1e-6");
@@ -83,7 +83,7 @@ struct Displacement {
   const Vec3 along = dot(step.position, turn.axis) * turn.axis, across = step.position - along;
   return {.velocity = along / seconds,
           .axis = turn.axis,
-          .rate = turn.angle / seconds,
+          .angular_rate = turn.angle / seconds,
           .centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2))};
 }
 
@@ -167,7 +167,7 @@ class PartMotion {
     const detail::MotionPlace place = timeline_.place_of(tick);
     const Vec3 centre = detail::state_at(place, start).centre;
     return detail::velocity_at(place, centre) +
-           place.piece->attitude.rate * cross(place.piece->attitude.axis, point - reference_ - centre);
+           place.piece->attitude.angular_rate * cross(place.piece->attitude.axis, point - reference_ - centre);
   }
 
   /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its
@@ -213,7 +213,7 @@ class PartMotion {
       const bool may_be_infinite = last && k + 1 == sequence.motions.size() && sequence.times == 1;
       if (!may_be_infinite)
         require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
-      const detail::Turning orbit{normalize(m.axis), m.rate};
+      const detail::Turning orbit{normalize(m.axis), m.angular_rate};
       detail::Turning attitude = orbit;
       if (m.spin)
         attitude = length(*m.spin) > 0 ? detail::Turning{normalize(*m.spin), length(*m.spin)} : detail::Turning{};

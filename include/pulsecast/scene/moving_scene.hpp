@@ -69,11 +69,12 @@ class MovingScene {
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, hits, detail::NotesNothing{});
+    describe(rays, hits, detail::TakesSurfaces{});
   }
-  /// As above, with the material and normal at each hit.
-  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
-    describe(rays, hits, detail::NotesSurfaces{surfaces});
+  /// As above, and visits the surfaces, as of a target with `SceneQueries`.
+  template <class Visitor>
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
+    describe(rays, hits, visit);
   }
 
   /// Offers the hits of the rays of a bundle at its tick, as of `Scene`.
@@ -129,12 +130,12 @@ class MovingScene {
     return movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })];
   }
 
-  template <class Rays, class Note>
-  void describe(const Rays& rays, std::span<Hit> hits, const Note& note) const noexcept {
+  template <class Rays, class Visitor>
+  void describe(const Rays& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
     scene_.describe(
-        rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); }, note);
+        rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); }, visit);
   }
 
   template <class Rays, class Hits>

@@ -28,15 +28,14 @@ enum class GroundPlacement : std::uint8_t {
 namespace detail {
 
 template <class Shape>
-concept MadeOfTriangles = requires(const Shape& shape) {
-  { shape.triangle(PrimitiveIndex{}) } -> std::convertible_to<Triangle>;
+concept ListsTriangles = MadeOfTriangles<Shape> && requires(const Shape& shape) {
   { shape.size() } -> std::convertible_to<std::size_t>;
 };
 
 /// Calls `visit(p)` for the points of a part, in the world [m].
 template <Geometry Shape, class Visit>
 void visit_points(const Shape& shape, const Placement& placement, const Visit& visit) {
-  if constexpr (MadeOfTriangles<Shape>) {
+  if constexpr (ListsTriangles<Shape>) {
     for (std::size_t i = 0; i < shape.size(); ++i) {
       const Triangle t = shape.triangle(static_cast<PrimitiveIndex>(i));
       for (const Vec3& corner : {t.a, t.b, t.c}) visit(placement.point(corner));

@@ -180,7 +180,8 @@ struct SharedShape<Shape> {
 
 /// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
-constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::shared_ptr<const Shape>& geometry) {
+[[gnu::always_inline]] constexpr decltype(auto) visit_shape(const Visitor& visitor,
+                                                            const std::shared_ptr<const Shape>& geometry) {
   return visitor(geometry);
 }
 /// Calls `visitor` with the shared pointer to a part's shape, of one of several kinds.

@@ -12,7 +12,6 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/surface_query.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -44,7 +43,7 @@ inline constexpr double near_infrared_wavelength = 842e-9;
 
 /// Colours of the surfaces of a world, which must outlive them, by one more ray per echo as in `surfaces_of`. @throws
 /// SettingError
-template <TellsSurfaces World>
+template <SceneQueries World>
 [[nodiscard]] PointColours colours_of(const World& world, double tolerance = 0.2) {
   return [surfaces = surfaces_of(world, tolerance)](const EchoBatch& batch, const Shot& shot, const Echo& echo) {
     const std::optional<SurfaceInteraction> surface = surfaces(batch, shot, echo);

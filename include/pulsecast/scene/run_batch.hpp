@@ -35,15 +35,18 @@ template <InstrumentSource Sensor>
   return rays;
 }
 
-/// Ranges that equal sensors at many poses measure in one world [m], without echoes, noise or energy: for learning and
+/// Ranges that equal sensors at many poses measure in one map [m], without echoes, noise or energy: for learning and
 /// planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in single precision (6e-8 relative);
 /// infinite without a hit. `rays` are in the sensor's frame. A ray's `pulse` is replaced by that index: together with
 /// its `seed`, it is the key of leaves that are met at random. The ranges do not depend on the number of threads.
 /// Allocates nothing.
 /// @throws SettingError if `ranges` has another size, or for a pose that is not rigid
-template <GivesRanges World>
-void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame::World>> poses,
-               std::span<const Ray> rays, std::span<float> ranges, const Workers& workers = {}) {
+template <class Target>
+requires(RayTarget<Target> ||
+         SceneQueries<Target>) void run_batch(const Target& target,
+                                              std::span<const Pose<frame::Instrument, frame::World>> poses,
+                                              std::span<const Ray> rays, std::span<float> ranges,
+                                              const Workers& workers = {}) {
   const double asked = static_cast<double>(poses.size()) * static_cast<double>(rays.size());
   require_within("run_batch: ranges (number)", static_cast<double>(ranges.size()), asked, asked, "");
   for (std::size_t p = 0; p < poses.size(); ++p)
@@ -53,7 +56,7 @@ void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame
   constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
   for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
     std::array<Ray, block> asked_rays;
-    std::array<ClosestHitOf<World>, block> hits;
+    std::array<ClosestHitOf<Target>, block> hits;
     const std::size_t first = b * block, count = std::min(ranges.size() - first, block);
     for (std::size_t k = first; k < first + count;) {
       const std::size_t p = k / rays.size();
@@ -66,7 +69,7 @@ void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame
         ray.pulse = k++;
       }
     }
-    closest_hits<World>(world, std::span(asked_rays).first(count), hits);
+    closest_hits<Target>(target, std::span(asked_rays).first(count), hits);
     for (std::size_t j = 0; j < count; ++j)
       ranges[first + j] = hits[j] ? static_cast<float>(hits[j]->range) : std::numeric_limits<float>::infinity();
   });

@@ -21,9 +21,8 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
-#include <pulsecast/scene/detail/surface_notes.hpp>
+#include <pulsecast/scene/detail/surface_sample.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -120,11 +119,12 @@ class Scene {
 
   /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, nearest(rays), hits, placements(), detail::NotesNothing{});
+    describe(rays, nearest(rays), hits, placements(), detail::TakesSurfaces{});
   }
-  /// As above, with the material and normal at each hit.
-  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
-    describe(rays, nearest(rays), hits, placements(), detail::NotesSurfaces{surfaces});
+  /// As above, and visits the surfaces, as of a target with `SceneQueries`.
+  template <class Visitor>
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
+    describe(rays, nearest(rays), hits, placements(), visit);
   }
 
   /// Offers the hits of the rays of a bundle to `hits`, by part and primitive.
@@ -273,41 +273,10 @@ class Scene {
     visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
-  /// Surface data of a primitive, for the hits on it.
-  struct SurfaceSample {
-    Vec3 normal{};          ///< divided by the length of the directions, in the part's frame
-    double min_cosine = 0;  ///< 1 for a surface without direction
-    const Material* material = nullptr;
-    bool flat = false;              ///< same for every ray that met the primitive
-    bool foliage = false;           ///< as in `Surface`
-    std::optional<Vec2> texture{};  ///< texture coordinates, for a material with a map
-  };
-
-  SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local,
-                               std::size_t j) const noexcept {
-    const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> SurfaceSample {
-      const Surface surface = shape->surface(primitive, local, j);
-      SurfaceSample sample{.normal = surface.normal / local.direction_length,
-                           .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
-                           .material = &(*part.materials)[surface.material],
-                           .flat = UniformGeometry<Shape>,
-                           .foliage = surface.foliage};
-      if constexpr (Textured<Shape>)
-        if (sample.material->reflectance_map) [[unlikely]] {
-          sample.flat = false;
-          sample.texture =
-              shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
-        }
-      return sample;
-    };
-    return visit_shape(look, part.geometry);
-  }
-
-  /// `placement_of(i)` returns the placement of part i.
-  /// `note(first, end, sample, normal)` takes the surface that some rays met, with `normal()` in the world.
-  template <class PlacementOf, class Note>
+  /// Sets the hits of rays and visits their surfaces. `placement_of(i)` returns the placement of part i.
+  template <class PlacementOf, class Visitor>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
-                const Note& note) const noexcept {
+                const Visitor& visit) const noexcept {
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // part of the frame of `local`
     const RayBundle* local = &rays;
@@ -323,17 +292,17 @@ class Scene {
         const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
-      while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
-        ++end;  // neighbouring rays often meet the same primitive
-      note(first, end, sample, [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
-      const Backscatter law = sample.material->backscatter(rays.wavelength, sample.texture);
+      const detail::SurfaceSample surface = visit_shape(
+          detail::SurfaceSampler<Part>{parts_[at], nearest.primitive_of(first), *local, first}, parts_[at].geometry);
+      while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
+        ++end;  // neighbouring rays often hit the same primitive
+      const Vec3 n = surface.normal / local->direction_length;
+      const Backscatter law = surface.material->backscatter(rays.wavelength, surface.texture);
       const ObjectId object = parts_[at].object;
-      const std::uint16_t classification = sample.material->classification;
-      const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + sample.min_cosine;
+      const std::uint16_t classification = surface.material->classification;
+      const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + (surface.normal == Vec3{} ? 1.0 : 0.0);
       for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
         const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
-        const Vec3& n = sample.normal;
         const simd::Doubles projections =
             simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
         const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
@@ -343,6 +312,14 @@ class Scene {
         for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
           hits[k] = {nearest.range[k], cosines[k - j], values[k - j], object, classification};
       }
+      visit(first, end,
+            SurfaceInteraction{.normal = placement_of(at).rotation * surface.normal,
+                               .material_index = surface.material_index,
+                               .foliage = surface.foliage,
+                               .classification = classification,
+                               .object = object,
+                               .material = surface.material,
+                               .texture = surface.texture});
     }
   }
 

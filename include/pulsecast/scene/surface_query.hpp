@@ -11,7 +11,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -25,7 +24,7 @@ using SurfaceQuery = std::function<std::optional<SurfaceInteraction>(const EchoB
 /// echo's range. It is unknown for light by way of mirrors, for an echo of which the axis meets nothing, and if errors
 /// of range or pose exceed the tolerance. A part placed anew for each moment has no velocity: wrap the query to set it.
 /// @throws SettingError
-template <TellsSurfaces World>
+template <SceneQueries World>
 [[nodiscard]] SurfaceQuery surfaces_of(const World& world, double tolerance = 0.2) {
   require_positive("surfaces_of (tolerance)", tolerance, "m");
   return [&world, tolerance](const EchoBatch& batch, const Shot& shot,

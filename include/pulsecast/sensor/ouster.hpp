@@ -17,12 +17,12 @@ namespace PULSECAST_NAMESPACE {
 /// coordinate frame: lenses 15.806 mm from the axis, 36.180 mm above the base. Noise of 1 cm of the 0.5 to 3 cm
 /// published; pulse length not published, typical of its class; each unit's azimuth offsets are its own, and left out:
 /// set `SensorLaser::azimuth`.
-[[nodiscard]] inline SpinningSensor ouster_os1_64(std::size_t columns = 1024, double turns_per_second = 10) {
+[[nodiscard]] inline SpinningSensor ouster_os1_64(std::size_t columns = 1024, double rotation_rate = 10) {
   using namespace literals;
   require_within("ouster_os1_64 (columns)", static_cast<double>(columns), 512, 2048, "");
   SpinningSensor sensor{.name = "OS-1-64",
-                        .sequence_rate = static_cast<double>(columns) * turns_per_second,
-                        .turns_per_second = turns_per_second,
+                        .sequence_rate = static_cast<double>(columns) * rotation_rate,
+                        .rotation_rate = rotation_rate,
                         .start = pi,
                         .exit_radius = 15.806_mm,
                         .beam = {.wavelength = 865_nm, .pulse_length = 6_ns, .divergence = 5.3_mrad},

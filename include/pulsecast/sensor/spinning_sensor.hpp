@@ -40,19 +40,19 @@ struct SpinningSensor {
   std::string name{};                 ///< model
   std::vector<SensorLaser> lasers{};  ///< lasers in the order of firing
   double sequence_rate = 18e3;        ///< firing sequences per second, from 1 to 1e9 [Hz]
-  double turns_per_second = 10;       ///< turns of the head, to the right if positive, as seen from above [Hz]
-  double start = 0;                   ///< heading at the survey's start, from forward to the right [rad]
-  double exit_radius = 0;             ///< distance of the exits from the axis [m]
-  Laser beam{};                       ///< every laser's beam
-  double range_min = 0;               ///< shortest range that is told [m]
-  double range_max = 100;             ///< longest range that is told [m]
-  double range_deviation = 0;         ///< standard deviation of told ranges [m]
+  double rotation_rate = 10;   ///< turns of the head per second, to the right if positive, as seen from above [Hz]
+  double start = 0;            ///< heading at the survey's start, from forward to the right [rad]
+  double exit_radius = 0;      ///< distance of the exits from the axis [m]
+  Laser beam{};                ///< every laser's beam
+  double range_min = 0;        ///< minimum measured range [m]
+  double range_max = 100;      ///< maximum measured range [m]
+  double range_deviation = 0;  ///< standard deviation of measured ranges [m]
 
   /// @throws SettingError for settings out of range
   void validate() const {
     require_within("SpinningSensor::lasers (number)", static_cast<double>(lasers.size()), 1, max_emitters, "");
     require_within("SpinningSensor::sequence_rate", sequence_rate, 1, 1e9, "Hz");
-    require_within("SpinningSensor::turns_per_second", turns_per_second, -1e6, 1e6, "Hz");
+    require_within("SpinningSensor::rotation_rate", rotation_rate, -1e6, 1e6, "Hz");
     require_angle("SpinningSensor::start", start);
     require_finite("SpinningSensor::exit_radius", exit_radius, "m");
     for (const SensorLaser& laser : lasers) {
@@ -64,7 +64,7 @@ struct SpinningSensor {
 
   /// Heading of the head at a time: angle from forward to the right, in [0, 2 pi) [rad].
   [[nodiscard]] double heading(Tick t) const noexcept {
-    const double angle = start + 2 * pi * t.phase(turns_per_second);
+    const double angle = start + 2 * pi * t.phase(rotation_rate);
     const double rest = angle - 2 * pi * std::floor(angle / (2 * pi));
     return rest < 2 * pi ? rest : 0;
   }
@@ -87,7 +87,7 @@ struct SpinningSensor {
       emitters.push_back(
           {FixedBeam{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})},
            Scanner{.pulse_rate = sequence_rate, .pulses = sequences, .delay = laser.delay, .laser = beam}});
-    return {RotatingHead{.rate = -2 * pi * turns_per_second, .start = -start}, Channels{std::move(emitters)}};
+    return {RotatingHead{.angular_rate = -2 * pi * rotation_rate, .start = -start}, Channels{std::move(emitters)}};
   }
 
   /// Receiver with the sensor's range gate and noise.

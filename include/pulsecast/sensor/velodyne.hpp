@@ -21,13 +21,13 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
 /// x right. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 2018, table 9-1 and data sheet. Of the accuracy of 3
 /// cm, 2 cm are taken as noise; the divergence is the geometric mean of 3.0 and 1.2 mrad, and the shortest range the
 /// customary one.
-[[nodiscard]] inline SpinningSensor velodyne_vlp_16(double turns_per_second = 10) {
+[[nodiscard]] inline SpinningSensor velodyne_vlp_16(double rotation_rate = 10) {
   using namespace literals;
   constexpr std::array<double, 16> heights_mm{11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
                                               5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
   SpinningSensor sensor{.name = "VLP-16",
                         .sequence_rate = 1 / velodyne_sequence_period,
-                        .turns_per_second = turns_per_second,
+                        .rotation_rate = rotation_rate,
                         .beam = {.wavelength = 903_nm, .peak_power = 31, .pulse_length = 6_ns, .divergence = 1.9_mrad},
                         .range_min = 0.5,
                         .range_max = 100,
@@ -41,10 +41,10 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
   return sensor;
 }
 
-/// Velodyne VLP-32C, which spins 5 to 20 times a second. Two lasers fire at a time. Axes as of the VLP-16.
-/// Source: Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet. Noise and divergence
-/// taken as for the VLP-16; its pulse length is not published: that of the VLP-16.
-[[nodiscard]] inline SpinningSensor velodyne_vlp_32c(double turns_per_second = 10) {
+/// Velodyne VLP-32C, which spins 5 to 20 times a second. Two lasers fire at a time. Axes as in the VLP-16. Source:
+/// Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet. Noise and divergence taken as
+/// for the VLP-16; its pulse length is not published: that of the VLP-16.
+[[nodiscard]] inline SpinningSensor velodyne_vlp_32c(double rotation_rate = 10) {
   using namespace literals;
   struct Row {
     double elevation_in_degrees, azimuth_in_degrees;
@@ -57,7 +57,7 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
        {-2, 4.2},      {15, -1.4},    {10.333, 1.4},  {-1.333, -1.4}}};
   SpinningSensor sensor{.name = "VLP-32C",
                         .sequence_rate = 1 / velodyne_sequence_period,
-                        .turns_per_second = turns_per_second,
+                        .rotation_rate = rotation_rate,
                         .beam = {.wavelength = 903_nm, .peak_power = 31, .pulse_length = 6_ns, .divergence = 2.1_mrad},
                         .range_min = 1,
                         .range_max = 200,

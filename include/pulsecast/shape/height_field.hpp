@@ -123,7 +123,7 @@ class HeightField {
   }
 
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, materials_[grid_.owner(i)]};
   }

@@ -92,7 +92,7 @@ class LeafAngles {
   }
 
   /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per leaf area that the
-  /// light meets, as the leaves do: the mean squared cosine by the mean cosine, between light along a direction and
+  /// light hits, as the leaves do: the mean squared cosine by the mean cosine, between light along a direction and
   /// normals of leaves. 2/3 for spherical ones.
   [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
     const double up = direction.z * direction.z / dot(direction, direction);

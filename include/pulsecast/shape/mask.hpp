@@ -17,8 +17,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole. Without pixels, there
-/// is no hole. Where the two triangles of a quad meet, a ray along the border of two pixels may be told different ones:
-/// a mask and its complement may both answer it.
+/// is no hole. Where the two triangles of a quad meet, a ray along the border of two pixels may find different ones in
+/// the two: a mask and its complement may both be hit.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
   std::vector<std::uint64_t>

@@ -110,7 +110,7 @@ struct Raster {
     require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
     require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
     require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
-    // far from the origin, coordinates round by at most an eighth of the least pixel, so no two centres coincide
+    // far from the origin, coordinates round by at most an eighth of the minimum pixel size, so no two centres coincide
     constexpr double least = 4 * std::numeric_limits<double>::epsilon();
     require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
     require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
@@ -216,7 +216,7 @@ namespace detail {
   return static_cast<std::uint32_t>(nearest);
 }
 
-/// Number that no height of any raster has; empty if there is none, or if their heights are not packed alike.
+/// Number that no height of any raster has; empty if there is none, or if their heights are packed differently.
 [[nodiscard]] inline std::optional<std::uint16_t> number_of_gaps(const std::vector<Raster>& tiles) {
   const PackedHeights& alike = tiles.front().packed;
   if (!std::all_of(tiles.begin(), tiles.end(),
@@ -287,7 +287,7 @@ namespace detail {
   return all;
 }
 
-/// Material of the pixels with a code, as of a class of land cover.
+/// Material of the pixels with a code, such as a class of land cover.
 struct CodeMaterial {
   double code = 0;            ///< number in the raster of codes
   std::uint8_t material = 0;  ///< index into the part's table of materials

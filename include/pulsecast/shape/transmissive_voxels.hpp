@@ -23,7 +23,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
+/// Turbid medium of randomly placed leaves: light passes until it hits one. Requires densities.
 ///
 /// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and
 /// consumes it from voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws
@@ -34,8 +34,8 @@ namespace PULSECAST_NAMESPACE {
 ///
 /// Leaves without an area are as small as the subrays: each ray draws for itself, so that echoes depend on the number
 /// of subrays. With an area, rays that pass as close to each other as a leaf is wide share their draws; echoes and
-/// their deviation are then as of facets of that area, and leaves stay from pulse to pulse, each with an incidence of
-/// its own. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
+/// their deviation are then those of facets of that area, and leaves stay from pulse to pulse, each with its own
+/// incidence. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
 struct TransmissiveVoxels {
   LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
   bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
@@ -147,7 +147,7 @@ struct TransmissiveVoxels {
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
       if (settings.leaf_area >
-          0) {  // a leaf's own, of that mean: as of spherical leaves if 2/3, whose squared cosine is uniform
+          0) {  // a leaf's own, of that mean: that of spherical leaves if 2/3, whose squared cosine is uniform
         const LatticeRay::Passage passage = index.ray(rays, j).through(index.cell(number));
         const detail::LeafColumns columns(rays.origin, direction, settings.leaf_area);
         const detail::LeafColumn column = columns.at(0.5 * (passage.in.range + passage.out.range)).column;

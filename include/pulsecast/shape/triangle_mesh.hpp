@@ -42,8 +42,8 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 /// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are
 /// never hit, nor those so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their
 /// numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle
-/// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray that
-/// comes to a hole of a mask goes on; meshes without masks pay nothing for them. `Bvh<float>` is Pareto-optimal in
+/// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray
+/// passes the holes of a mask; meshes without masks pay nothing for them. `Bvh<float>` is Pareto-optimal in
 /// docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
@@ -143,7 +143,7 @@ class TriangleMesh {
   }
 
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, material(i)};
   }
@@ -154,7 +154,7 @@ class TriangleMesh {
   [[nodiscard]] std::uint32_t material(PrimitiveIndex i) const noexcept {
     return !materials8_.empty() ? materials8_[i] : !materials_.empty() ? materials_[i] : 0;
   }
-  /// True if ray j meets a triangle outside the holes of its material.
+  /// True if ray j hits a triangle outside the holes of its material.
   template <class Rays>
   [[nodiscard]] bool solid(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     const std::uint32_t masked = material(i);

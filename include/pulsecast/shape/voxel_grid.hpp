@@ -31,11 +31,11 @@ namespace PULSECAST_NAMESPACE {
 /// Surface direction of a voxel.
 enum class Incidence : std::uint8_t {
   normal,         ///< the voxel's normal; its face's if it has none
-  face,           ///< normal of the face of the cube that the ray meets
+  face,           ///< normal of the face of the cube that the ray hits
   perpendicular,  ///< always towards the scanner
 };
 
-/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far
+/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel hits its far
 /// side, as with any closed surface.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
@@ -206,7 +206,7 @@ class VoxelGrid {
   }
 
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
   }
 

@@ -91,7 +91,7 @@ class WaterSurface {
 
   /// The normal is upwards. `i` is the primitive that the ray's hit was offered with.
   template <class Rays>
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     if (waves_.empty()) return {axis::up, 0};
     const Vec3 direction = rays.direction(j);
     const double at = span_of(rays.origin, direction).at_share(i);
@@ -140,7 +140,7 @@ class WaterSurface {
     return span;
   }
 
-  /// Range at which a ray steeper than all waves meets them, before its origin too: Newton's method between bounds.
+  /// Range at which a ray steeper than all waves hits them, before its origin too: Newton's method between bounds.
   [[nodiscard]] double only_root(const detail::WaveProfile& profile, const Line& line) const noexcept {
     const std::size_t all = profile.groups();
     const double sense = line.climb < 0 ? -1 : 1, least = std::fabs(line.climb) - profile.steepest(all);

@@ -195,7 +195,7 @@ class WaveField {
     return simd::load<simd::Doubles>(column(c)[i]);
   }
 
-  /// Whole turns over whole seconds are removed exactly, as by `Tick::phase`.
+  /// Whole turns over whole seconds are removed exactly, as in `Tick::phase`.
   void set_phases(const Vec2& place, const Tick& t, detail::WavePhases& phases) const noexcept {
     const TickLanes tick(t);
     for (std::size_t i = 0; i < size_; i += simd::lane_count) {

@@ -46,7 +46,7 @@ struct WindWaves {
   double wind_speed = 5;  ///< 10 to 12.5 m above the mean level, from 0, a flat surface, to 30 [m/s]
   double toward = 0;      ///< direction that the wind blows to, from east towards north [rad]
   double fetch = std::numeric_limits<double>::infinity();  ///< distance from the windward shore, at least 1 [m]
-  double shortest = 3e-3;                                  ///< least wavelength, from 2 mm to 0.1 m [m]
+  double shortest = 3e-3;                                  ///< minimum wavelength, from 2 mm to 0.1 m [m]
   std::size_t components = 96;                             ///< number of sine waves, from 16 to `WaveField::max_size`
   std::uint64_t seed = 0;                                  ///< key of the draws of lengths, directions and phases
 

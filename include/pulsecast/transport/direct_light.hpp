@@ -11,6 +11,7 @@
 #include <span>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/scene/find_hits.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/plane_spread.hpp>
 #include <pulsecast/transport/transport_input.hpp>
@@ -42,41 +43,43 @@ struct DirectLight {
   /// `with_velocity`: the rays that return are then asked again one by one.
   // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140
   // instructions a pulse
-  template <bool with_velocity = false, Target Map>
-  [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
+  template <bool with_velocity = false, Target Target>
+  [[nodiscard, gnu::always_inline]] TransportResult trace(const Target& target, const TransportInput& light,
+                                                          Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
     const bool may_spread =
         !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
-    if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() && misses(map, light)) {
+    if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() &&
+        misses(target, light)) {
       result.energy.sent = light.energy();
       result.energy.missed = light.beam.share_sum * result.energy.sent;
       return result;
     }
-    trace_subrays<with_velocity>(map, light, w, reflections, result);
+    trace_subrays<with_velocity>(target, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
     if (may_spread)
       if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 1) [[unlikely]]
-        spread(map, light, span, w, reflections, result);
+        spread(target, light, span, w, reflections, result);
     return result;
   }
 
  private:
   [[nodiscard]] bool spreads(std::size_t subrays) const noexcept { return spread_planes && subrays > 2; }
 
-  template <Target Map>
-  [[gnu::noinline]] static void spread(const Map& map, const TransportInput& light, double span, Workspace& w,
+  template <Target Target>
+  [[gnu::noinline]] static void spread(const Target& target, const TransportInput& light, double span, Workspace& w,
                                        std::span<Reflection> reflections, TransportResult& result) noexcept {
     spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
       TransportResult other;
       for (Reflection& r : reflections.first(again.subrays)) r.velocity = 0;
-      trace_subrays<false>(map, again, w, reflections, other);
+      trace_subrays<false>(target, again, w, reflections, other);
       return other;
     });
   }
 
-  template <bool with_velocity, Target Map>
-  [[gnu::always_inline]] static void trace_subrays(const Map& map, const TransportInput& light, Workspace& w,
+  template <bool with_velocity, Target Target>
+  [[gnu::always_inline]] static void trace_subrays(const Target& target, const TransportInput& light, Workspace& w,
                                                    std::span<Reflection> reflections,
                                                    TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
@@ -96,7 +99,7 @@ struct DirectLight {
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, light.subrays - first);
       if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
       beam.to_world(world_from_beam, first, rays);
-      find_hits(map, rays, w.hits);
+      find_hits(target, rays, w.hits);
       detail::received_power(light, &beam.shares[first], rays.size, w.hits, power);
       if (!light.record.empty()) detail::record_subrays(light, first, std::span(w.hits).first(rays.size), power);
       for (std::size_t j = 0; j < rays.size; ++j) {
@@ -122,7 +125,7 @@ struct DirectLight {
         received += power[j];
         Reflection& reflection = reflections[result.reflections++];
         detail::set_reflection(reflection, hit, power[j]);
-        if constexpr (with_velocity) reflection.velocity = detail::radial_velocity(map, rays.ray(j));
+        if constexpr (with_velocity) reflection.velocity = detail::radial_velocity(target, rays.ray(j));
       }
     }
     result.fate = in_gate ? Fate::absorbed : met ? Fate::out_of_range : Fate::missed;
@@ -136,12 +139,12 @@ struct DirectLight {
   }
 
   /// True only if no subray of a beam from a point meets anything.
-  template <Target Map>
-  [[nodiscard]] static bool misses(const Map& map, const TransportInput& light) noexcept {
+  template <Target Target>
+  [[nodiscard]] static bool misses(const Target& target, const TransportInput& light) noexcept {
     constexpr double not_quite_unit = 1.01;  // factor for rotations that are unit within a thousandth
     const Pose<frame::Beam, frame::World>& pose = light.pulse.pose;
     const Vec3 direction = matrix_of(pose.rotation)[1];
-    return detail::misses_cone(map,
+    return detail::misses_cone(target,
                                RayCone{pose.position, direction, not_quite_unit * light.beam.spread, light.pulse.tick});
   }
 };

@@ -58,19 +58,19 @@ struct LightPaths {
   }
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.
-  template <bool with_velocity = false, OpticalTarget Map>
-  [[nodiscard]] TransportResult trace(const Map& map, const TransportInput& light, Workspace& w,
+  template <bool with_velocity = false, SceneQueries Target>
+  [[nodiscard]] TransportResult trace(const Target& target, const TransportInput& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
     const detail::PathSettings settings{passages, share_min, air, scattering};
     TransportResult result;
-    detail::PathTracer<with_velocity, Map> tracer(map, light, settings, w, reflections, result);
+    detail::PathTracer<with_velocity, Target> tracer(target, light, settings, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
       if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections)));
           span > 1)
         spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
           TransportResult other;
-          detail::PathTracer<with_velocity, Map>(map, again, settings, w, reflections, other).trace();
+          detail::PathTracer<with_velocity, Target>(target, again, settings, w, reflections, other).trace();
           return other;
         });
     return result;

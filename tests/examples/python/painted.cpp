@@ -50,7 +50,7 @@ template <class Footprint>
 auto over(const World& world, const Footprint& footprint, PulseIndex pulses) {
   const Scanner scanner{.pulse_rate = 200_kHz, .pulses = pulses};
   const Platform hanging{Tripod{}, Mount{.boresight = rotation_about(axis::right, -90_deg)},
-                         Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 40_deg}, scanner}};
+                         Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 40_deg}, scanner}};
   return Survey{hanging, footprint, world, Receiver{}, FirstHit{}};
 }
 using Sweep = decltype(over(floor(), SingleRay{}, 1));

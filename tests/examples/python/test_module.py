@@ -104,18 +104,18 @@ def test_what_cannot_be_is_refused_by_name(survey, spoil, says):
 
 
 def test_what_is_not_a_number_is_refused_by_name(survey):
-    survey.legs[1].scanner.scan_frequency = math.nan
-    with pytest.raises(pulsecast.SettingError, match=r"SurveySettings\.legs\[1\]\.scanner\.scan_frequency is nan"):
+    survey.legs[1].scanner.scan_rate = math.nan
+    with pytest.raises(pulsecast.SettingError, match=r"SurveySettings\.legs\[1\]\.scanner\.scan_rate is nan"):
         simulation(survey)
 
 
 @pytest.mark.parametrize(("spoil", "says"), [
     (lambda s: setattr(s.legs[1].scanner, "pulse_rate", -5), "leg 1: pulseFreq_hz is -5 Hz"),
-    (lambda s: setattr(s.legs[1].scanner, "scan_frequency", -5), "leg 1: scanFreq_hz is -5 Hz"),
+    (lambda s: setattr(s.legs[1].scanner, "scan_rate", -5), "leg 1: scanFreq_hz is -5 Hz"),
     (lambda s: setattr(s.legs[1].scanner, "trajectory_interval", -1), "leg 1: trajectoryTimeInterval_s is -1 s"),
     (lambda s: setattr(s.legs[2], "duration_max", -1), "leg 2: maxDuration_s is -1 s"),
     (lambda s: setattr(s.scanner.channels[0], "scan_angle_max", -1), "scanAngleMax_deg is -57"),
-    (lambda s: setattr(s.scanner.channels[0], "scan_frequency_max", -1), "scanFreqMax_Hz is -1 Hz"),
+    (lambda s: setattr(s.scanner.channels[0], "scan_rate_max", -1), "scanFreqMax_Hz is -1 Hz"),
     (lambda s: setattr(s.scanner.channels[0], "returns_max", -1), "maxNOR is -1"),
     (lambda s: setattr(s.scanner.channels[0].waveform, "rings", 0), "beamSampleQuality is 0"),
     (lambda s: setattr(s.scanner.channels[0].waveform, "duration_max", -1e-9), "maxFullwaveRange_ns is -1 ns"),
@@ -165,7 +165,7 @@ def test_settings_with_arrays_are_compared(survey):
 
 
 def test_settings_have_the_limits_and_notes_of_a_document(survey, tmp_path):
-    survey.legs[0].scanner.pulse_rate, survey.legs[0].scanner.head_speed, survey.legs[0].scanner.head_stop = 123, 30, 360
+    survey.legs[0].scanner.pulse_rate, survey.legs[0].scanner.head_rate, survey.legs[0].scanner.head_stop = 123, 30, 360
     with pytest.warns(UserWarning) as notes:
         simulation(survey)
     for says in ("leg 0: pulseFreq_hz of 123 Hz is not one of", "leg 0: headRotatePerSec_deg exceeds the scanner's maximum",

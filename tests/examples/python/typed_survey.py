@@ -9,12 +9,12 @@ import numpy as np
 
 import pulsecast
 
-channel = pulsecast.ChannelSettings(optic=pulsecast.RotatingOptic(), scan_angle_max=1.0, head_speed_max=3.0)
+channel = pulsecast.ChannelSettings(optic=pulsecast.RotatingOptic(), scan_angle_max=1.0, head_rate_max=3.0)
 channel.waveform.rings = 1
 survey = pulsecast.SurveySettings(
     name="floor",
     scanner=pulsecast.ScannerSettings(id="scanner", pulse_rates=[10_000], channels=[channel]),
-    legs=[pulsecast.LegSettings(scanner=pulsecast.LegScannerSettings(scan_frequency=50, head_speed=3, head_stop=3))],
+    legs=[pulsecast.LegSettings(scanner=pulsecast.LegScannerSettings(scan_rate=50, head_rate=3, head_stop=3))],
 )
 survey.legs[0].platform.position = (0, 0, 2)
 for leg in survey.legs:

@@ -62,7 +62,7 @@ struct Expected {
 Expected expected_of(const Shot& shot, const Echo& echo, const SpinningSensor& sensor) {
   const PulseIndex sequence = shot.index / 16;
   const Tick start = sensor.sequence_start(sequence);
-  return {static_cast<std::size_t>(sensor.turns_per_second * start.seconds()),
+  return {static_cast<std::size_t>(sensor.rotation_rate * start.seconds()),
           sensor.heading(start) * 180 / pi,
           sensor.lasers[shot.index % 16].elevation * 180 / pi,
           echo.range,

@@ -52,7 +52,7 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
                           .to = Vec3(4e5, 5.6e6, 200) + Vec3(50, 90, 300),
                           .speed = 80 / std::max(scanner.duration().seconds(), 1e-3)};
   const Platform airplane{line, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-                          Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
+                          Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 9_deg}, scanner}};
   LasWriter las(folder / (name + ".las"), settings);
   io::detail::LasFileWriter<io::detail::CopcRecords> copc(folder / (name + ".copc.laz"), settings,
                                                           io::detail::CopcRecords(2, sizes));

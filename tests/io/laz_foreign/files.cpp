@@ -128,7 +128,7 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
   const Platform airplane{
       StraightLine{.from = {50, 10, 300}, .to = {50, 90, 300}, .speed = 80 / scanner.duration().seconds()},
       Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
-      Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
+      Deflector{OscillatingMirror{.cycle_rate = 50_Hz, .half_angle = 9_deg}, scanner}};
   LasWriter las(folder / (name + ".las"), settings);
   LazWriter laz(folder / (name + ".laz"), settings);
   run(Survey{airplane, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{{.record_length = 20_ns}}}, {}, las, laz);

@@ -20,8 +20,8 @@ using namespace pulsecast::literals;
 /// Scans a mesh and writes LAS, LAZ and every text. Returns the bytes of all files; sets the number of points.
 std::string scan(const MeshData& mesh, std::size_t& points) {
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}});
-  const Deflector sweeping{PolygonMirror{.lines_per_second = 100_Hz}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}};
-  const Platform platform{Tripod{}, Mount{}, Deflector{RotatingHead{.rate = 360_deg}, sweeping}};
+  const Deflector sweeping{PolygonMirror{.line_rate = 100_Hz}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}};
+  const Platform platform{Tripod{}, Mount{}, Deflector{RotatingHead{.angular_rate = 360_deg}, sweeping}};
   const Survey survey{platform, WithSubrayRecord{LatticeFootprint{7}}, scene, Receiver{},
                       FullWaveform{{.record_length = 20_ns}}};
   const support::TemporaryFolder folder;

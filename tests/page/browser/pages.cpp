@@ -106,7 +106,7 @@ int live(PulseIndex all) {
   PulseIndex done = 0;
   for (constexpr PulseIndex a_batch = 500; done < all && !server.stop_requested(); done += a_batch) {
     server(Shots(done, std::min(all, done + a_batch), all).batch());
-    server.tell(
+    server.show(
         {.done = done + a_batch, .total = all, .echoes = done, .seconds = 0.05 * static_cast<double>(done) / a_batch});
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

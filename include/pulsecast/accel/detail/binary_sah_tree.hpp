@@ -20,9 +20,9 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of least
-/// SAH cost. Leaves of the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of the
-/// leaves. Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
+/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of
+/// minimum SAH cost. Leaves of the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of
+/// the leaves. Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
 template <std::floating_point Real>
 class BinarySahTree {
  public:

@@ -135,7 +135,7 @@ class KdTreeBuilder {
     return {simd::max(task.filled.min, within.low()), simd::min(task.filled.max, within.high()), slice_count};
   }
 
-  /// True if a split that gives the halves so many primitives is of use, and within the allowance.
+  /// True if a split into halves of these numbers of primitives pays, and is within the allowance.
   static bool worthwhile(const Task& task, std::size_t size, std::size_t lower, std::size_t upper) noexcept {
     return static_cast<double>(lower + upper) <= task.allowance && std::min(lower, upper) != size;
   }

@@ -19,8 +19,8 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 
-/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it. The
-/// probability that a ray through a box meets a box inside is the ratio of their surface areas. Source: Goldsmith &
+/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that hits it. The
+/// probability that a ray through a box hits a box inside is the ratio of their surface areas. Source: Goldsmith &
 /// Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
 namespace PULSECAST_NAMESPACE::detail {
 

@@ -27,10 +27,10 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Pulses of one length behind a receiver.
+/// Pulses of one length after a receiver.
 struct ReceivedPulses {
   LowPass filter;              ///< of the receiver
-  ReceivedPulse pulse;         ///< behind it
+  ReceivedPulse pulse;         ///< after the receiver
   std::vector<double> taps{};  ///< of the matched filter; none without one
   std::int64_t first_tap = 0;  ///< number of the first tap from the sample of a pulse's arrival on
 
@@ -40,8 +40,8 @@ struct ReceivedPulses {
 
 }  // namespace detail
 
-/// Samples behind a receiver of finite bandwidth, in sections with gaps where nothing is heard. With noise there is one
-/// section: the range gate, up to the last reflection if it has no end, and of 1e7 samples at most.
+/// Samples after a receiver of finite bandwidth, in sections with gaps where no light arrives. With noise there is one
+/// section of at most 1e7 samples: the range gate, up to the last reflection if the gate has no end.
 class BandLimitedSamples {
  public:
   /// Scratch memory.
@@ -114,7 +114,7 @@ class BandLimitedSamples {
   /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return number_; }
 
-  /// Next sample [W]; sets `more` if the section goes on behind it.
+  /// Next sample [W]; sets `more` if the section continues after it.
   [[nodiscard]] double power(bool& more) noexcept {
     double power = 0;
     if (pulses_.taps.empty()) {
@@ -138,7 +138,7 @@ class BandLimitedSamples {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double margin = 2;         ///< samples beside a pulse, so that a peak has neighbours
   static constexpr double samples_max = 1e7;  ///< of a gate
-  static constexpr std::size_t fallen = 4;    ///< falling samples behind a maximum
+  static constexpr std::size_t fallen = 4;    ///< falling samples after a maximum
 
   [[nodiscard]] static RandomKey noise_key(RandomKey key) noexcept {
     key.purpose = Purpose::receiver_noise;

@@ -10,11 +10,11 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// What a detector prepares for each pulse length, before the first pulse. A device has few of them.
+/// Data that a detector prepares for each pulse length, before the first pulse. A device has few of them.
 template <class Prepared>
 class ByPulseLength {
  public:
-  /// What was prepared for pulses as long as a laser's; null if nothing was.
+  /// Data for the pulse length of a laser; null without any.
   [[nodiscard]] const Prepared* find(const Laser& laser) const noexcept {
     for (const auto& [length, prepared] : known_)
       if (length == laser.pulse_length) return &prepared;

@@ -205,7 +205,7 @@ class ContinuousRises {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] static double time_of(double range) noexcept { return 2 / speed_of_light * range; }
-  /// True if a return goes on from the one before without a rise.
+  /// True if a return continues the one before without a rise.
   [[nodiscard]] static bool goes_on(const ContinuousReturn& before, const ContinuousReturn& r) noexcept {
     return r.at_end <= r.at_begin && r.begin <= before.end && r.at_begin <= before.at_end * (1 + 1e-9);
   }

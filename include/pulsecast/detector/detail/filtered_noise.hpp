@@ -28,8 +28,8 @@ struct LowPass {
   [[nodiscard]] double noise_bandwidth() const noexcept { return std::numbers::inv_sqrtpi / (4 * deviation); }
 };
 
-/// White Gaussian noise behind a `LowPass`, scaled to a deviation of 1: a function of time, the same however it is
-/// sampled. Impulses, whose heights are drawn by the key and their number, follow each other at 3/4 of the filter's
+/// White Gaussian noise after a `LowPass`, scaled to a deviation of 1: a function of time that does not depend on the
+/// sampling. Impulses, whose heights are drawn by the key and their number, follow each other at 3/4 of the filter's
 /// deviation, so that the deviation at different times differs by less than 1e-7. Its autocorrelation is exp(-(t / 2
 /// deviation)^2).
 class FilteredNoise {

@@ -20,9 +20,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Samples of a receiver of infinite bandwidth: the sum of the pulses of all reflections and continuous returns, with
-/// independent noise of each sample. Samples come in sections, with gaps where nothing is heard, or what is heard has
-/// no maximum. With noise, it listens from the first light on, for the length of the record and as long as light
-/// arrives.
+/// independent noise of each sample. Samples come in sections, with gaps where there is no light or no maximum. With
+/// noise, they begin with the first light and last for the length of the record, or as long as light arrives.
 class IdealSamples {
  public:
   /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the
@@ -54,9 +53,7 @@ class IdealSamples {
 
   [[nodiscard]] double delay() const noexcept { return 0; }                 ///< of a pulse's maximum in the samples [s]
   [[nodiscard]] double background() const noexcept { return background_; }  ///< mean that is not in the samples [W]
-  [[nodiscard]] bool independent_noise() const noexcept {
-    return noisy();
-  }  ///< true if samples have noise of their own each
+  [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }  ///< true if samples have independent noise
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
@@ -76,7 +73,7 @@ class IdealSamples {
   /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return sum_->sample(); }
 
-  /// Next sample [W]; sets `more` if the section goes on behind it.
+  /// Next sample [W]; sets `more` if the section continues after it.
   [[nodiscard]] double power(bool& more) noexcept {
     const double n = sum_->sample(), t = sum_->time();
     double power = sum_->power();
@@ -97,9 +94,9 @@ class IdealSamples {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr int fallen = 4;  ///< falling samples behind a maximum
+  static constexpr int fallen = 4;  ///< falling samples after a maximum
 
-  /// Adds the continuous returns at a time [s]; true if samples are needed behind it.
+  /// Adds the continuous returns at a time [s]; true if samples are needed after it.
   bool add_continuous(double t, double& power) noexcept {
     rises_.pass(t);
     continuous_.advance(t);

@@ -16,9 +16,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse behind a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any phase are
-/// interpolated: to 1e-6 of the peak, with the same weights for all samples of a pulse: sums of rows, one for each
-/// phase, so that the pulses of many reflections between two samples cost one sum.
+/// Pulse after a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any phase are
+/// interpolated to 1e-6 of the peak. All samples of a pulse have the same weights, so the pulses of many reflections
+/// between two samples cost one sum of rows, one row per phase.
 class ReceivedPulse {
  public:
   /// For pulses of a full width at half maximum of `length` [s], and samples every `interval` [s].
@@ -59,7 +59,7 @@ class ReceivedPulse {
   [[nodiscard]] double begin() const noexcept { return begin_; }
   /// Time of the table's last value [s].
   [[nodiscard]] double end() const noexcept { return begin_ + static_cast<double>(count_ * phases_) * step_; }
-  /// Time of the maximum behind the low-pass since the peak before it [s].
+  /// Time of the maximum after the low-pass since the peak before it [s].
   [[nodiscard]] double peak() const noexcept { return peak_; }
   /// Time on either side of the maximum, within which the pulse is concave, less a sample of the table; 0 for a pulse
   /// with another maximum. Pulses no further apart than this have a sum with a single maximum: it falls, bends down and
@@ -85,14 +85,14 @@ class ReceivedPulse {
   }
   /// Number of samples of a pulse, at most.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// Height of the peak before it is scaled to 1: that of a pulse of peak 1 behind the low-pass.
+  /// Height of the peak before it is scaled to 1: that of a pulse of peak 1 after the low-pass.
   [[nodiscard]] double gain() const noexcept { return gain_; }
   /// Number of the first sample of a pulse whose peak arrives before the low-pass at a time [s].
   [[nodiscard]] double first_sample(double arrival) const noexcept { return std::ceil((arrival + begin_) / interval_); }
 
   /// Number of rows: phases of the samples, and three more for the interpolation.
   [[nodiscard]] std::size_t rows() const noexcept { return phases_ + 3; }
-  /// Samples of a pulse of one phase: `stride()` numbers, at least `count()`, that are 0 behind the pulse.
+  /// Samples of a pulse of one phase: `stride()` numbers, at least `count()`, that are 0 after the pulse.
   [[nodiscard]] const double* row(std::size_t q) const noexcept { return rows_.data() + q * stride_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }  ///< length of a row, of whole registers
 

@@ -22,7 +22,7 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width>
 class SampleWindow {
  public:
-  /// What a search needs beside the samples.
+  /// Settings of a search.
   struct Search {
     const WaveformSettings& settings;  ///< of the detector
     const Width& width;                ///< measure of widths
@@ -70,8 +70,8 @@ class SampleWindow {
     return i;
   }
 
-  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, as of a saturated or
-  /// coarse digitiser.
+  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, such as that of a
+  /// saturated or coarse digitiser.
   [[nodiscard]] Vertex top_of(std::size_t first, std::size_t last) const noexcept {
     if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
     return vertex(&samples_[first]);

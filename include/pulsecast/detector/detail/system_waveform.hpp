@@ -46,7 +46,7 @@ class SystemWaveform {
   [[nodiscard]] double variance() const noexcept { return variance_; }            ///< of a flat target [s^2]
   [[nodiscard]] double rise() const noexcept { return rise_; }                    ///< time of the first thousandth [s]
   [[nodiscard]] double fall() const noexcept { return fall_; }                    ///< time of the last thousandth [s]
-  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< least variance in use [s^2]
+  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< minimum variance in use [s^2]
   [[nodiscard]] double most_added() const noexcept {
     return 0.999 * added(levels_.size() - 1);
   }  ///< greatest variance in use [s^2]
@@ -133,8 +133,8 @@ class SystemWaveform {
   std::array<Level, 24> levels_{};  ///< up to 8 times the deviation of a flat target
 };
 
-/// Sum of up to six system waveforms and a constant, fitted to samples by least squares without weights, as noise of a
-/// digitiser is the same for all samples. Source: Levenberg 1944; Marquardt 1963.
+/// Sum of up to six system waveforms and a constant, fitted to samples by least squares without weights, because the
+/// noise of a digitiser is the same for all samples. Source: Levenberg 1944; Marquardt 1963.
 class WaveformSum {
  public:
   static constexpr std::size_t most = 6;  ///< parts

@@ -12,15 +12,15 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Limit of the search of an accelerator by a bundle, which asks for it after each leaf. A bundle meets all primitives
-/// between its rays: where they are many, as the leaves in a broad beam, single rays are faster, and the bundle gives
-/// up: nothing more is in its limit.
+/// Limit of the search of an accelerator by a bundle, which reads it after each leaf. A bundle tests all primitives
+/// between its rays. Where they are many, such as the leaves in a broad beam, single rays are faster: the bundle gives
+/// up, as its limit then excludes all boxes.
 template <class Hits>
 struct BudgetedLimit {
   static constexpr int most = 128;  ///< leaves that cost about as much as single rays
 
   const Hits& nearest;    ///< hits so far
-  mutable int asked = 0;  ///< times that the limit was asked for
+  mutable int asked = 0;  ///< number of reads of the limit
 
   /// As in `ClosestHits`.
   template <class Rays>
@@ -44,7 +44,7 @@ void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) n
     search(one, hit);
     if (!hit.met(0)) continue;
     nearest.part = std::uint64_t{hit.part_of(0)} << 32;
-    nearest.offer(j, hit.range, hit.primitive_of(0));
+    nearest.offer(j, hit.range[0], hit.primitive_of(0));
   }
 }
 

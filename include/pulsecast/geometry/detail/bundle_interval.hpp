@@ -21,9 +21,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive
-/// in double precision, the bundle meets every box around that primitive, and the range is inside the box's span. NaN
-/// rays are left out; if none is left, every span is empty.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray hits a primitive in
+/// double precision, the bundle hits every box around that primitive, and the range is inside the box's span. NaN rays
+/// are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
@@ -159,8 +159,8 @@ class BundleInterval {
     return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
   }
 
-  // A plane behind the origin gives a negative range: as entry it has no effect, as exit it puts the box behind. Zero
-  // times infinity is NaN and fails every comparison.
+  // A plane behind the origin has a negative range: as entry it has no effect, as exit it puts the box behind the
+  // origin. Zero times infinity is NaN and fails every comparison.
   static void keep_above(Span& span, const Axis& a, Real low) noexcept {
     const Real range = (low - a.origin_high) * a.per_min;
     if (a.sense >= 0)
@@ -182,12 +182,12 @@ class BundleInterval {
 };
 
 /// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`: the entry wall on
-/// each axis is known, and the ranges to the walls of an axis share one factor. A box that is met has a `Key`: its
-/// entry range as an integer, which orders as the range does, with three zero bits for a tag.
+/// each axis is known, and the ranges to the walls of an axis share one factor. A hit box has a `Key`: its entry range
+/// as an integer, which orders as the range does, with three zero bits for a tag.
 template <std::floating_point Real>
 class RayInterval {
  public:
-  using Key = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;  ///< entry range of a box that is met
+  using Key = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;  ///< entry range of a hit box
   using Keys = std::array<Key, 8>;                                                ///< keys by slot
 
   /// Greatest tagged key of a box that is entered at a range up to `limit` [m].
@@ -252,7 +252,7 @@ class RayInterval {
   using KeyPacket = simd::Vec<Key, lanes>;
 
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-  /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not met.
+  /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not hit.
   static constexpr double max_limit = static_cast<double>(std::numeric_limits<Real>::max()) * (1 - 4 * tolerance);
   /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast: from the margin on,
   /// they leave a box so late that no hit lies beyond.

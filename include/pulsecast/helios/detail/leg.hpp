@@ -24,6 +24,7 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {
@@ -94,7 +95,7 @@ struct SurveyNoise {
 /// them: by noise of each slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
-  /// `known` is the time for which the path is known, if that ends within the last slot.
+  /// `known` is the end of the known path, if that is within the last slot.
   SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise,
             std::optional<Tick> known = {})
       : truth_(std::move(path), mount, std::move(instrument)),

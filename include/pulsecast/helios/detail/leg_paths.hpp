@@ -60,7 +60,7 @@ class LegPaths {
   /// Number for messages, rounded to three digits after the point.
   [[nodiscard]] static std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
-  /// True if a leg goes on along the plan of the leg before.
+  /// True if a leg continues the plan of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
     const auto shares = [&]<class Plan>(const std::shared_ptr<const Plan>& plan) {
       const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);
@@ -291,11 +291,11 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings> told;  // columns and separator of each file, from its first leg
+    std::map<std::string, TrajectorySettings> formats;  // columns and separator of each file, from its first leg
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");
-      TrajectorySettings& of_file = told[t->file.string()];
+      TrajectorySettings& of_file = formats[t->file.string()];
       if (!of_file.columns) of_file.columns = t->columns;
       if (!of_file.separator) of_file.separator = t->separator;
       t->columns = of_file.columns;

@@ -189,8 +189,8 @@ class LoadedSimulation final : public Simulation {
 
   [[nodiscard]] Scene scene() const override {
     const SurveyScene& s = *scene_;
-    Scene out{.least = s.bounds().min,
-              .most = s.bounds().max,
+    Scene out{.min = s.bounds().min,
+              .max = s.bounds().max,
               .parts = s.parts().size(),
               .memory = s.memory(),
               .empty = s.bounds().empty()};
@@ -209,14 +209,14 @@ class LoadedSimulation final : public Simulation {
     return pulsecast::run(*pipeline_, options, sink);
   }
 
-  void receive(const ReceiverOverrides& how) override {
-    std::vector<std::string> odd;
-    const ScannerSettings scanner = limits_.sampled_alike(scanner_of(how), odd);
-    if (settings_.echo_width && !how.ideal)
-      connect<GaussianFit>(scanner, how.ideal, odd);
+  void receive(const ReceiverOverrides& overrides) override {
+    std::vector<std::string> warnings;
+    const ScannerSettings scanner = limits_.sampled_alike(scanner_of(overrides), warnings);
+    if (settings_.echo_width && !overrides.ideal)
+      connect<GaussianFit>(scanner, overrides.ideal, warnings);
     else
-      connect<NoWidth>(scanner, how.ideal, odd);
-    add_new(warnings_, odd);
+      connect<NoWidth>(scanner, overrides.ideal, warnings);
+    add_new(warnings_, warnings);
   }
 
   [[nodiscard]] std::vector<Sample> sample(std::span<const SampleBlock> blocks, unsigned threads) const override {
@@ -225,22 +225,22 @@ class LoadedSimulation final : public Simulation {
     std::vector<Sample> all(blocks.size());
     for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
       AnySurvey::Workspace workspace = survey.workspace();
-      ResultBuffer room;  // reused, as in a run
+      ResultBuffer buffer;  // reused, as in a run
       for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
         const SampleBlock& block = blocks[k];
         Sample& sample = all[k];
         const auto add = [&](const Outcome& outcome) {
-          room.append(outcome, block.empty_shots);
+          buffer.append(outcome, block.empty_shots);
           return outcome.shot.index + 1;
         };
-        room.clear();
+        buffer.clear();
         survey.simulate_in_order(block.first, block.from, workspace, add);
-        room.clear();
+        buffer.clear();
         const double start = processor_seconds();
         survey.simulate_in_order(block.from, block.end, workspace, add);
         sample.seconds = processor_seconds() - start;
         sample.sample_interval = survey.sample_interval();
-        static_cast<ResultBuffer&>(sample) = room;
+        static_cast<ResultBuffer&>(sample) = buffer;
       }
     });
     return all;
@@ -273,12 +273,12 @@ class LoadedSimulation final : public Simulation {
     return std::move(built.parts);
   }
 
-  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& how) const {
+  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& overrides) const {
     ScannerSettings scanner = survey_.scanner;
     for (ChannelSettings& channel : scanner.channels) {
-      channel.waveform.rings = how.rings.value_or(channel.waveform.rings);
-      channel.waveform.bin_size = how.bin_size.value_or(channel.waveform.bin_size);
-      if (!how.ideal) continue;
+      channel.waveform.rings = overrides.rings.value_or(channel.waveform.rings);
+      channel.waveform.bin_size = overrides.bin_size.value_or(channel.waveform.bin_size);
+      if (!overrides.ideal) continue;
       channel.accuracy = 0;
       channel.errors.range_noise.clear();
     }
@@ -286,7 +286,7 @@ class LoadedSimulation final : public Simulation {
   }
 
   template <class Width>
-  void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& odd) {
+  void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& warnings) {
     const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
     const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal,
                library = settings_.library_physics;
@@ -294,9 +294,10 @@ class LoadedSimulation final : public Simulation {
       return ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
         const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
         WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light());
-        limits_.limit_record(waveform, odd);
+        limits_.limit_record(waveform, warnings);
         auto unit = receiver_unit(channel, waveform, noisy);
-        if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) odd.push_back(air);
+        if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty())
+          warnings.push_back(air);
         return unit;
       });
     };

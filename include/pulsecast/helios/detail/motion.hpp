@@ -106,7 +106,7 @@ namespace detail {
   if (!steps.own) return steady_motion(all, step);
   const auto own = steps.own->settled();
   const SteadyMotion turn = steady_motion({own.rotation, {}}, step);
-  return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .rate = turn.rate};
+  return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .angular_rate = turn.angular_rate};
 }
 
 /// Motion of a part that has at least one sequence, with a step in each `step` [s]. Throws a `SettingError` with part

@@ -37,13 +37,12 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Turning rate of the head in a leg, within the limits of the device [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
-  return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
+  return std::clamp(leg.head_rate, -channel.head_rate_max, channel.head_rate_max);
 }
 
 /// True if the head turns away from its stop angle.
 [[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
-  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) ||
-         (leg.head_speed < 0 && leg.head_stop > leg.head_start);
+  return (leg.head_rate > 0 && leg.head_stop < leg.head_start) || (leg.head_rate < 0 && leg.head_stop > leg.head_start);
 }
 
 /// True if a leg waits for a head that does not turn.
@@ -61,8 +60,8 @@ namespace detail {
 /// Vertical limits of the pulses of a polygon mirror [rad].
 struct MirrorGate {
   double low = 0, high = 0;
-  bool is_limited = false;  ///< the leg asks for a wider gate than the device has
-  bool is_cut = false;      ///< the leg asks for a gate beyond the sweep of the mirror
+  bool is_limited = false;  ///< the leg requests a wider gate than the device has
+  bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
 /// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the
@@ -86,18 +85,18 @@ struct MirrorGate {
 }
 
 [[nodiscard]] inline bool scans_too_slowly(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return leg.scan_frequency < channel.scan_frequency_min;
+  return leg.scan_rate < channel.scan_rate_min;
 }
 
 [[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return channel.scan_frequency_max > 0 && leg.scan_frequency > channel.scan_frequency_max;
+  return channel.scan_rate_max > 0 && leg.scan_rate > channel.scan_rate_max;
 }
 
-inline void require_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  const double f = leg.scan_frequency, most = channel.scan_frequency_max;
+inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  const double f = leg.scan_rate, most = channel.scan_rate_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within the limits of the device, " + text::to_text(channel.scan_frequency_min) + " to " +
+                       "within the limits of the device, " + text::to_text(channel.scan_rate_min) + " to " +
                            (most > 0 ? text::to_text(most) : "any") + " Hz");
 }
 
@@ -106,8 +105,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
 [[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic,
                                              const LegScannerSettings& leg, double pulse_rate) {
   const double angle = scan_angle_of(channel, leg);
-  const double f =
-      angle * leg.scan_frequency > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_frequency;
+  const double f = angle * leg.scan_rate > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_rate;
   const double pulses = std::floor(pulse_rate / f);
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
@@ -122,8 +120,8 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
-  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_frequency > 0) {
-    const double asked = leg.scan_frequency, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
+  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_rate > 0) {
+    const double asked = leg.scan_rate, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
     if (std::fabs(f - asked) > 1e-4 * asked)
       note("scanFreq_hz of " + brief(asked) + " is taken as " + brief(f) +
            (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and"
@@ -131,7 +129,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
            " for a cycle is a whole number of pulses, here " + brief(pulse_rate / f));
   }
   if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic);
-      mirror && leg.scan_frequency > 0 && channel.scan_angle_max > 0) {
+      mirror && leg.scan_rate > 0 && channel.scan_angle_max > 0) {
     const MirrorGate gate = mirror_gate(channel, *mirror, leg);
     const double sweep = channel.scan_angle_max;
     const std::string within =
@@ -145,7 +143,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   if (leg.scan_angle && scan_angle_of(channel, leg) < *leg.scan_angle)
     note("scanAngle_deg is limited to " + brief(degrees(channel.scan_angle_max)));
   if (head_rate(channel, leg) != head_rate(scanner.channels[0], leg))
-    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_speed_max)) +
+    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_rate_max)) +
          ", unlike that of the first channel");
   return notes;
 }
@@ -161,32 +159,30 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
     ahead = active;
-    if (!(leg.scan_frequency > 0))
-      throw SettingError("scanFreq_hz", leg.scan_frequency, "Hz", "greater than 0 for an oscillating mirror");
+    if (!(leg.scan_rate > 0))
+      throw SettingError("scanFreq_hz", leg.scan_rate, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
     return OscillatingMirror{// that turns round in 100 pulses at most
-                             .cycles_per_second = f,
+                             .cycle_rate = f,
                              .half_angle = scan_angle_of(channel, leg),
                              .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
-    const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
+    const double sweep = channel.scan_angle_max, f = leg.scan_rate;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
     const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
-    return PolygonMirror{.lines_per_second = f,
-                         .sweep = std::min(sweep, pi),
-                         .angle_min = std::max(low, -pi),
-                         .angle_max = std::min(high, pi)};
+    return PolygonMirror{
+        .line_rate = f, .sweep = std::min(sweep, pi), .angle_min = std::max(low, -pi), .angle_max = std::min(high, pi)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
     ahead = active;
-    const double f = leg.scan_frequency > 0 ? leg.scan_frequency : channel.scan_frequency_max;
+    const double f = leg.scan_rate > 0 ? leg.scan_rate : channel.scan_rate_max;
     if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for a Palmer mirror");
-    return PalmerMirror{.turns_per_second = f, .half_angle = scan_angle_of(channel, leg)};
+    return PalmerMirror{.rotation_rate = f, .half_angle = scan_angle_of(channel, leg)};
   }
 
   /// Fibres divide the full scan angle evenly, each at the lower end of its share.
@@ -195,7 +191,7 @@ struct OpticBuilder {
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
     tilt = optic.fibers > 1 ? -angle / n : 0;
     return FiberArray{.fibers = static_cast<std::uint32_t>(optic.fibers),
-                      .fibers_per_second = pulse_rate,
+                      .fiber_rate = pulse_rate,
                       .half_angle = angle * (n - 1) / n};
   }
 
@@ -205,7 +201,7 @@ struct OpticBuilder {
     for (const RisleyPrism& p : optic.prisms)
       if (std::fabs(p.angle) > radians(1e-6))
         out.prisms.push_back({.wedge = std::fabs(p.angle),
-                              .turns_per_second = p.rotor_frequency,
+                              .rotation_rate = p.rotation_rate,
                               .refractive_index = p.refractive_index,
                               .inclined_exit = p.angle < 0});
     if (out.prisms.empty()) return FixedBeam{aimed_along(normalize(optic.incident_beam))};
@@ -213,14 +209,14 @@ struct OpticBuilder {
   }
 };
 
-/// Least and greatest upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
+/// Minimum and maximum upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
 [[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
   const auto* const mirror = std::get_if<PolygonMirror>(&optic);
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
 }
 
-/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as
-/// no beam meets them.
+/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass,
+/// because no beam reaches them.
 inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
@@ -240,14 +236,14 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {
-  if (leg.active) detail::require_scan_frequency(channel, leg);
+  if (leg.active) detail::require_scan_rate(channel, leg);
   detail::OpticBuilder build{channel, leg, pulse_rate, active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
                  conjugate(boresight) * channel.beam_origin.position};
   const double rate = head_rate(channel, leg);
-  out.head = {.rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
+  out.head = {.angular_rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
   const auto formula = [](const std::string& text) {
     return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA");
   };

@@ -69,8 +69,8 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for;
-/// empty if there is nothing to tell.
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
+/// measured; empty if there is none.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
   return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
@@ -81,9 +81,9 @@ namespace detail {
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
 /// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
-/// ranges. By the library's physics they are timed by their peaks, and where light goes on: between the surface of
-/// water and its bottom a mean range says nothing. Its threshold is that of `WaveformSettings`, unless the scanner has
-/// another than that of HELIOS++, which is less than a photon.
+/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
+/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
+/// the scanner has another than that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
@@ -125,7 +125,7 @@ struct ReceiverGroups {
   }
 
   /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all
-  /// channels of a group may have been changed alike.
+  /// channels of a group may have been changed in the same way.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;
@@ -141,7 +141,7 @@ struct ReceiverGroups {
   return finest;
 }
 
-/// Receiver of a channel for `Survey`. Noise is a quarter of the least power of an echo.
+/// Receiver of a channel for `Survey`. Noise is a quarter of the minimum power of an echo.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, FullWaveform<Width>> survey_receiver_unit(const ChannelSettings& channel,
                                                                                     const WaveformSettings& waveform,
@@ -157,8 +157,8 @@ template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
 /// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth
-/// of the pulse. Noise is a sixth of the least power of an echo, so that false echoes are rare though it listens to the
-/// whole gate.
+/// of the pulse. Noise is a sixth of the minimum power of an echo, so that false echoes are rare although the whole
+/// gate is sampled.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

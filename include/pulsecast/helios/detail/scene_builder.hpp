@@ -61,7 +61,7 @@ PULSECAST_INLINE std::vector<SurveyPart> SceneBuilder::parts(int run) {
     lifted.resize(all.size(), has_nodes ? 0 : transform->on_ground);
   }
   warn(options_.spectra.warnings);
-  tell_shared_objects(all);
+  warn_of_shared_objects(all);
   stand_on_ground(all, lifted);
   move(all);
   return all;
@@ -172,7 +172,7 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
 }
 
 /// Warns of the first two parts with the same number in their points.
-PULSECAST_INLINE void SceneBuilder::tell_shared_objects(const std::vector<SurveyPart>& all) {
+PULSECAST_INLINE void SceneBuilder::warn_of_shared_objects(const std::vector<SurveyPart>& all) {
   std::map<ObjectId, const PartSettings*> first;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);

@@ -126,8 +126,8 @@ inline bool declares_ground(const std::filesystem::path& file) {
 
 }  // namespace detail
 
-/// Files in the settings of a scene, in all runs, there or not. Those that these files name are told by
-/// `SceneBuilder::files`.
+/// Files in the settings of a scene, in all runs, existing or not. `SceneBuilder::files` returns those that these files
+/// name.
 [[nodiscard]] inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) {
   return detail::files_of(scene).all;
 }

@@ -19,6 +19,7 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Optics of survey documents, as one type.
@@ -38,15 +39,15 @@ struct SurveyOptic {
   AnyOptic optic{};
   Tick ahead{};                                          ///< lead of the optic's clock over that of the leg
   Pose<frame::Instrument, frame::Instrument> emitter{};  ///< of the channel, before the head turns it
-  RotatingHead head{.rate = 0};
+  RotatingHead head{.angular_rate = 0};
   std::shared_ptr<const Formula> deflection_error{};  ///< error of the deflection, by the deflection; or none [rad]
   std::shared_ptr<const Formula> head_error{};   ///< error of the head angle, as a function of the deflection [rad]
   std::shared_ptr<const Formula> range_error{};  ///< error of the reported range, as a function of the deflection [m]
-  double head_zero_threshold = 0;  ///< least distance of the argument of `head_error` from multiples of pi [rad]
+  double head_zero_threshold = 0;  ///< minimum distance of the argument of `head_error` from multiples of pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
-    RotatingHead{.rate = head.rate, .axis = head.axis}.validate();
+    RotatingHead{.angular_rate = head.angular_rate, .axis = head.axis}.validate();
     require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // many turns in some documents
   }
 
@@ -88,7 +89,7 @@ struct SurveyOptic {
     const auto find = [&](const auto& o) noexcept { return find_poses(o, t + ahead, all_lanes(), poses); };
     const simd::Mask open = std::visit(find, optic);
     poses = PoseLanes(emitter) * poses;
-    if (head.rate == 0 && head.start == 0) return open;
+    if (head.angular_rate == 0 && head.start == 0) return open;
     PoseLanes<frame::Instrument, frame::Instrument> turned;
     head.poses(t, turned);
     poses = turned * poses;

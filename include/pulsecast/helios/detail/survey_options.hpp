@@ -32,7 +32,7 @@ struct SurveyBuildOptions {
   }
 };
 
-/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` is asked for the level
+/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` returns the level
 /// nearest to a height.
 class GroundHeight {
  public:

@@ -79,7 +79,7 @@ class ChildOutput {
     ::setrlimit(RLIMIT_AS, &limit);
   }
 
-  /// Writes what is held back, and a word by which the parent knows that all is there.
+  /// Writes the pending bytes, and a word that marks the end for the parent.
   void end(const std::array<char, 8>& word) {
     align();
     value(word);
@@ -302,7 +302,7 @@ class ChildProcess {
       int status = 0;
       const pid_t ended = ::waitpid(child, &status, killed ? 0 : WNOHANG);
       if (ended == child) return killed && WIFSIGNALED(status) ? SIGXCPU : status;
-      if (ended < 0 && errno != EINTR) return 0;  // another has waited for it: its result tells
+      if (ended < 0 && errno != EINTR) return 0;  // another has waited for it: its result decides
       if (std::chrono::steady_clock::now() > last && !std::exchange(killed, true)) ::kill(child, SIGKILL);
       ::nanosleep(&pause, nullptr);
       pause.tv_nsec = std::min<long>(pause.tv_nsec * 2, 5'000'000);

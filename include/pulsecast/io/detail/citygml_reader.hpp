@@ -69,7 +69,7 @@ struct CityClassRule {
   return {};
 }
 
-/// EPSG code of the horizontal system of a name, as of `urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783`.
+/// EPSG code of the horizontal system of a name, such as `urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783`.
 [[nodiscard]] inline std::optional<std::uint16_t> epsg_of(std::string_view name) {
   const std::size_t at = name.find("EPSG");
   if (at == name.npos) return std::nullopt;

@@ -36,7 +36,7 @@ struct MaterialPictures {
   PictureSource colour{};            ///< colour of points
   PictureSource opacity{};           ///< outline: by its opacity, or by its grey or red without one
   PictureSource reflectance{};       ///< reflectance
-  bool reflectance_pattern = false;  ///< true if that is a pattern, as of `ReflectanceMap::pattern`
+  bool reflectance_pattern = false;  ///< true if that is a pattern, see `ReflectanceMap::pattern`
   bool outlined_by_colour = false;   ///< true: the opacity of the colour picture, if any, is the outline
   double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
 

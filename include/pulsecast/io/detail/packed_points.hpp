@@ -21,8 +21,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
 
-/// Throws a `SettingError` for a layout or settings out of range, and unless the names of the layout can stand in the
-/// header of a file, and its fields be told by them.
+/// Throws a `SettingError` for a layout or settings out of range, and unless the names of the layout are valid in the
+/// header of a file, and unique.
 inline void require_packable(const PointLayout& layout, const PointSettings& points) {
   layout.validate();
   points.validate();

@@ -86,7 +86,7 @@ class MpiBlockScheduler {
 
   [[nodiscard]] const MpiCost& cost() const noexcept { return cost_; }
 
-  static constexpr PulseIndex min_slots = 2048;  ///< least slots of a block, except the last
+  static constexpr PulseIndex min_slots = 2048;  ///< minimum number of slots of a block, except the last
 
  private:
   static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // upper limits of a block [byte], [s]

@@ -182,9 +182,9 @@ class MpiWrittenPiece final : public MpiPiece {
   std::optional<Writer> writer_;
 };
 
-/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and puts each at the
-/// place that the first process assigns once all before is known. Construction and `close()` are collective, in the
-/// same order.
+/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and writes each at the
+/// place that the first process assigns once all sizes before are known. Construction and `close()` are collective, in
+/// the same order.
 class MpiOutput {
  public:
   explicit MpiOutput(MpiGroup& group) : group_(group), number_(group.enter(*this)) {}

@@ -150,7 +150,7 @@ class LocalServer final : public httplib::Server {
   bool accept_one() {
     socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;
-    // descriptors are given in order: this number tells how many are taken, by the program as well
+    // descriptors are assigned in order: this number counts those in use, by the program as well
     const bool takes_share = static_cast<rlim_t>(socket) >= share_ && !open_.empty();
     if (open_.size() >= limits_.connections || takes_share) {
       const auto waiting = std::find_if(open_.begin(), open_.end(), [](const Connection& c) { return !c.answered; });

@@ -53,7 +53,7 @@ struct PagePoint {
 /// the echoes alone. It skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
 class PageSample {
  public:
-  /// `most` is from 2 to 2^27. Points have `colours`, which are asked for those that are kept for the moment.
+  /// `most` is from 2 to 2^27. `colours` is called for the points that are kept for the moment.
   explicit PageSample(std::size_t most, PointColours colours = {}) : most_(most), colours_(std::move(colours)) {
     require_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, "");
   }

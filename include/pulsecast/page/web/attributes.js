@@ -10,7 +10,7 @@ const classNames = { 0: 'Never classified', 1: 'Unassigned', 2: 'Ground', 3: 'Lo
                      6: 'Building', 7: 'Low noise', 9: 'Water', 10: 'Rail', 11: 'Road surface', 13: 'Wire, guard', 14: 'Wire, conductor',
                      15: 'Transmission tower', 17: 'Bridge deck', 18: 'High noise' }  // source: ASPRS LAS 1.4 R15, table 17
 
-const kindNames = ['Direct', 'Through glass', 'From water', 'By a mirror', 'From the air', 'Scattered to and fro']
+const kindNames = ['Direct', 'Through glass', 'From water', 'By a mirror', 'From the air', 'Scattered repeatedly']
 
 const hexOf = v => `#${v.toString(16).padStart(6, '0')}`
 

@@ -74,7 +74,7 @@ struct ArrowArrayStream {
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is handed on without copies.
+/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is shared without copies.
 class ArrowTable {
  public:
   /// @throws ValueError for an array of another length, type or layout than Arrow takes
@@ -224,7 +224,7 @@ class ArrowStream {
     return *static_cast<ArrowStream*>(stream->private_data);
   }
 
-  /// Calls `fill`; 0, or an error number of which `get_last_error` tells.
+  /// Calls `fill`; 0, or an error number that `get_last_error` explains.
   template <class Fill>
   [[nodiscard]] int filled(const Fill& fill) noexcept {
     error_ = nullptr;

@@ -43,7 +43,7 @@ struct Batch {
 struct KeptData {
   bool pulses = true;    ///< true for pulses and waveforms
   bool columns = false;  ///< true for points by column in place of rows
-  PointExtras extras{};  ///< columns besides
+  PointExtras extras{};  ///< further columns
 };
 
 /// Sink that keeps echoes, as rows or by column, and pulses.
@@ -144,8 +144,8 @@ class RowSink {
   return b.by_column ? pybind11::len(b.columns["x"]) : static_cast<std::size_t>(b.points.size());
 }
 
-/// Capsule of the columns, as `__arrow_c_stream__` returns it. The schema that a consumer asks for is a wish, which is
-/// not granted. Throws a `ValueError` if points are kept as rows, of which Arrow takes no columns without copies.
+/// Capsule of the columns, as `__arrow_c_stream__` returns it. A requested schema is ignored. Throws a `ValueError` if
+/// points are kept as rows, which Arrow cannot share without copies.
 [[nodiscard]] inline pybind11::object arrow_stream_of(const Batch& b, const pybind11::object& requested_schema) {
   if (!requested_schema.is_none() && PyCapsule_IsValid(requested_schema.ptr(), "arrow_schema") == 0)
     throw pybind11::type_error("__arrow_c_stream__ requested_schema: expected a capsule 'arrow_schema', not " +

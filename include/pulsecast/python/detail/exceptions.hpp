@@ -15,7 +15,7 @@
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Exception class shared by all modules, created by the first that asks.
+/// Exception class shared by all modules, created at first use.
 [[nodiscard]] inline pybind11::handle shared_exception(const char* name, PyObject* base, const char* doc) {
   const std::string key = std::string("pulsecast.") + name;
   if (void* const known = pybind11::get_shared_data(key)) return static_cast<PyObject*>(known);

@@ -27,9 +27,9 @@
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Data of points besides their rows. A survey's run keeps its attributes, and its colours if asked.
+/// Data of points beyond their rows. A survey's run keeps its attributes, and its colours on request.
 struct PointExtras {
-  PointColours colours{};         ///< colours of echoes, as of `colours_of`; empty: they are unknown
+  PointColours colours{};         ///< colours of echoes, see `colours_of`; empty: unknown
   ObjectAttributes attributes{};  ///< attributes of objects, a column each
 
   /// @throws SettingError for an attribute of the name of another column

@@ -22,7 +22,7 @@ struct PointRow {
   double range;                    ///< range along the pulse's axis [m]
   float intensity;                 ///< received power at the echo's peak [W]
   float reflectance;               ///< as in `Echo`
-  float echo_width;                ///< standard deviation in time; 0 if not asked for, NaN if none was found [s]
+  float echo_width;                ///< standard deviation in time; 0 if not requested, NaN if none was found [s]
   float cos_incidence;             ///< of the strongest contributor
   std::int64_t pulse;              ///< number of the pulse slot
   std::uint32_t object;            ///< of the strongest contributor

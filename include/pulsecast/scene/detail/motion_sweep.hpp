@@ -91,7 +91,7 @@ inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& p
                            double span) noexcept {
   const MotionPiece& piece = *place.piece;
   const Vec3 first = state_at(place, body.start).centre, middle = piece.centre + piece.velocity * place.time.seconds();
-  const double angle = std::fabs(piece.orbit.rate) * span, radius = length(first - middle);
+  const double angle = std::fabs(piece.orbit.angular_rate) * span, radius = length(first - middle);
   const bool wide = angle > wide_turn;
   Box way;
   way.extend(wide ? middle : first);
@@ -107,7 +107,7 @@ inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& 
   const BodyState state = state_at(place, body.start);
   const SweptState first(body, state);
   const Vec3 way = piece.velocity * span;
-  const double angle = std::fabs(piece.attitude.rate) * span;
+  const double angle = std::fabs(piece.attitude.angular_rate) * span;
   Box ends = first.box(body);
   if (angle == 0) {
     box.extend(ends);
@@ -147,7 +147,7 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
     Box axis;
     axis.extend(piece.centre);
     axis.extend(piece.centre + way);
-    box.extend(piece.orbit.rate == 0 ? ends : grown(axis, radius));
+    box.extend(piece.orbit.angular_rate == 0 ? ends : grown(axis, radius));
   }
 }
 

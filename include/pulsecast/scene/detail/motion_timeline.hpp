@@ -37,11 +37,11 @@ struct Change {
 
 /// Rotation at a constant rate.
 struct Turning {
-  Vec3 axis = axis::up;  ///< unit
-  double rate = 0;       ///< [rad/s]
+  Vec3 axis = axis::up;     ///< unit
+  double angular_rate = 0;  ///< [rad/s]
 
   [[nodiscard]] Rotation until(const Tick& time) const noexcept {
-    return rate == 0 ? no_rotation : rotation_about(axis, 2 * pi * time.phase(rate / (2 * pi)));
+    return angular_rate == 0 ? no_rotation : rotation_about(axis, 2 * pi * time.phase(angular_rate / (2 * pi)));
   }
 };
 
@@ -103,7 +103,7 @@ struct BodyState {
   const Turning& orbit = p.spins ? p.orbit : p.attitude;
   const Vec3 axis_point =
       p.centre + p.velocity * static_cast<double>(place.time.second) + p.velocity * place.time.fraction;
-  return p.velocity + orbit.rate * cross(orbit.axis, centre - axis_point);
+  return p.velocity + orbit.angular_rate * cross(orbit.axis, centre - axis_point);
 }
 
 /// Runs one after another; the last of them may make a cycle that repeats for ever.

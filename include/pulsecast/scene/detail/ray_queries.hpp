@@ -11,9 +11,10 @@
 #include <optional>
 #include <type_traits>
 
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
+#include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/ray_hit.hpp>
 
 /// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a
 /// `AllHits`.
@@ -51,7 +52,8 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
 
 /// Surface of a shape's primitive where a single ray meets it.
 template <class Shape>
-[[nodiscard]] Surface surface_of(const Shape& shape, PrimitiveIndex primitive, const SingleRayPacket& ray) noexcept {
+[[nodiscard]] SurfaceInteraction surface_of(const Shape& shape, PrimitiveIndex primitive,
+                                            const SingleRayPacket& ray) noexcept {
   if constexpr (SurfacedBySingleRay<Shape>)
     return shape.surface(primitive, ray, 0);
   else
@@ -67,7 +69,7 @@ template <class Search>
   ClosestHit nearest(ray.far);
   search(SingleRayPacket(ray), nearest);
   if (!nearest.met(0)) return std::nullopt;
-  return ray_hit(nearest.range, nearest.id);
+  return ray_hit(nearest.range[0], nearest.id[0]);
 }
 
 template <class Search>
@@ -103,24 +105,23 @@ template <class Part>
   before.near = std::nextafter(
       hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
   const SingleRayPacket local = placement.to_local(before);
-  SurfaceInteraction point{.position = ray.origin + hit.range * ray.direction,
-                           .part = hit.part,
-                           .primitive = hit.primitive,
-                           .object = part.object};
+  SurfaceInteraction point;
   const auto look = [&](const auto& shape) noexcept {
     using Shape = std::remove_cvref_t<decltype(*shape)>;
-    const Surface surface = surface_of(*shape, hit.primitive, local);
-    point.front = !(dot(surface.normal, local.toward) > 0);
-    point.normal = placement.rotation * (point.front ? surface.normal : -surface.normal);
-    point.material = &(*part.materials)[surface.material];
-    point.material_index = surface.material;
-    point.foliage = surface.foliage;
+    point = surface_of(*shape, hit.primitive, local);
+    point.front = !(dot(point.normal, local.toward) > 0);
+    point.normal = placement.rotation * (point.front ? point.normal : -point.normal);
     if constexpr (MadeOfTriangles<Shape>)
       point.weights = shape->triangle(hit.primitive).weights(local.origin, local.toward);
     if constexpr (Textured<Shape>) point.texture = shape->texture(hit.primitive, *point.weights);
   };
   visit_shape(look, part.geometry);
+  point.material = &(*part.materials)[point.material_index];
   point.classification = point.material->classification;
+  point.object = part.object;
+  point.part = hit.part;
+  point.primitive = hit.primitive;
+  point.position = ray.origin + hit.range * ray.direction;
   return point;
 }
 

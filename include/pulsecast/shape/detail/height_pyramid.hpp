@@ -52,7 +52,7 @@ struct PyramidLevel {
   [[nodiscard]] std::size_t node(std::uint32_t column, std::uint32_t row) const noexcept {
     return begin + (std::size_t{row} * columns + column) * 16;
   }
-  /// Index of a child's least height, by the child's column and row; the greatest is eight numbers on.
+  /// Index of a child's minimum height, by the child's column and row; the maximum is eight numbers on.
   [[nodiscard]] std::size_t of_child(std::uint32_t column, std::uint32_t row) const noexcept {
     const std::uint32_t w = wide(), tall = 3 - w;
     return node(column >> w, row >> tall) + (column & ((1U << w) - 1)) + ((row & ((1U << tall) - 1)) << w);

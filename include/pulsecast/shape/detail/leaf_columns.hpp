@@ -18,7 +18,7 @@ struct LeafColumn {
 };
 
 /// Columns of space of a leaf's area across the ray, along the axis that a ray is nearest to, in layers of a few
-/// leaves' width that are shifted against each other. Rays in the same column of a layer meet the same leaf.
+/// leaves' width that are shifted against each other. Rays in the same column of a layer hit the same leaf.
 class LeafColumns {
  public:
   /// Layer along a ray.

@@ -15,7 +15,7 @@ namespace PULSECAST_NAMESPACE {
 /// Conservative test of triangles against the line through a single ray, in a third of the operations of `intersect`,
 /// which decides about those that are left.
 ///
-/// The line is on one side of the three edges of a triangle that it meets. The side of an edge is the sign of a volume.
+/// The line is on one side of the three edges of a triangle that it hits. The side of an edge is the sign of a volume.
 /// One bound on the roundings, of this test and of `intersect`, holds for all triangles in the bounds. Infinite and
 /// tiny coordinates pass. Source: volume test of Amanatides & Choi 1997, with the edge-to-direction products of each
 /// corner shared by its two edges; bounds: Higham 2002, ch. 3.
@@ -39,7 +39,7 @@ class LineTest {
     if (!(doubt_ < huge)) doubt_ = std::numeric_limits<double>::infinity();
   }
 
-  /// Bit mask of the triangles that the line may meet, idle lanes included.
+  /// Bit mask of the triangles that the line may hit, idle lanes included.
   [[nodiscard, gnu::always_inline]] unsigned may_meet(const TrianglePacket& triangles) const noexcept {
     using Corner = TrianglePacket::Corner;
     const auto from_origin = [&](const Corner& p) noexcept -> Corner {

@@ -13,7 +13,7 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray
-/// that begins inside a cube meets its far side, or the cube that touches it there.
+/// that begins inside a cube hits its far side, or the cube that touches it there.
 template <class Columns, class Hits>
 class SolidMeeting {
  public:
@@ -51,7 +51,7 @@ class SolidMeeting {
   std::uint32_t around_ = 0;    ///< number of that cube
 };
 
-/// Normal of the face at which a ray meets a cube; that of the far side if the ray begins inside.
+/// Normal of the face at which a ray hits a cube; that of the far side if the ray begins inside.
 [[nodiscard]] inline Vec3 face_normal(const LatticeRay& ray, const LatticeRay::Passage& cube, double near) noexcept {
   const bool from_inside = cube.in.before({near, Crossing::begin});
   const int axis = from_inside ? cube.out.axis : cube.in.axis;

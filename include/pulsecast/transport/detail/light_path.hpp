@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
@@ -36,6 +37,14 @@ struct CoaxialRays {
   RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows, as mirrors move [m/s]
   unsigned passages = 0;                        ///< surfaces that passed the light on
   ReflectionKind kind = ReflectionKind::surface;
+};
+
+/// Surface that a ray hit, as far as light is followed from there.
+struct PathVertex {
+  const Material* material = nullptr;  ///< as in `SurfaceInteraction`, as all
+  Vec3 normal{};
+  bool foliage = false;
+  std::optional<Vec2> texture{};
 };
 
 /// Subray after it entered a body, with the derivatives of place and direction by the angles at the pulse's exit.

@@ -30,7 +30,7 @@ namespace PULSECAST_NAMESPACE::detail {
 struct PathLevel {
   CoaxialRays pencil;
   std::array<Hit, RayBundle::capacity> hits{};
-  std::array<HitSurface, RayBundle::capacity> surfaces{};
+  std::array<PathVertex, RayBundle::capacity> surfaces{};
   RayBundle::Column power{};
 };
 
@@ -56,19 +56,19 @@ struct PathWorkspace {
 };
 
 /// Follows the light of one pulse.
-template <bool with_velocity, OpticalTarget Map>
+template <bool with_velocity, SceneQueries Target>
 class PathTracer {
  public:
-  PathTracer(const Map& map, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
+  PathTracer(const Target& target, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
              std::span<Reflection> reflections, TransportResult& result) noexcept
-      : map_(map),
+      : target_(target),
         light_(light),
         share_min_(settings.share_min),
         w_(w),
         ledger_(light, reflections, result),
         media_(light, settings.air, settings.share_min, ledger_, w.in_air, w.in_water, w.returns),
-        bodies_(map, light, settings.share_min, settings.passages, ledger_, media_),
-        scattered_(map, light, settings.air, settings.scattering, ledger_) {}
+        bodies_(target, light, settings.share_min, settings.passages, ledger_, media_),
+        scattered_(target, light, settings.air, settings.scattering, ledger_) {}
 
   /// Follows all subrays.
   void trace() noexcept {
@@ -104,9 +104,12 @@ class PathTracer {
 
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
-    map_.closest(p.rays, hits, surfaces);
+    target_.closest(
+        p.rays, hits, [&met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+          std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
+        });
     if (level > 0) retrace_before_origin(level);
-    media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return map_.occluded(ray, range); });
+    media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return target_.occluded(ray, range); });
     received_power(light_, p.two_way_share.data(), p.rays.size, hits, power);
     if (level == 0 && !light_.record.empty())
       record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
@@ -122,7 +125,7 @@ class PathTracer {
                    hits[j].classification};
       power[j] *= aperture_fraction(light_.budget, *surfaces[j].material, at.range);
       PathState way{p.kind, p.sent[j]};
-      if constexpr (with_velocity) way.velocity = p.path_rate[j] + radial_velocity(map_, ray_of(p, j));
+      if constexpr (with_velocity) way.velocity = p.path_rate[j] + radial_velocity(target_, ray_of(p, j));
       ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
     }
     if (goes_on) pass_on(level);
@@ -142,9 +145,9 @@ class PathTracer {
       if (!(hits[j].range <= p.rays.begin[j])) continue;
       const Ray ray = ray_of(p, j);
       hits[j] = Hit{};
-      const auto hit = map_.closest_hit(ray);
+      const auto hit = target_.closest_hit(ray);
       if (!hit) continue;
-      const auto at = map_.surface(*hit, ray);
+      const auto at = target_.surface(*hit, ray);
       surfaces[j] = {at.material, at.normal, at.foliage, at.texture};
       hits[j] = {.range = hit->range, .object = at.object, .classification = at.classification};
       if (at.normal != Vec3{}) hits[j].cos_incidence = std::min(1.0, std::fabs(dot(at.normal, ray.direction)));
@@ -152,11 +155,11 @@ class PathTracer {
     }
   }
 
-  static bool refracts(const HitSurface& surface) noexcept {
+  static bool refracts(const PathVertex& surface) noexcept {
     return surface.material->smooth.passes_light() && !surface.material->smooth.keeps_pencils();
   }
 
-  double scattered_share(const HitSurface& surface, const Hit& hit) const noexcept {
+  double scattered_share(const PathVertex& surface, const Hit& hit) const noexcept {
     return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence, surface.texture);
   }
 
@@ -295,7 +298,7 @@ class PathTracer {
     const Vec3 off = to_exit - way * direction;
     if (!(way > p.rays.begin[k] && dot(off, off) < radius * radius)) return;
     Ray back{.origin = p.rays.origin, .direction = direction, .near = p.rays.begin[k], .tick = p.rays.tick};
-    if (map_.occluded(back, way)) return;
+    if (target_.occluded(back, way)) return;
     const Hit at{.range = (way + p.delay[k]) / 2, .cos_incidence = 1, .backscatter = 1};
     ledger_.reflect(at, light_.budget.power_captured(p.sent[k], way), {p.kind, p.sent[k], p.path_rate[k] / 2});
     p.sent[k] = p.two_way_share[k] = 0;
@@ -303,10 +306,8 @@ class PathTracer {
 
   /// Velocity of the surface that a ray meets [m/s].
   Vec3 velocity_at(const Ray& ray) const noexcept {
-    if constexpr (VelocityTarget<Map>) {
-      if (const auto hit = map_.closest_hit(ray)) return map_.surface(*hit, ray).velocity;
-    }
-    return Vec3{};
+    const auto hit = target_.closest_hit(ray);
+    return hit ? target_.surface(*hit, ray).velocity : Vec3{};
   }
 
   /// Follows a ray that meets a body by itself.
@@ -322,14 +323,14 @@ class PathTracer {
     bodies_.follow(path, true);
   }
 
-  const Map& map_;
+  const Target& target_;
   const TransportInput& light_;
   double share_min_;
   PathWorkspace& w_;
   LightLedger ledger_;
   MediaPassage media_;
-  RefractedPaths<with_velocity, Map> bodies_;
-  ScatteredPaths<Map> scattered_;
+  RefractedPaths<with_velocity, Target> bodies_;
+  ScatteredPaths<Target> scattered_;
   bool passed_on_ = false;
 };
 

@@ -17,23 +17,23 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows subrays one by one, from where they meet a body.
-template <bool with_velocity, OpticalTarget Map>
+template <bool with_velocity, SceneQueries Target>
 class RefractedPaths {
  public:
   /// `passages`: greatest number of surfaces that pass light on.
-  RefractedPaths(const Map& map, const TransportInput& light, double share_min, std::size_t passages,
+  RefractedPaths(const Target& target, const TransportInput& light, double share_min, std::size_t passages,
                  LightLedger& ledger, MediaPassage& media) noexcept
-      : map_(map), light_(light), share_min_(share_min), passages_(passages), ledger_(ledger), media_(media) {}
+      : target_(target), light_(light), share_min_(share_min), passages_(passages), ledger_(ledger), media_(media) {}
 
   /// Follows a path to its end. `passed_air`: the media up to the first surface are passed already.
   void follow(LightPath path, bool passed_air = false) noexcept {
     while (path.two_way_share >= share_min_ * path.sent && path.two_way_share > 0) {
-      const auto hit = map_.closest_hit(path.ray);
+      const auto hit = target_.closest_hit(path.ray);
       const double range = hit ? hit->range : infinity;
       if (!passed_air) media_.pass(path, range);
       passed_air = false;
       if (!hit) return ledger_.miss(path.sent, infinity);
-      const auto at = map_.surface(*hit, path.ray);
+      const auto at = target_.surface(*hit, path.ray);
       const Material& material = *at.material;
       path.advance(range, at.normal);
       const Face face = face_at(path, at);
@@ -142,7 +142,7 @@ class RefractedPaths {
     return true;
   }
 
-  const Map& map_;
+  const Target& target_;
   const TransportInput& light_;
   double share_min_;
   std::size_t passages_;

@@ -4,6 +4,7 @@
 #define PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include <pulsecast/base/simd.hpp>
@@ -62,15 +63,14 @@ inline void record_subrays(const TransportInput& light, std::size_t first, std::
   }
 }
 
-/// Velocity of the surface that a ray meets, along the ray [m/s].
-template <class Map>
-[[nodiscard]] double radial_velocity(const Map& map, const Ray& ray) noexcept {
-  static_assert(VelocityTarget<Map>,
-                "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and "
-                "surface(hit, ray), as Scene");
-  if constexpr (VelocityTarget<Map>) {
-    if (const auto hit = map.closest_hit(ray)) return dot(map.surface(*hit, ray).velocity, ray.direction);
-  }
+/// Velocity of the surface that a ray hits, along the ray [m/s].
+template <class Target>
+[[nodiscard]] double radial_velocity(const Target& target, const Ray& ray) noexcept {
+  static_assert(SceneQueries<Target>,
+                "the detector reads velocities, which this map does not give: it needs SceneQueries, as Scene");
+  if constexpr (SceneQueries<Target>)
+    if (const std::optional<RayHit> hit = target.closest_hit(ray))
+      return dot(target.surface(*hit, ray).velocity, ray.direction);
   return 0;
 }
 

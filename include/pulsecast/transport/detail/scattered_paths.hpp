@@ -27,16 +27,16 @@ namespace PULSECAST_NAMESPACE::detail {
 /// cosine of incidence says, so that they are by the cosine about its way back. Their mean is the phase function of a
 /// turbid medium of such leaves. Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine,
 /// from a uniform disk; leaves: Ross 1981.
-template <OpticalTarget Map>
+template <SceneQueries Target>
 class ScatteredPaths {
  public:
-  ScatteredPaths(const Map& map, const TransportInput& light, const Media& air, const MultipleScattering& settings,
-                 LightLedger& ledger) noexcept
-      : map_(map), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
+  ScatteredPaths(const Target& target, const TransportInput& light, const Media& air,
+                 const MultipleScattering& settings, LightLedger& ledger) noexcept
+      : target_(target), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
 
   /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all
   /// paths.
-  void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const HitSurface> surfaces) noexcept {
+  void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const PathVertex> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);
     for (std::size_t j = 0; j < p.rays.size; ++j) {
@@ -99,9 +99,9 @@ class ScatteredPaths {
       const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
       at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength, at.texture);
       if (!(at.share > 0)) return;
-      const auto hit = map_.closest_hit(ray);
+      const auto hit = target_.closest_hit(ray);
       if (!hit) return;
-      const auto next = map_.surface(*hit, ray);
+      const auto next = target_.surface(*hit, ray);
       at = {next.position,
             ray.direction,
             normal_at(next, ray.direction, any),
@@ -135,7 +135,7 @@ class ScatteredPaths {
     if (!(scattered > 0)) return;
     Ray ray{.origin = at.place, .direction = direction, .near = surface_epsilon, .tick = light_.pulse.tick};
     name(ray);
-    if (map_.occluded(ray, distance)) return;
+    if (target_.occluded(ray, distance)) return;
     const double both_ways = (at.way + distance) / 2;
     const double share = cosine * at.share * left(at.place, direction, distance);
     const double power = light_.budget.power_through(share, scattered, distance, both_ways);
@@ -169,7 +169,7 @@ class ScatteredPaths {
                      std::sqrt(std::max(0.0, 1 - u)) * normal);
   }
 
-  const Map& map_;
+  const Target& target_;
   const TransportInput& light_;
   const Media& air_;
   const MultipleScattering& settings_;

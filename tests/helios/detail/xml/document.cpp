@@ -124,11 +124,11 @@ TEST_CASE("all faults are told, each once, and no more than can be read") {
     CHECK(error.place() == "line 3, column 4");
     CHECK(error.problem() == "wrong");
   }
-  for (std::size_t i = 0; i < 2 * XmlReport::max_told; ++i) report.fault({"a.xml", i + 10, 1}, "wrong");
+  for (std::size_t i = 0; i < 2 * XmlReport::max_listed; ++i) report.fault({"a.xml", i + 10, 1}, "wrong");
   try {
     report.require_clean();
   } catch (const XmlFaults& faults) {
-    CHECK(faults.faults().size() == XmlReport::max_told);
+    CHECK(faults.faults().size() == XmlReport::max_listed);
     CHECK(contains(faults.what(), "\nand 900 more"));
   }
 }

@@ -62,8 +62,7 @@ std::string filter_told(const std::string& params, Source& source) {
 
 }  // namespace
 
-// -------------------------------------------------------------------------------------------------------------------
-// mounts, directions
+// ------------------------------------------------------------------------------ mounts, directions
 
 TEST_CASE("a mount has a position and turns in their order") {
   const MountSettings mount = from<MountSettings>(
@@ -99,8 +98,7 @@ TEST_CASE("a direction needs a length") {
   CHECK(v == axis::right);
 }
 
-// -----------------------------------------------------------------------------------------------------------------------------
-// scanners
+// ---------------------------------------------------------------------------------------- scanners
 
 TEST_CASE("a scanner that says nothing has the defaults of the format") {
   const ScannerSettings settings = from<ScannerSettings>(scanner("optics=\"oscillating\""));
@@ -179,8 +177,7 @@ TEST_CASE("a channel with other optics than its scanner begins anew") {
   CHECK(settings.channels[1].id == "1");
 }
 
-// ----------------------------------------------------------------------------------------------------------------------------
-// platforms
+// --------------------------------------------------------------------------------------- platforms
 
 TEST_CASE("a platform that says nothing has the defaults of the format") {
   CHECK(from<PlatformSettings>("<platform id=\"p\" type=\"MultiCopter\"/>") ==
@@ -213,8 +210,7 @@ TEST_CASE("of a platform, what cannot be is told") {
   CHECK(contains(told<PlatformSettings>("<platform type=\"static\"/>"), "has no attribute 'id'"));
 }
 
-// ---------------------------------------------------------------------------------------------------------------------------------
-// legs
+// -------------------------------------------------------------------------------------------- legs
 
 TEST_CASE("a leg that says nothing has the defaults of the format") {
   CHECK(from<LegPlatformSettings>("<platformSettings/>") == LegPlatformSettings{});
@@ -276,8 +272,7 @@ TEST_CASE("figures of a leg that make no sense are told") {
   CHECK(scanner == LegScannerSettings{});
 }
 
-// -------------------------------------------------------------------------------------------------------------------------------
-// scenes
+// ------------------------------------------------------------------------------------------ scenes
 
 TEST_CASE("a scene and a part that say little have the defaults of the format") {
   const SceneSettings scene = from<SceneSettings>("<scene id=\"s\"><part>" + std::string(mesh) + "</part></scene>");
@@ -387,8 +382,7 @@ TEST_CASE("a part's number counts parts without geometry") {
   CHECK(scene.parts[0].id == "1");
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// sources of parts
+// -------------------------------------------------------------------------------- sources of parts
 
 TEST_CASE("a cloud that says little has the defaults of the format") {
   XyzSource cloud;
@@ -509,8 +503,7 @@ TEST_CASE("voxels have a mode, a table and a material") {
       "from 0 to 100"));
 }
 
-// ------------------------------------------------------------------------------------------------------------------------------
-// motions
+// ----------------------------------------------------------------------------------------- motions
 
 TEST_CASE("every type of motion is read") {
   CHECK(from<MotionSettings>(R"(<motion type="identity"/>)") == MotionSettings{});

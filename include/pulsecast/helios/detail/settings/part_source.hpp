@@ -108,7 +108,7 @@ struct VoxelSource {
 
 /// Vertical axis of a mesh file: `up`.
 enum class MeshUp : std::uint8_t {
-  file,  ///< by the file, as of `io::read_mesh_file`
+  file,  ///< by the file, see `io::read_mesh_file`
   z,     ///< z
   y,     ///< y
 };

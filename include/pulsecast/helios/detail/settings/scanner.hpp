@@ -51,7 +51,7 @@ struct LineOptic {
 /// One rotating glass wedge.
 struct RisleyPrism {
   double angle = 0;             ///< wedge; inclined entry face if positive, else exit face. `angle1_deg`... [rad]
-  double rotor_frequency = 0;   ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
+  double rotation_rate = 0;     ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
   double refractive_index = 1;  ///< `refrIndex1`...
 
   bool operator==(const RisleyPrism&) const = default;
@@ -88,7 +88,7 @@ struct FullWaveformSettings {
 struct ErrorFormulas {
   std::string deflection{};        ///< error of the deflection, as a function of it [rad]; `expr` in THETA
   std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
-  double head_zero_threshold = 0;  ///< least distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
+  double head_zero_threshold = 0;  ///< minimum distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
   std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
   std::string range_noise{};       ///< factor of range noise, by the range [m]; `distanceMeasurementError` in t
 
@@ -102,11 +102,11 @@ struct ChannelSettings {
   std::string id{};                      ///< `id` of the channel; empty for the only channel
   OpticSettings optic{};                 ///< `optics` and its attributes
   double scan_angle_max = 0;             ///< half angle; `scanAngleMax_deg` [rad]
-  double scan_frequency_min = 0;         ///< `scanFreqMin_Hz` [Hz]
-  double scan_frequency_max = 0;         ///< 0: no limit; `scanFreqMax_Hz` [Hz]
+  double scan_rate_min = 0;              ///< `scanFreqMin_Hz` [Hz]
+  double scan_rate_max = 0;              ///< 0: no limit; `scanFreqMax_Hz` [Hz]
   MountSettings beam_origin{};           ///< rotation in the frame of the instrument; `<beamOrigin>`
   Vec3 head_axis = axis::up;             ///< non-zero, any length; `<headRotateAxis>`
-  double head_speed_max = 0;             ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
+  double head_rate_max = 0;              ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
   double divergence = 0.3e-3;            ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;            ///< full width at half maximum; `pulseLength_ns` [s]
   double average_power = 4;              ///< `averagePower_w` [W]
@@ -126,9 +126,9 @@ struct ChannelSettings {
 
   void validate() const {
     require_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
-    require_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
-    require_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
-    require_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
+    require_not_negative("scanFreqMin_Hz", scan_rate_min, "Hz");
+    require_not_negative("scanFreqMax_Hz", scan_rate_max, "Hz");
+    require_not_negative("headRotatePerSecMax_deg", degrees(head_rate_max), "deg/s");
     detail::require_at_least(0, "maxNOR", returns_max);
     waveform.validate();
   }

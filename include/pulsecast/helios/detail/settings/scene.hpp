@@ -21,7 +21,7 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Placement of geometry: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
+/// Placement of geometry: maps each vertex to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
 /// `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
@@ -107,7 +107,7 @@ struct SwapSettings {
   bool operator==(const SwapSettings&) const = default;
 };
 
-/// Named number that the points of a part are told: `<attribute>`, of this library.
+/// Named number of the points of a part: `<attribute>`, of this library.
 struct AttributeSettings {
   std::string name{};  ///< name of the column; `name`
   double value = 0;    ///< number; `value`
@@ -144,11 +144,11 @@ struct PartSettings {
   bool operator==(const PartSettings&) const = default;
 };
 
-/// Light that goes on from smooth surfaces: `<light>`, of this library. As `LightPaths`.
+/// Multi-bounce light from smooth surfaces: `<light>`, of this library. See `LightPaths`.
 struct LightSettings {
-  int passages = 8;             ///< greatest number of surfaces that pass light on; `passages`
-  double share_min = 1e-4;      ///< least share of a subray that is followed; `leastShare`
-  int orders = 1;               ///< greatest number of surfaces that scatter it; `orders`
+  int passages = 8;             ///< maximum number of mirrors and faces on a path; `passages`
+  double share_min = 1e-4;      ///< minimum share of a subray that is followed; `leastShare`
+  int orders = 1;               ///< maximum number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
   double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
 
@@ -226,7 +226,7 @@ struct MediumSettings {
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
     region(known_wavelength).validate();
   }
-  static constexpr double known_wavelength = 905e-9;  ///< for which all presets are known [m]
+  static constexpr double known_wavelength = 905e-9;  ///< for which all presets are defined [m]
 
   bool operator==(const MediumSettings&) const = default;
 };
@@ -248,7 +248,7 @@ struct SceneSettings {
     for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));
     return Media(std::move(regions));
   }
-  /// True if light goes on from its surfaces.
+  /// True if its surfaces reflect or transmit light further.
   [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
 
   void validate() const {

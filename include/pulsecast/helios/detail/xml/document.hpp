@@ -45,16 +45,16 @@ struct XmlFault {
 /// As a `FileError` it is about the first of them. `warnings` are those of the same documents.
 class XmlFaults : public FileError {
  public:
-  static constexpr std::size_t max_told = 100;  ///< faults in `what()`
+  static constexpr std::size_t max_listed = 100;  ///< faults in `what()`
 
   /// `faults` must not be empty.
   explicit XmlFaults(std::vector<XmlFault> faults, std::vector<std::string> warnings = {})
       : FileError(faults.front().place.path, place_in_words(faults.front().place), faults.front().problem),
         faults_(std::move(faults)),
         warnings_(std::move(warnings)) {
-    for (std::size_t i = 0; i < std::min(faults_.size(), max_told); ++i)
+    for (std::size_t i = 0; i < std::min(faults_.size(), max_listed); ++i)
       text_ += (i == 0 ? "" : "\n") + faults_[i].place.text() + ": " + faults_[i].problem;
-    if (faults_.size() > max_told) text_ += "\nand " + std::to_string(faults_.size() - max_told) + " more";
+    if (faults_.size() > max_listed) text_ += "\nand " + std::to_string(faults_.size() - max_listed) + " more";
   }
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
@@ -74,7 +74,7 @@ class XmlFaults : public FileError {
 /// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_told = 1000;  ///< limit of faults and of warnings; later ones are dropped
+  static constexpr std::size_t max_listed = 1000;  ///< limit of faults and of warnings; later ones are dropped
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -88,7 +88,7 @@ class XmlReport {
     if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
     if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
-    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not listed";
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_listed) + " are not listed";
   }
 
   /// Calls `read()` and turns its faults into warnings, for elements without use.
@@ -100,9 +100,9 @@ class XmlReport {
   }
 
   /// True if no more faults are kept, so that searching can stop.
-  [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_told; }
+  [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_listed; }
 
-  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_told; }
+  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_listed; }
 
   [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< number of faults
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }

@@ -101,7 +101,7 @@ class XmlInput {
     return std::nullopt;
   }
 
-  /// Reads a number; `low` and `high` are the least and greatest allowed, in the unit of the document.
+  /// Reads a number; `low` and `high` are its limits, in the unit of the document.
   template <class Number>
   void number(const char* name, Number& number, const XmlUnit& unit, double low, double high) {
     if (const auto text = value(name))

@@ -20,7 +20,7 @@ template <class Io, class Settings>
 using Of = std::conditional_t<Io::reads, Settings, const Settings>;
 
 inline constexpr double any = std::numeric_limits<double>::infinity();
-inline constexpr double max_coordinate = 1e9;  ///< greatest plausible coordinate [m]
+inline constexpr double max_coordinate = 1e9;  ///< maximum plausible coordinate [m]
 
 /// Attributes `x`, `y` and `z`.
 template <class Io>

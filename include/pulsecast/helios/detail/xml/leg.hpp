@@ -95,11 +95,11 @@ template <class Io>
 void fields(Io& io, Of<Io, LegScannerSettings>& scanner) {
   io.flag("active", scanner.active);
   io.number("pulseFreq_hz", scanner.pulse_rate, units::hertz, 0, 1e8);
-  io.number("scanFreq_hz", scanner.scan_frequency, units::hertz, 0, 1e6);
+  io.number("scanFreq_hz", scanner.scan_rate, units::hertz, 0, 1e6);
   io.number("scanAngle_deg", scanner.scan_angle, units::degree, 0, 180);
   io.number("verticalAngleMin_deg", scanner.vertical_angle_min, units::degree, -360, 360);
   io.number("verticalAngleMax_deg", scanner.vertical_angle_max, units::degree, -360, 360);
-  io.number("headRotatePerSec_deg", scanner.head_speed, units::degree, -1e6, 1e6);
+  io.number("headRotatePerSec_deg", scanner.head_rate, units::degree, -1e6, 1e6);
   io.number("headRotateStart_deg", scanner.head_start, units::degree, -1e8, 1e8);
   io.number("headRotateStop_deg", scanner.head_stop, units::degree, -1e8, 1e8);
   io.number("beamDivergence_rad", scanner.divergence, units::radian, 1e-9, 0.5);

@@ -103,23 +103,23 @@ class LegChecks {
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
     const auto limit = [&](const char* expected, const char* name, double frequency) {
       if (resolution == 0) {
-        io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected " + expected +
-                                    " the scanner's " + name + ", " + hertz(frequency));
+        io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_rate) + ": expected " + expected + " the scanner's " +
+                                    name + ", " + hertz(frequency));
         return;
       }
       io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " +
-                                             brief(s.scan_frequency) + " lines a second at " + hertz(pulse_rate) +
+                                             brief(s.scan_rate) + " lines a second at " + hertz(pulse_rate) +
                                              ": expected " + expected + ' ' +
-                                             brief(degrees(resolution) * frequency / s.scan_frequency) +
+                                             brief(degrees(resolution) * frequency / s.scan_rate) +
                                              ", for the scanner's " + name + " is " + hertz(frequency));
     };
-    if (detail::scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_frequency_min);
-    if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
-    if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
+    if (detail::scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
+    if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
+    if (s.scan_rate == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
-    if (s.scan_frequency >= pulse_rate)
+    if (s.scan_rate >= pulse_rate)
       io.fault("scanFreq_hz",
-               "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(pulse_rate));
+               "scanFreq_hz is " + hertz(s.scan_rate) + ": expected less than pulseFreq_hz, " + hertz(pulse_rate));
     const std::vector<double>& rates = survey_.scanner.pulse_rates;
     if (!rates.empty() && std::find(rates.begin(), rates.end(), pulse_rate) == rates.end())
       io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(pulse_rate) + " is not one of the scanner's pulse rates");
@@ -136,7 +136,7 @@ class LegChecks {
     }
     const auto [low, high, is_limited, is_cut] = detail::mirror_gate(device, *rotating, s);
     const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
-    if (s.scan_frequency > 0 && !(low < high))
+    if (s.scan_rate > 0 && !(low < high))
       io.fault("verticalAngleMin_deg", "no pulse is emitted between " + xml_number(units::degree.number(low)) +
                                            " and " + xml_number(units::degree.number(high)) +
                                            " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
@@ -156,12 +156,12 @@ class LegChecks {
       if (looks_like_degrees(angle))
         io.warn(name, std::string(name) + " is " + brief(degrees(angle)) + ", " + brief(angle / (2 * pi)) +
                           " turns of the head: given in degrees, not radians?");
-    if (s.head_speed != speed)
+    if (s.head_rate != speed)
       io.warn("headRotatePerSec_deg",
-              device.head_speed_max == 0
+              device.head_rate_max == 0
                   ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
                   : "headRotatePerSec_deg exceeds the scanner's maximum: it is limited to " +
-                        xml_number(units::degree.number(device.head_speed_max)));
+                        xml_number(units::degree.number(device.head_rate_max)));
     if (turns_away(s))
       io.fault("headRotateStop_deg",
                "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
@@ -169,7 +169,7 @@ class LegChecks {
     if (head_never_stops(device, settings))
       io.fault("headRotateStop_deg",
                "the leg never ends: the head does not turn" +
-                   std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
+                   std::string(device.head_rate_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
                    "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                    "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;

@@ -204,11 +204,11 @@ class LegReader {
       const auto rounded = [](double value, double limit) {
         return std::fabs(value - limit) < 1e-12 * limit ? limit : value;
       };
-      s.scan_frequency = rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max),
-                                 device->scan_frequency_max);
-      s.scan_frequency = rounded(s.scan_frequency, device->scan_frequency_min);
-      s.head_speed = rounded(scanner.horizontal_resolution * s.scan_frequency, device->head_speed_max);
-      if (!(s.scan_frequency <= 1e6 && s.head_speed <= radians(1e6)))
+      s.scan_rate =
+          rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max), device->scan_rate_max);
+      s.scan_rate = rounded(s.scan_rate, device->scan_rate_min);
+      s.head_rate = rounded(scanner.horizontal_resolution * s.scan_rate, device->head_rate_max);
+      if (!(s.scan_rate <= 1e6 && s.head_rate <= radians(1e6)))
         io.fault("verticalResolution_deg",
                  "these resolutions need a scan frequency or head speed out of range: expected finer ones");
     }

@@ -58,7 +58,7 @@ void fields(Io& io, Of<Io, RisleyOptic>& optic) {
   static constexpr std::array angles{"angle1_deg", "angle2_deg", "angle3_deg"};
   static constexpr std::array indices{"refrIndex1", "refrIndex2", "refrIndex3"};
   for (std::size_t i = 0; i < optic.prisms.size(); ++i) {
-    io.number(rates[i], optic.prisms[i].rotor_frequency, units::hertz, -1e5, 1e5);
+    io.number(rates[i], optic.prisms[i].rotation_rate, units::hertz, -1e5, 1e5);
     io.number(angles[i], optic.prisms[i].angle, units::degree, -89, 89);
     io.number(indices[i], optic.prisms[i].refractive_index, units::one, 0.1, 10);
   }
@@ -177,11 +177,11 @@ template <class Io>
 void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   fields(io, channel.optic);
   io.number("scanAngleMax_deg", channel.scan_angle_max, units::degree, 0, 180);
-  io.number("scanFreqMin_Hz", channel.scan_frequency_min, units::hertz, 0, 1e6);
-  io.number("scanFreqMax_Hz", channel.scan_frequency_max, units::hertz, 0, 1e6);
+  io.number("scanFreqMin_Hz", channel.scan_rate_min, units::hertz, 0, 1e6);
+  io.number("scanFreqMax_Hz", channel.scan_rate_max, units::hertz, 0, 1e6);
   io.child("beamOrigin", [&](auto& inner) { fields(inner, channel.beam_origin); });
   direction(io, "headRotateAxis", channel.head_axis);
-  io.number("headRotatePerSecMax_deg", channel.head_speed_max, units::degree, 0, 1e6);
+  io.number("headRotatePerSecMax_deg", channel.head_rate_max, units::degree, 0, 1e6);
   io.number("beamDivergence_rad", channel.divergence, units::radian, 1e-9, 0.5);
   io.number("pulseLength_ns", channel.pulse_length, units::nanosecond, 1e-3, 1e4);
   io.number("averagePower_w", channel.average_power, units::watt, 1e-12, 1e9);
@@ -207,7 +207,7 @@ template <class Io>
 void check(Io& io, Of<Io, ChannelSettings>& channel) {
   if (!(channel.range_min < channel.range_max))
     io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
-  if (channel.scan_frequency_max > 0 && channel.scan_frequency_max < channel.scan_frequency_min)
+  if (channel.scan_rate_max > 0 && channel.scan_rate_max < channel.scan_rate_min)
     io.fault("scanFreqMax_Hz", "scanFreqMax_Hz is below scanFreqMin_Hz");
   const auto* const rotating = std::get_if<RotatingOptic>(&channel.optic);
   if (!rotating && (!channel.errors.deflection.empty() || !channel.errors.head.empty())) {

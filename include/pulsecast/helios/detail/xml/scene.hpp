@@ -182,7 +182,7 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   valid(io, [&] { static_cast<void>(part.named_numbers()); });
   if constexpr (Io::reads) {
     io.without_effect({"kdtDynStep", "kdtDynTimeStep"},
-                      "has no effect: each pulse meets a part at its pose of that time");
+                      "has no effect: each pulse hits a part at its pose of that time");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;

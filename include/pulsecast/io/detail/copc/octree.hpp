@@ -67,7 +67,7 @@ inline constexpr unsigned copc_grid_bits =
     7;  ///< a node has 128 cells along each axis, with at most one point each unless it is a leaf
 inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Morton number
 
-/// Spreads the lowest 21 bits of a number: bit i goes to bit 3i.
+/// Spreads the lowest 21 bits of a number: bit i becomes bit 3i.
 [[nodiscard]] constexpr std::uint64_t copc_spread(std::uint64_t v) noexcept {
   v &= 0x1FFFFF;
   v = (v | v << 32) & 0x1F00000000FFFF;
@@ -77,7 +77,7 @@ inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Mort
   return (v | v << 2) & 0x1249249249249249;
 }
 
-/// Inverse of `copc_spread`: bit 3i goes to bit i.
+/// Inverse of `copc_spread`: bit 3i becomes bit i.
 [[nodiscard]] constexpr std::uint64_t copc_compact(std::uint64_t v) noexcept {
   v &= 0x1249249249249249;
   v = (v | v >> 2) & 0x10C30C30C30C30C3;

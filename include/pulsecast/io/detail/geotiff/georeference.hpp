@@ -48,15 +48,15 @@ inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< 
 /// EPSG code of the projected reference system, if any. Throws a `FileError` for another kind of system, or one in
 /// feet.
 [[nodiscard]] inline std::optional<std::uint16_t> projected_epsg(TiffFile& file) {
-  const std::uint16_t model = geo_key(file, geotiff::model_type, 1), told = geo_key(file, geotiff::linear_unit, 0);
-  const std::uint16_t unit = told == 0 ? geotiff::metre : told;
+  const std::uint16_t model = geo_key(file, geotiff::model_type, 1), given = geo_key(file, geotiff::linear_unit, 0);
+  const std::uint16_t unit = given == 0 ? geotiff::metre : given;
   if (model == 2) file.fail("is in degrees (a geographic reference system): expected a projected one, in metres");
   if (model == 3) file.fail("is in a geocentric reference system: expected a projected one, in metres");
   if (unit == geotiff::foot || unit == geotiff::us_foot) file.fail("has coordinates in feet: expected metres");
   if (unit != geotiff::metre)
     file.warn("the unit of its coordinates has the code " + std::to_string(unit) + "; metres are assumed");
   const std::uint16_t projected = geo_key(file, geotiff::projected, 0);
-  if (told == 0 && projected != 0 && las_utm(projected).empty())
+  if (given == 0 && projected != 0 && las_utm(projected).empty())
     file.warn("does not tell the unit of its coordinates, in the projected system " + std::to_string(projected) +
               "; metres are assumed");
   return projected != 0 && projected != geotiff::user_defined ? std::optional(projected) : std::nullopt;

@@ -79,8 +79,8 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
     file.fail("has depths, by its vertical system EPSG:" + std::to_string(system) +
               ": expected heights; with a vertical scale as a setting its numbers are heights");
   std::uint16_t unit = geo_key(file, geotiff::vertical_unit, 0);
-  const bool is_told = unit != 0 && unit != geotiff::user_defined;
-  if (!is_told) {
+  const bool is_given = unit != 0 && unit != geotiff::user_defined;
+  if (!is_given) {
     unit = is_in(geotiff::systems_in_feet)             ? geotiff::foot
            : is_in(geotiff::systems_in_us_feet)        ? geotiff::us_foot
            : system == geotiff::system_in_british_feet ? std::uint16_t{9095}
@@ -88,7 +88,7 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   }
   if (system != 0)
     file.warn("vertical system " + std::to_string(system) + ": " +
-              (is_told || unit != geotiff::metre ? "" : "metres are assumed; ") +
+              (is_given || unit != geotiff::metre ? "" : "metres are assumed; ") +
               "heights stay in it, and LAS files do not name it");
   for (const geotiff::LengthUnit& known : geotiff::length_units)
     if (known.code == unit) return known.metres;
@@ -105,8 +105,8 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   return 1;
 }
 
-/// Heights of a band, from 1, by all that a file tells. @throws FileError for a scale that is no number, or 0, and as
-/// `metres_by_keys`
+/// Heights of a band, counted from 1, by all tags of a file. @throws FileError for a scale that is no number, or 0, and
+/// as `metres_by_keys`
 [[nodiscard]] inline HeightScale height_scale(TiffFile& file, std::uint16_t band) {
   const auto text = file.tags<char>(geotiff::metadata);
   const std::string_view all(text.data(), text.size());

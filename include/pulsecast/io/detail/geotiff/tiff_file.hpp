@@ -62,8 +62,8 @@ class TiffFile {
     return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : otherwise;
   }
 
-  /// Values of an array tag; empty if missing or of another type. libtiff does not know these tags, and defines them as
-  /// it reads them; if GDAL or libgeotiff defined them, their counts may have another form.
+  /// Values of an array tag; empty if missing or of another type. libtiff defines these unknown tags while it reads
+  /// them; if GDAL or libgeotiff defined them, their counts may have another form.
   template <class Number>
   [[nodiscard]] std::span<const Number> tags(ttag_t number) const {
     constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE

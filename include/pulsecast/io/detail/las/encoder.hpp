@@ -167,7 +167,7 @@ class LasEncoder {
     return settings_.intensity == LasIntensity::amplitude && !settings_.intensity_full_scale;
   }
 
-  /// Sets the intensities of whole records from the amplitudes in their extra bytes, once the greatest is known.
+  /// Sets the intensities of whole records from the amplitudes in their extra bytes, once the maximum is known.
   void scale_intensities(std::span<std::byte> bytes) const noexcept {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       float level = 0;

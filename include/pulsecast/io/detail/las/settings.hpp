@@ -22,7 +22,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Extra value of each point, behind the standard ones.
+/// Extra value of each point, after the standard ones.
 struct LasExtra {
   std::string_view name, description;
   std::uint8_t type, size;  ///< type: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
@@ -35,7 +35,7 @@ inline constexpr std::array las_extras{
     LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
     LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
     LasExtra{"ObjectId", "number of the object met", 5, 4},
-    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless it is asked for
+    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless requested
 };
 
 // sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
@@ -69,7 +69,7 @@ enum class LasFormat : std::uint8_t {
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
-  amplitude,    ///< received power of the echo, as of most instruments
+  amplitude,    ///< received power of the echo, as most instruments report it
   /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface
   /// there, but for the air
   range_normalized,
@@ -102,10 +102,10 @@ struct LasSettings {
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
   std::optional<double> intensity_full_scale =
-      {};                             ///< value stored as the greatest intensity, 65535, and clipped above;
-                                      ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
-  double intensity_range = 1;         ///< range that intensities are normalized to [m]
-  double amplitude_reference = 1e-9;  ///< reference power of amplitudes in dB [W]
+      {};  ///< value stored as the maximum intensity, 65535, and clipped above; if empty, a reflectance of 1, or the
+           ///< maximum amplitude of the file [W]
+  double intensity_range = 1;                  ///< range that intensities are normalized to [m]
+  double amplitude_reference = 1e-9;           ///< reference power of amplitudes in dB [W]
   std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0, for equal bytes of equal surveys
 
   void validate() const {

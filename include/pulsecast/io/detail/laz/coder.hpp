@@ -112,7 +112,7 @@ class LazEncoder {
     narrow(unit * value, unit);
   }
 
-  /// Bytes of all symbols coded; bytes behind them do not matter.
+  /// Bytes of all coded symbols; bytes after them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
     const std::uint32_t gap =
         (0U - base_) & 0xFFFFFFU;  // the interval, at least 2^24 long, has a number that ends in 24 zeros

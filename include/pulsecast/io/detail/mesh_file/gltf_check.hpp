@@ -16,7 +16,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-/// What changes a mesh and is not read by assimp: extensions and numbers of glTF, strips of PLY.
+/// Features that change a mesh but are not read by assimp: extensions and numbers of glTF, strips of PLY.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Removes the first value from JSON text. Returns its text; empty if there is none. Source: RFC 8259.

@@ -48,7 +48,7 @@ class FolderSystem : public Assimp::IOSystem {
   /// First file that was refused, as it is outside; empty if there is none.
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
 
-  /// Files that the importer asked for, there or not.
+  /// Files that the importer requested, existing or not.
   [[nodiscard]] const std::set<std::string>& looked_for() const noexcept { return looked_for_; }
 
   bool Exists(const char* file) const override { return is_open_to(found(file)); }
@@ -64,8 +64,7 @@ class FolderSystem : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
 
  private:
-  /// Name as it is, or with its percent codes as what they stand for, if there is no such file. Source:
-  /// glTF 2.0, 3.6.1.1 (URIs).
+  /// Name as it is, or with its percent codes decoded, if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
   [[nodiscard]] std::string found(const char* file) const {
     looked_for_.insert(file);
     std::error_code ignored;

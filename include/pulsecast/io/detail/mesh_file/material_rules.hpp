@@ -38,7 +38,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055;
 }
 
-/// Material of what a file tells.
+/// Material from the properties of a file.
 class MaterialRules {
  public:
   explicit MaterialRules(bool reflectance_of_colour) : reflectance_of_colour_(reflectance_of_colour) {}
@@ -79,7 +79,7 @@ class MaterialRules {
     }
   }
 
-  /// Mirrors and bodies of glass, by the rules of MTL files. What is let through is not scattered.
+  /// Mirrors and bodies of glass, by the rules of MTL files. Transmitted light is not scattered.
   static void clear(const RawOptics& o, Material& made) {
     tinyobj::material_t light{};
     std::fill(std::begin(light.specular), std::end(light.specular), 0.0);

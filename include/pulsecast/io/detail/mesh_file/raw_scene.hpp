@@ -13,7 +13,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-/// Content of a mesh file as an importer has it, before materials and units: what a child process hands over.
+/// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Vector of single precision.
@@ -61,11 +61,11 @@ struct RawPicture {
 struct RawOptics {
   std::array<float, 3> colour{1, 1, 1};    ///< base colour, or diffuse colour
   std::array<float, 3> specular{0, 0, 0};  ///< specular colour of Phong's law
-  float shininess = -1;                    ///< its exponent; negative: not told
+  float shininess = -1;                    ///< its exponent; negative: none
   float opacity = 1;                       ///< of the base colour
-  float transmission = 0;                  ///< share of the light let through
-  float index = 0;                         ///< refractive index; 0: not told
-  float metallic = 0, roughness = -1;      ///< of glTF; negative: not told
+  float transmission = 0;                  ///< transmitted share of the light
+  float index = 0;                         ///< refractive index; 0: none
+  float metallic = 0, roughness = -1;      ///< of glTF; negative: none
   float cutoff = 0.5F;                     ///< opacity from which pixels are solid
   bool outlined = false;                   ///< true: holes by the opacity of the colour picture
   bool linear = false;                     ///< true: the colour is a linear share of light

@@ -16,7 +16,7 @@
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 
-/// What a child process has read, handed to its parent.
+/// Transfer of the data read by a child process to its parent.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Writes a picture to a `ChildOutput`, or reads it from a `ChildResult`.
@@ -81,7 +81,7 @@ void hand_over(Io& io, RawScene& scene) {
   return scene;
 }
 
-/// What an import, by a child process, finds in a file. It is told a function to call with the size of each other file
+/// Result of an import of a file in a child process. It takes a function to call with the size of each further file
 /// [byte].
 template <class Import>
 [[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits,

@@ -17,7 +17,7 @@
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/water_types.hpp>
 
-/// Keys of MTL files for light that goes on from a surface.
+/// Keys of MTL files for light reflected or transmitted specularly.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Numbers from the word `first` on, at most `most`; empty if one of them is none, or outside the limits.
@@ -34,12 +34,12 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return numbers;
 }
 
-/// True for a standard key of light that goes on.
+/// True for a standard key among them.
 [[nodiscard]] inline bool is_light_key(std::string_view key) {
   return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
 }
 
-/// What is expected of a key's words; null if they are right, or the key is another.
+/// Expected words of a key, for a message; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_of_light_key(std::string_view key,
                                                        const std::vector<std::string_view>& words) {
   const auto is = [&](std::string_view word) { return !words.empty() && words[0] == word; };

@@ -86,10 +86,10 @@ class StatementFile {
   bool begun_ = false;
 };
 
-/// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error knows its line.
+/// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error has its line.
 class StatementBuffer : public std::streambuf {
  public:
-  /// `text` of whole statements of a file, behind `lines_before` lines.
+  /// `text` of whole statements of a file, after `lines_before` lines.
   StatementBuffer(std::string path, std::string text, std::size_t lines_before)
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
@@ -155,7 +155,7 @@ class StatementBuffer : public std::streambuf {
     return traits_type::to_int_type(ready_.front());
   }
 
-  /// Joins lines continued by a backslash, which tinyobjloader does not know. False at the end of the text.
+  /// Joins lines continued by a backslash, which tinyobjloader does not support. False at the end of the text.
   bool take_statement() {
     joined_.clear();
     line_ = lines_ + 1;

@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Returns of a pulse that a sensor tells.
+/// Returns of a pulse that a sensor reports.
 enum class PacketReturns : std::uint8_t {
-  strongest,  ///< that of the greatest amplitude
+  strongest,  ///< that of the maximum amplitude
   last,       ///< the farthest
   dual        ///< two, of which one is the strongest
 };
@@ -60,8 +60,8 @@ struct PacketSource {
   return returns == PacketReturns::last ? echoes.back() : *strongest_but(nullptr, echoes);
 }
 
-/// Layout of a sensor's packets, each of so many firing sequences. `begin` writes what is known before any echo to a
-/// payload of zeros, and `write` the returns of one laser in one sequence of the packet.
+/// Layout of a sensor's packets, each of the same number of firing sequences. `begin` writes what is known before any
+/// echo to a payload of zeros, and `write` the returns of one laser in one sequence of the packet.
 template <class Format>
 concept PacketFormat = requires(const PacketSource& source, std::span<std::byte> payload, std::size_t number,
                                 PulseIndex first, std::span<const Echo> echoes) {

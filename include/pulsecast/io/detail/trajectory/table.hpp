@@ -23,7 +23,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as by `Waypoints`. A window
+/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as in `Waypoints`. A window
 /// that begins at a jump begins after it; one that ends there ends before it.
 struct TimeWindow {
   std::optional<double> start{};  ///< begin; by default the first pose [s]

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/scene/detail/ray_queries.hpp>
 
 #include <doctest/doctest.h>
 
@@ -70,7 +70,7 @@ bool in_order(const RayHit& a, const RayHit& b) {
 }
 
 std::shared_ptr<const PartMotion> any_motion(Generator& any) {
-  SteadyMotion m{.velocity = any.point(5), .axis = any.unit(), .rate = any.uniform(-2, 2)};
+  SteadyMotion m{.velocity = any.point(5), .axis = any.unit(), .angular_rate = any.uniform(-2, 2)};
   if (any.coin()) m.centre = any.point(10);
   return std::make_shared<const PartMotion>(m);
 }
@@ -163,7 +163,7 @@ struct Pair {
 
 static_assert(MadeOfTriangles<Mesh> && MadeOfTriangles<HeightField> && !MadeOfTriangles<VoxelGrid<>>);
 static_assert(Textured<Mesh> && !Textured<HeightField>);
-static_assert(sizeof(RayHit) == 16);
+static_assert(sizeof(RayHit) == 24);
 
 TEST_CASE("a hit names part, primitive and range, and its surface says all there is to know") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
@@ -382,7 +382,7 @@ TEST_CASE("the weights of a hit put its point together, and the texture follows 
 TEST_CASE("a moving surface has the velocity of its point") {
   const auto mesh = std::make_shared<const Mesh>(half_square());
   const auto turning =
-      std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .rate = pi / 2, .centre = Vec3{}});
+      std::make_shared<const PartMotion>(SteadyMotion{.velocity = {0, 0, 3}, .angular_rate = pi / 2, .centre = Vec3{}});
   const MovingScene<Mesh> scene(
       {{.geometry = mesh, .motion = turning}, {.geometry = mesh, .placement = {.translation = {0, 0, -9}}}}, {.to = 9});
   const Ray down{

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
+#define PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/scene/part.hpp>
+
+namespace PULSECAST_NAMESPACE::detail {
+
+/// Members of a surface that all its hits need, in the part's frame: less to set than a `SurfaceInteraction`.
+struct SurfaceSample {
+  Vec3 normal{};
+  const Material* material = nullptr;
+  std::uint32_t material_index = 0;
+  bool foliage = false;
+  bool uniform = false;  ///< same for every ray that hits the primitive
+  std::optional<Vec2> texture{};
+};
+
+/// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape sets only what is
+/// read.
+template <class Part>
+struct SurfaceSampler {
+  const Part& part;
+  PrimitiveIndex primitive;
+  const RayBundle& local;
+  std::size_t j;
+
+  template <class Shape>
+  [[gnu::always_inline]] SurfaceSample operator()(const std::shared_ptr<const Shape>& shape) const noexcept {
+    const SurfaceInteraction surface = shape->surface(primitive, local, j);
+    SurfaceSample found{.normal = surface.normal,
+                        .material = &(*part.materials)[surface.material_index],
+                        .material_index = surface.material_index,
+                        .foliage = surface.foliage,
+                        .uniform = UniformGeometry<Shape>};
+    if constexpr (Textured<Shape>)
+      if (found.material->reflectance_map) [[unlikely]] {
+        found.uniform = false;
+        found.texture = shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
+      }
+    return found;
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE::detail
+
+#endif
