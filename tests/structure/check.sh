@@ -82,7 +82,7 @@ found() {
 }
 rule 'GLM is named in base/vector.hpp only' found '<glm/|glm::' 'base/vector\.hpp'
 rule 'threads live in run.hpp, its reorder buffer and three headers of base/ only' found \
-     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|detail/reorder_buffer|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
+     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|detail/reorder_buffer|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/bind)\.hpp'
 rule 'files are for the rooms beside the core' found '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
 rule 'degrees and nanoseconds are for the rooms beside the core' found '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 rule 'the library never prints and never exits' found '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
@@ -205,7 +205,7 @@ unclaimed_includes() {
   for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
     name=${header#include/pulsecast/}
     name=${name%.hpp}
-    case " $claimed" in *" $name "*) continue ;; esac
+    case " $claimed" in *" $name "* | *" ${name%/*}/* "*) continue ;; esac
     case " $with_library" in *" ${name%%/*} "*) continue ;; esac
     without="$without $header"
   done

@@ -43,7 +43,7 @@ notices "$below" "$add #include <pulsecast/scanner/scanner.hpp>\" include/pulsec
 notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/detector/radiometry.hpp"
 notices "$below" "$add #include <pulsecast/io/las.hpp>\" include/pulsecast/run.hpp"
 notices "$below" "$add #include <pulsecast/page/page.hpp>\" include/pulsecast/mpi/run.hpp"
-notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/layout.hpp>\" include/pulsecast/mpi/las.hpp"
+notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/settings.hpp>\" include/pulsecast/mpi/las.hpp"
 notices "the README's table lists the public headers" 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
 notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"

@@ -169,8 +169,7 @@ class ArchiveWriter {
 
   OutputFile& file_;
   Digest digest_;
-  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t>
-      numbers_;  ///< numbers of shared objects, by address and type
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of shared objects, by address and type
 };
 
 /// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is
