@@ -75,14 +75,6 @@ struct TransportArguments : SurveyArguments<Source, Pattern, Map, Instrument> {
                 "Survey: the fourth argument must be a Transport for this map; of your own: static_assert(Transport<T, Map>)");
 };
 
-/// Optional members of the stages of a survey.
-template <class Pattern, class Instrument>
-struct SurveyMembers {
-  static constexpr bool checked =
-      RecordedConstantCheck<Pattern>::passed && RotatesConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
-      RunsWithoutReflectionsConstantCheck<Instrument>::passed && PreparesForLasersCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
-};
-
 }  // namespace pulsecast::detail
 
 #endif

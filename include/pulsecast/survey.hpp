@@ -53,7 +53,8 @@ struct ReceiverUnit {
 /// and from any number of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument, Transport<Map> Light = DirectLight>
 class Survey {
-  static_assert(detail::SkipsBlockedCheck<Source>::passed);
+  static_assert(detail::members_checked<Pattern, "RecordsSubrays", "RotatesPerPulse"> &&
+                detail::detector_checked<Instrument>);
   static_assert(!ReadsVelocity<Instrument> || TracesVelocity<Light, Map>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
                 "DirectLight has");
@@ -307,7 +308,6 @@ class Survey {
                   !unit.receiver.range_errors.none()};
   }
 
-  static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
   static constexpr bool recorded = RecordsSubrays<Pattern>;
 
   /// Pulse i with its beam turned about its axis.

@@ -3,23 +3,89 @@
 #ifndef PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 #define PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 
-/// Defines `detail::ModelCheck<T>` for a refinement concept `Model` of one optional member `name`. Its `passed`
-/// refuses, by a static assertion that quotes `form`, a type with an accessible member of that name in another form, or
-/// with a member under one of four near names that takes the arguments `call`. For constants `call` is empty. A member
-/// of a near name is allowed beside one of the right form.
-#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, near_1, near_2, near_3, near_4)                    \
-  namespace detail {                                                                                          \
-  template <class T>                                                                                          \
-  concept Model##OrAbsent =                                                                                   \
-      Model<T> || !(                                                                                          \
-                      requires { &T::name; } || requires(T & t) { t.name call; } ||                           \
-                      requires(T & t) { t.near_1 call; } || requires(T & t) { t.near_2 call; } ||             \
-                      requires(T & t) { t.near_3 call; } || requires(T & t) { t.near_4 call; });              \
-  template <class T>                                                                                          \
-  struct Model##Check {                                                                                       \
-    static_assert(Model##OrAbsent<T>, "an optional member has another name or form here; it must be: " form); \
-    static constexpr bool passed = true;                                                                      \
-  };                                                                                                          \
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+namespace detail {
+
+/// Name of a refinement as a template argument.
+struct RefinementName {
+  char text[32]{};
+  template <std::size_t size>
+  consteval RefinementName(const char (&name)[size]) {
+    std::copy_n(name, size, text);
   }
+};
+
+/// Checks of the optional member of a refinement, which `PULSECAST_OPTIONAL_MEMBER` defines.
+template <RefinementName name>
+struct OptionalMember {
+  static_assert(name.text[0] == 0, "pulsecast::refines: no refinement in refinements.hpp has this name");
+};
+
+}  // namespace detail
+
+/// Promise of a type to model refinements, by the names of their concepts: a public member
+/// `using refinements = pulsecast::refines<"Gated", "ForeseesOpening">;`. The absence of a promised member is an error.
+template <detail::RefinementName... names>
+struct refines {
+  /// True; refuses a type that breaks the promise.
+  template <class T>
+  static constexpr bool kept = (detail::OptionalMember<names>::template checked<T, true>() && ...);
+};
+
+namespace detail {
+
+template <class T>
+concept PromisesRefinements = requires {
+  typename T::refinements;
+};
+template <class T>
+inline constexpr bool promise_kept = true;
+template <PromisesRefinements T>
+inline constexpr bool promise_kept<T> = T::refinements::template kept<T>;
+
+/// True; refuses a type that breaks its promise, or has a member of one of the refinements in another form.
+template <class T, RefinementName... names>
+inline constexpr bool members_checked = promise_kept<T> && (OptionalMember<names>::template checked<T>() && ...);
+
+}  // namespace detail
+}  // namespace PULSECAST_NAMESPACE
+
+/// Defines the checks of a refinement, the concept `Model` of one optional member `name`. A type has the member if it
+/// is accessible, or callable with the arguments `call`, as one of several overloads is. A last argument `&& ...`
+/// excepts types `T` with a member of that name for another purpose. Other names are never looked at.
+#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                                     \
+  namespace detail {                                                                                                \
+  template <>                                                                                                       \
+  struct OptionalMember<#Model> {                                                                                   \
+    template <class T>                                                                                              \
+    static constexpr bool right =                                                                                   \
+        Model<T> || !(                                                                                              \
+                        requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);                    \
+    template <class T, bool promised = false>                                                                       \
+    static consteval bool checked() {                                                                               \
+      static_assert(Model<T> || !promised, "optional member '" #name                                                \
+                                           "' is promised by `refinements`, but is missing or has another form; it" \
+                                           " must be: " form);                                                      \
+      static_assert(right<T> || promised, "optional member '" #name "' has another form here; it must be: " form);  \
+      return true;                                                                                                  \
+    }                                                                                                               \
+  };                                                                                                                \
+  }
+
+/// As above, for a concept of a constant that is true. One that is false is allowed, and is as one that is absent.
+#define PULSECAST_OPTIONAL_CONSTANT(Model, name)                               \
+  PULSECAST_OPTIONAL_MEMBER(                                                   \
+      Model, "static constexpr bool " #name " = true", name, (), &&!requires { \
+        requires std::same_as<decltype(T::name), const bool>;                  \
+        typename std::bool_constant<T::name>;                                  \
+      })
 
 #endif

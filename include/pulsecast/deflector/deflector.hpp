@@ -22,8 +22,6 @@ template <class Moving, class Source>
 requires detail::Deflectable<Moving, Source>
 class Deflector {
   // clang-format on
-  static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
-  static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
   static_assert(Gated<Moving> || !ForeseesOpening<Moving>,
                 "Deflector: an optic with next_open(Tick) needs open(Tick), too");
   static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;

@@ -140,7 +140,6 @@ class AnalyticWaveform {
   }
 
  private:
-  static_assert(detail::MomentWidthMeasureCheck<Width>::passed);
   static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid

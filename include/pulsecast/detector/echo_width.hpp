@@ -62,7 +62,7 @@ static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
-  static_assert(detail::TruncatedWidthMeasureCheck<Width>::passed);
+  static_assert(detail::members_checked<Width, "MomentWidthMeasure", "TruncatedWidthMeasure">);
   if constexpr (TruncatedWidthMeasure<Width>)
     return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.min_share()));
   else

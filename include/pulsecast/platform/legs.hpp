@@ -29,8 +29,6 @@ struct Leg {
 /// overlap. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
-  static_assert(detail::DrawsByLegCheck<P>::passed);
-
  public:
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
   /// `SettingError`.

@@ -33,8 +33,6 @@ struct Mount {
 /// Pulse source of an instrument carried through the world. The lever arm turns with the body.
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
-  static_assert(detail::MeasuresBeamCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
-
  public:
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)

@@ -87,7 +87,7 @@ class TriangleMesh {
     if (!texture_.empty() && texture_.size() != size()) return false;
     if (!masks_.empty() && texture_.empty()) return false;
     if (material_count_ == 0 || !in_table(materials8_) || !in_table(materials_)) return false;
-    static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
+    static_assert(detail::members_checked<Index, "SelfCheckingAccelerator", "MissesCones">);
     if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
     return true;
   }
