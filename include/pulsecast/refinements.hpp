@@ -153,29 +153,19 @@ concept MissesCones = requires(const T target, const RayCone& cone) {
 PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const noexcept", misses_cone, (RayCone{}))
 
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
-template <class G>
-concept UniformGeometry = std::same_as<decltype(G::uniform_surface), const bool> && std::bool_constant<G::uniform_surface>::value;
 PULSECAST_OPTIONAL_CONSTANT(UniformGeometry, uniform_surface)
 
 /// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at random.
-template <class G>
-concept DeterministicGeometry = std::same_as<decltype(G::deterministic), const bool> && std::bool_constant<G::deterministic>::value;
 PULSECAST_OPTIONAL_CONSTANT(DeterministicGeometry, deterministic)
 
 /// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
-template <class G>
-concept TimeDependentGeometry = std::same_as<decltype(G::time_dependent), const bool> && std::bool_constant<G::time_dependent>::value;
 PULSECAST_OPTIONAL_CONSTANT(TimeDependentGeometry, time_dependent)
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
-template <class F>
-concept RecordsSubrays = std::same_as<decltype(F::recorded), const bool> && std::bool_constant<F::recorded>::value;
 PULSECAST_OPTIONAL_CONSTANT(RecordsSubrays, recorded)
 
 /// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as `TurnedFootprint`. The beams
 /// are round.
-template <class F>
-concept RotatesPerPulse = std::same_as<decltype(F::rotates_per_pulse), const bool> && std::bool_constant<F::rotates_per_pulse>::value;
 PULSECAST_OPTIONAL_CONSTANT(RotatesPerPulse, rotates_per_pulse)
 
 /// Detector that samples waveforms, every so many seconds [s].
@@ -193,13 +183,9 @@ concept PreparesForLasers = requires(D& detector, const Laser& laser) {
 PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepare, (std::declval<const Laser&>()))
 
 /// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
-template <class D>
-concept RunsWithoutReflections = std::same_as<decltype(D::runs_without_reflections), const bool> && std::bool_constant<D::runs_without_reflections>::value;
 PULSECAST_OPTIONAL_CONSTANT(RunsWithoutReflections, runs_without_reflections)
 
 /// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.
-template <class D>
-concept ReadsVelocity = std::same_as<decltype(D::reads_velocity), const bool> && std::bool_constant<D::reads_velocity>::value;
 PULSECAST_OPTIONAL_CONSTANT(ReadsVelocity, reads_velocity)
 
 struct WaveformMoments;

@@ -3,6 +3,8 @@
 #ifndef PULSECAST_STAGE_ARGUMENTS_HPP
 #define PULSECAST_STAGE_ARGUMENTS_HPP
 
+#include <concepts>
+#include <cstddef>
 #include <type_traits>
 
 #include <pulsecast/base/require.hpp>
@@ -53,7 +55,7 @@ template <class Path, class Source, bool mounted>
 struct PlatformArguments : MotionArgument<Path> {
   static_assert(!BeamSource<Source>,
                 "Platform{trajectory, mount, source}: a bare Scanner needs a deflector: Deflector{FixedBeam{}, scanner}");
-  static_assert(mounted, "Platform{trajectory, mount, source}: the mount is missing: Mount{}");
+  static_assert(mounted, "Platform{trajectory, mount, source}: the second argument must be a mount: Mount{}");
   static_assert(Trajectory<Path> && InstrumentSource<Source>,
                 "Platform{trajectory, mount, source} takes a Trajectory and a Deflector; of your own: static_assert(Trajectory<T>)");
   using First = Path;
@@ -71,8 +73,16 @@ struct SurveyArguments {
 
 template <class Source, class Pattern, class Map, class Light, class Instrument>
 struct TransportArguments : SurveyArguments<Source, Pattern, Map, Instrument> {
-  static_assert(Transport<Light, std::remove_cvref_t<Map>>,
-                "Survey: the fourth argument must be a Transport for this map; of your own: static_assert(Transport<T, Map>)");
+  static_assert(requires(const Light t, std::size_t n) { t.workspace(n); },
+                "Transport, Survey's fourth argument: 'workspace' is missing or has another form; it must be: "
+                "Workspace workspace(std::size_t) const");
+  static_assert(requires(const Light t, std::size_t n) { { t.reflections(n) } noexcept -> std::same_as<std::size_t>; },
+                "Transport, Survey's fourth argument: 'reflections' is missing or has another form; it must be: "
+                "std::size_t reflections(std::size_t) const noexcept");
+  static_assert(!std::copyable<Light> || Transport<Light, std::remove_cvref_t<Map>>,
+                "Transport, Survey's fourth argument: 'trace' is missing or has another form for this map; it must be: "
+                "TransportResult trace(const Map&, const TransportInput&, Workspace&, std::span<Reflection>) const noexcept");
+  static_assert(std::copyable<Light>, "Transport, Survey's fourth argument: it must be copyable");
 };
 
 }  // namespace pulsecast::detail

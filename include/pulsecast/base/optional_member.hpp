@@ -71,21 +71,23 @@ inline constexpr bool members_checked = promise_kept<T> && (OptionalMember<names
                         requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);                    \
     template <class T, bool promised = false>                                                                       \
     static consteval bool checked() {                                                                               \
-      static_assert(Model<T> || !promised, "optional member '" #name                                                \
-                                           "' is promised by `refinements`, but is missing or has another form; it" \
-                                           " must be: " form);                                                      \
-      static_assert(right<T> || promised, "optional member '" #name "' has another form here; it must be: " form);  \
+      static_assert(right<T>, "optional member '" #name "' has another form here; it must be: " form);              \
+      static_assert(Model<T> || !promised,                                                                          \
+                    "optional member '" #name "' is promised by `refinements`, but is missing; it must be: " form); \
       return true;                                                                                                  \
     }                                                                                                               \
   };                                                                                                                \
   }
 
-/// As above, for a concept of a constant that is true. One that is false is allowed, and is as one that is absent.
-#define PULSECAST_OPTIONAL_CONSTANT(Model, name)                               \
-  PULSECAST_OPTIONAL_MEMBER(                                                   \
-      Model, "static constexpr bool " #name " = true", name, (), &&!requires { \
-        requires std::same_as<decltype(T::name), const bool>;                  \
-        typename std::bool_constant<T::name>;                                  \
+/// Defines the concept `Model` of types with a constant `static constexpr bool name = true`, and its checks. A constant
+/// that is false is as one that is absent.
+#define PULSECAST_OPTIONAL_CONSTANT(Model, name)                                                     \
+  template <class T>                                                                                 \
+  concept Model = std::same_as<decltype(T::name), const bool> && std::bool_constant<T::name>::value; \
+  PULSECAST_OPTIONAL_MEMBER(                                                                         \
+      Model, "static constexpr bool " #name " = true", name, (), &&!requires {                       \
+        requires std::same_as<decltype(T::name), const bool>;                                        \
+        typename std::bool_constant<T::name>;                                                        \
       })
 
 #endif

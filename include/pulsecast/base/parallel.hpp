@@ -59,6 +59,22 @@ concept MemoryKeepingExecutor = Executor<E> && requires(E& e) {
   { e.memory() } -> std::same_as<ScratchMemory&>;
 };
 
+namespace detail {
+/// Names the mistake in a forwarded argument that is no executor, or a temporary one.
+template <class E>
+struct ExecutorArgument {
+  static_assert(
+      requires(E e) {
+        { e.threads() } -> std::convertible_to<unsigned>;
+      },
+      "Executor: 'threads' is missing or has another form; it must be: unsigned threads()");
+  static_assert(
+      requires(E e, std::size_t count, const IndexTask& task) { e.for_each(count, task); },
+      "Executor: 'for_each' is missing or has another form; it must be: void for_each(std::size_t, const IndexTask&)");
+  static_assert(std::is_lvalue_reference_v<E>, "Executor: a temporary; name it, as it must outlive the run");
+};
+}  // namespace detail
+
 /// Reference to an executor, or none. Refers to the executor, which must outlive it; temporaries are refused.
 class ExecutorRef {
  public:
@@ -67,6 +83,11 @@ class ExecutorRef {
   template <Executor E>
   requires(!std::same_as<std::remove_const_t<E>, ExecutorRef>) ExecutorRef(E& executor)
   noexcept : executor_(const_cast<std::remove_const_t<E>*>(&executor)), functions_(&functions<E>) {}
+
+  /// Names the mistake in the argument.
+  template <class E>
+  requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>) ExecutorRef(E&&)
+  noexcept { detail::ExecutorArgument<E>(); }
 
   /// False without an executor; the other functions then must not be called.
   explicit operator bool() const noexcept { return executor_ != nullptr; }
@@ -105,7 +126,7 @@ class Workers {
   Workers(unsigned threads = 0) noexcept : threads_(threads) {}
   /// The threads of an executor.
   template <class E>
-  requires std::constructible_from<ExecutorRef, E&> Workers(E& executor)
+  requires Executor<E> Workers(E& executor)
   noexcept : executor_(executor) {}
   /// Up to `threads` threads of an executor, 0 for all of its threads; without an executor as above.
   Workers(ExecutorRef executor, unsigned threads) noexcept : executor_(executor), threads_(threads) {}

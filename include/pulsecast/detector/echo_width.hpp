@@ -43,6 +43,7 @@ struct NoWidth {
 
 /// Width by the second central moment of the waveform.
 struct MomentWidth {
+  using refinements = refines<"MomentWidthMeasure">;
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
     WaveformMoments m;
     for (std::size_t i = 0; i < samples.size(); ++i) {

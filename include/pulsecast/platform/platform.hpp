@@ -3,6 +3,7 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -34,6 +35,7 @@ struct Mount {
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
+  using refinements = refines<"MakesLanes">;
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
       : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}
@@ -101,9 +103,10 @@ class Platform {
 template <class Path, class Source>
 Platform(Path, Source) -> Platform<typename detail::PlatformArguments<Path, Source, false>::First, Source>;
 /// As above.
-template <class Path, class Source>
-requires(!Trajectory<Path> || !InstrumentSource<Source>) Platform(Path, Mount, Source)
-->Platform<typename detail::PlatformArguments<Path, Source, true>::First, Source>;
+template <class Path, class Source, class Second = Mount>
+requires(!Trajectory<Path> || !std::convertible_to<Second, Mount> || !InstrumentSource<Source>)
+    Platform(Path, Second, Source)
+->Platform<typename detail::PlatformArguments<Path, Source, std::convertible_to<Second, Mount>>::First, Source>;
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -35,6 +35,7 @@ namespace PULSECAST_NAMESPACE {
 /// (bundles by interval arithmetic).
 class HeightField {
  public:
+  using refinements = refines<"UniformGeometry", "DeterministicGeometry", "SelfChecking">;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 

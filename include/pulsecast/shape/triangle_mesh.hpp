@@ -48,6 +48,7 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
+  using refinements = refines<"UniformGeometry", "DeterministicGeometry", "SelfChecking">;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
