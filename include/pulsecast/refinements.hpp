@@ -63,14 +63,10 @@ template <class C, class Result, class... Arguments>
 std::type_identity<C> declared_in(Result (C::*)(Arguments...) const noexcept);
 /// Source whose `pulse_lanes` goes with its `pulse`: not one that inherits both and replaces one.
 template <class S>
-concept LanesOfItsPulses = requires {
-  requires std::same_as<decltype(declared_in(&S::pulse)), decltype(declared_in(&S::pulse_lanes))>;
-};
+concept LanesOfItsPulses = std::same_as<decltype(declared_in(&S::pulse)), decltype(declared_in(&S::pulse_lanes))>;
 /// Motion whose `poses` goes with its `at`.
 template <class M>
-concept LanesOfItsPoses = requires {
-  requires std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
-};
+concept LanesOfItsPoses = std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
 /// `PoseLanes` of a motion.
 template <class M>
 using PosesOf = typename InLanes<decltype(std::declval<const M&>().at(Tick{}))>::type;
@@ -195,8 +191,9 @@ template <class W>
 concept MomentWidthMeasure = requires(const W w, const WaveformMoments& moments) {
   { w.width(moments) } noexcept -> std::same_as<double>;
 };
+// each `EchoWidth` has a `width` of samples, too
 PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width,
-                          (std::declval<const WaveformMoments&>()), && false)  // each `EchoWidth` has a `width`
+                          (std::declval<const WaveformMoments&>()), && false)
 
 /// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be sampled.
 template <class W>

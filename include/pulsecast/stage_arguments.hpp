@@ -29,18 +29,13 @@ template <class Source, class Pattern, class Map, class Instrument>
 concept Surveyable =
     WorldSource<Source> && Footprint<Pattern> && !Temporary<Map> && Target<std::remove_cvref_t<Map>> && Detector<Instrument>;
 
-template <class M>
-concept PosedAnyhow = requires(M m, Tick t) { m.at(t); };
-template <class M>
-concept PosedConst = !PosedAnyhow<M> || requires(const M m, Tick t) { m.at(t); };
-template <class M>
-concept PosedNoexcept = !PosedAnyhow<M> || requires(const M m, Tick t) { { m.at(t) } noexcept; };
-
 /// Own optic, head or trajectory.
 template <class M>
 struct MotionArgument {
-  static_assert(PosedConst<M>, "at(Tick) of an optic, head or trajectory must be const");
-  static_assert(!PosedConst<M> || PosedNoexcept<M>, "at(Tick) of an optic, head or trajectory must be noexcept");
+  static_assert(!requires(M m, Tick t) { m.at(t); } || requires(const M m, Tick t) { m.at(t); },
+                "at(Tick) of an optic, head or trajectory must be const");
+  static_assert(!requires(const M m, Tick t) { m.at(t); } || requires(const M m, Tick t) { { m.at(t) } noexcept; },
+                "at(Tick) of an optic, head or trajectory must be noexcept");
 };
 
 template <class Moving, class Source>

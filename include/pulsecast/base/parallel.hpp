@@ -59,22 +59,6 @@ concept MemoryKeepingExecutor = Executor<E> && requires(E& e) {
   { e.memory() } -> std::same_as<ScratchMemory&>;
 };
 
-namespace detail {
-/// Names the mistake in a forwarded argument that is no executor, or a temporary one.
-template <class E>
-struct ExecutorArgument {
-  static_assert(
-      requires(E e) {
-        { e.threads() } -> std::convertible_to<unsigned>;
-      },
-      "Executor: 'threads' is missing or has another form; it must be: unsigned threads()");
-  static_assert(
-      requires(E e, std::size_t count, const IndexTask& task) { e.for_each(count, task); },
-      "Executor: 'for_each' is missing or has another form; it must be: void for_each(std::size_t, const IndexTask&)");
-  static_assert(std::is_lvalue_reference_v<E>, "Executor: a temporary; name it, as it must outlive the run");
-};
-}  // namespace detail
-
 /// Reference to an executor, or none. Refers to the executor, which must outlive it; temporaries are refused.
 class ExecutorRef {
  public:
@@ -87,7 +71,16 @@ class ExecutorRef {
   /// Names the mistake in the argument.
   template <class E>
   requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>) ExecutorRef(E&&)
-  noexcept { detail::ExecutorArgument<E>(); }
+  noexcept {
+    // clang-format off
+    static_assert(requires(E e) { { e.threads() } -> std::convertible_to<unsigned>; },
+                  "Executor: 'threads' is missing or has another form; it must be: unsigned threads()");
+    static_assert(requires(E e, const IndexTask& task) { e.for_each(std::size_t{}, task); },
+                  "Executor: 'for_each' is missing or has another form; it must be: "
+                  "void for_each(std::size_t, const IndexTask&)");
+    // clang-format on
+    static_assert(std::is_lvalue_reference_v<E>, "Executor: a temporary; name it, as it must outlive the run");
+  }
 
   /// False without an executor; the other functions then must not be called.
   explicit operator bool() const noexcept { return executor_ != nullptr; }
