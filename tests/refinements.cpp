@@ -42,7 +42,7 @@ namespace {
   struct Model##_##name {          \
     __VA_ARGS__;                   \
   };                               \
-  static_assert(!pulsecast::detail::OptionalMember<#Model>::right<Model##_##name>)
+  static_assert(!pulsecast::tag::Model::right<Model##_##name>)
 
 MISSPELT(Validated, result, bool validate() const);
 MISSPELT(Validated, changing, void validate());
@@ -179,12 +179,12 @@ TEST_CASE("every stage passes over blocked slots, and over no other") {
 }
 
 TEST_CASE("a constant that is false is as one that is absent, and both pass the checks") {
-#define CHECK_CONSTANT(Model)                                          \
-  CHECK(Model<Constants<true>>);                                       \
-  CHECK_FALSE(Model<Constants<false>>);                                \
-  CHECK_FALSE(Model<LeastGeometry>);                                   \
-  CHECK(pulsecast::detail::members_checked<Constants<false>, #Model>); \
-  CHECK(pulsecast::detail::members_checked<LeastGeometry, #Model>)
+#define CHECK_CONSTANT(Model)                                              \
+  CHECK(Model<Constants<true>>);                                           \
+  CHECK_FALSE(Model<Constants<false>>);                                    \
+  CHECK_FALSE(Model<LeastGeometry>);                                       \
+  CHECK(pulsecast::detail::members_checked<Constants<false>, tag::Model>); \
+  CHECK(pulsecast::detail::members_checked<LeastGeometry, tag::Model>)
   CHECK_CONSTANT(UniformGeometry);
   CHECK_CONSTANT(DeterministicGeometry);
   CHECK_CONSTANT(TimeDependentGeometry);

@@ -15,7 +15,7 @@ namespace {
 
 /// Two thin prisms, one behind the other, each of which bends the beam by the same angle towards where it is turned.
 struct Rosette {
-  using refinements = refines<"Validated">;
+  using refinements = refines<tag::Validated>;
   double bend;           ///< by each prism [rad]
   double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
 

@@ -83,7 +83,7 @@ concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 /// or that replaces the `at` of one, is asked tick by tick.
 template <class M>
 simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked, detail::PosesOf<M>& poses) noexcept {
-  static_assert(detail::members_checked<M, "Gated", "ForeseesOpening", "MovesInLanes">);
+  static_assert(detail::members_checked<M, tag::Gated, tag::ForeseesOpening, tag::MovesInLanes>);
   if constexpr (MovesInLanes<M> && detail::LanesOfItsPoses<M>) {
     return asked & motion.poses(ticks, poses);
   } else {
@@ -101,7 +101,7 @@ simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked,
 /// the `pulse` of one that does.
 template <class S>
 [[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
-  static_assert(detail::members_checked<S, "MakesLanes", "FindsSlots", "SkipsBlocked", "DrawsByLeg", "MeasuresBeam">);
+  static_assert(detail::members_checked<S, tag::MakesLanes, tag::FindsSlots, tag::SkipsBlocked, tag::DrawsByLeg, tag::MeasuresBeam>);
   if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>) return source.pulse_lanes(i, count);
   detail::PulsesOf<S> one;
   one.push_back(source.pulse(i));
@@ -180,7 +180,7 @@ namespace detail {
 /// True only if a target that `MissesCones` says so of a cone of rays.
 template <Target Map>
 [[nodiscard]] bool misses_cone(const Map& map, const RayCone& cone) noexcept {
-  static_assert(members_checked<Map, "MissesCones">);
+  static_assert(members_checked<Map, tag::MissesCones>);
   if constexpr (MissesCones<Map>) return map.misses_cone(cone);
   return false;
 }

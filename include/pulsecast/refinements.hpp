@@ -23,7 +23,7 @@
 
 /// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses
 /// the member refuses one of another form by a static assertion. A model that states
-/// `using refinements = pulsecast::refines<"Gated", "ForeseesOpening">;` is refused without these members, too.
+/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;` is refused without these members, too.
 /// `Validated`, `ValidatesLaser` and `Normalizable`, for settings of all kinds, are in base/require.hpp.
 // clang-format off
 // version 14 breaks up compound requirements
@@ -214,7 +214,7 @@ concept SelfCheckingAccelerator = requires(const A& a, std::size_t primitives) {
   { a.is_consistent(primitives) } -> std::same_as<bool>;
 };
 
-PULSECAST_OPTIONAL_MEMBER(SelfChecking, "bool is_consistent() const", is_consistent, (), && !SelfCheckingAccelerator<T>)
+PULSECAST_OPTIONAL_MEMBER(SelfChecking, "bool is_consistent() const", is_consistent, (), && !pulsecast::SelfCheckingAccelerator<T>)
 PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}))
 
 /// Sink that says whether it reads shots that give nothing: no echo, waveform or recorded subray. They are left out of the batches if no
@@ -251,7 +251,8 @@ namespace detail {
 /// True; refuses a detector with an optional member in another form.
 template <class D>
 inline constexpr bool detector_checked =
-    members_checked<D, "ValidatesLaser", "PreparesForLasers", "SamplesWaveforms", "RunsWithoutReflections", "ReadsVelocity">;
+    members_checked<D, tag::ValidatesLaser, tag::PreparesForLasers, tag::SamplesWaveforms, tag::RunsWithoutReflections,
+                    tag::ReadsVelocity>;
 }  // namespace detail
 
 }  // namespace pulsecast

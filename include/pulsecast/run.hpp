@@ -240,7 +240,7 @@ class ReorderBuffer {
 /// True unless a sink says that it reads no empty shots.
 template <class Sink>
 [[nodiscard]] bool reads_empty_shots(const Sink& sink) noexcept {
-  static_assert(members_checked<Sink, "ChoosesShots">);
+  static_assert(members_checked<Sink, tag::ChoosesShots>);
   if constexpr (ChoosesShots<Sink>) return sink.reads_empty_shots();
   return true;
 }
@@ -287,7 +287,7 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
 /// after the sinks have got all pulses before it
 template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
-  static_assert(detail::members_checked<Survey, "SkipsBlocked", "SimulatesInOrder", "IdentifiedSurvey">);
+  static_assert(detail::members_checked<Survey, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>);
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
   const PulseIndex most =

@@ -53,7 +53,7 @@ struct ReceiverUnit {
 /// and from any number of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument, Transport<Map> Light = DirectLight>
 class Survey {
-  static_assert(detail::members_checked<Pattern, "RecordsSubrays", "RotatesPerPulse"> &&
+  static_assert(detail::members_checked<Pattern, tag::RecordsSubrays, tag::RotatesPerPulse> &&
                 detail::detector_checked<Instrument>);
   static_assert(!ReadsVelocity<Instrument> || TracesVelocity<Light, Map>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "

@@ -17,10 +17,8 @@ concept RingsAloud = requires(const T& t) {
   { t.ring() } -> std::same_as<int>;
 };
 PULSECAST_OPTIONAL_MEMBER(Rings, "int ring(int) const", ring, (1))
-PULSECAST_OPTIONAL_MEMBER(RingsAloud, "int ring() const", ring, (), &&!Rings<T>)
+PULSECAST_OPTIONAL_MEMBER(RingsAloud, "int ring() const", ring, (), &&!pulsecast::Rings<T>)
 
-template <class T>
-concept Loud = std::same_as<decltype(T::loud), const bool> && std::bool_constant<T::loud>::value;
 PULSECAST_OPTIONAL_CONSTANT(Loud, loud)
 
 namespace {
@@ -28,11 +26,11 @@ namespace {
 using detail::members_checked;
 using detail::promise_kept;
 template <class T>
-constexpr bool rings_right = detail::OptionalMember<"Rings">::right<T>;
+constexpr bool rings_right = tag::Rings::right<T>;
 template <class T>
-constexpr bool aloud_right = detail::OptionalMember<"RingsAloud">::right<T>;
+constexpr bool aloud_right = tag::RingsAloud::right<T>;
 template <class T>
-constexpr bool loud_right = detail::OptionalMember<"Loud">::right<T>;
+constexpr bool loud_right = tag::Loud::right<T>;
 
 struct Silent {
   void play() const {}
@@ -41,9 +39,9 @@ struct Bell {
   int ring(int times) const { return times; }
 };
 struct FinalBell final : Bell {};
-static_assert(members_checked<Silent, "Rings"> && members_checked<int, "Rings"> &&
-              members_checked<void (*)(int), "Rings">);
-static_assert(members_checked<Bell, "Rings"> && members_checked<FinalBell, "Rings">);
+static_assert(members_checked<Silent, tag::Rings> && members_checked<int, tag::Rings> &&
+              members_checked<void (*)(int), tag::Rings>);
+static_assert(members_checked<Bell, tag::Rings> && members_checked<FinalBell, tag::Rings>);
 
 struct OfAnotherResult {
   double ring(int) const { return 1; }
@@ -118,7 +116,7 @@ static_assert(!loud_right<Number> && !loud_right<Variable> && !loud_right<PerObj
 
 // Broken promises are in tests/compile_fail/misspelt_members.cpp.
 struct Promising : Bell, IsLoud {
-  using refinements = refines<"Rings", "Loud">;
+  using refinements = refines<tag::Rings, tag::Loud>;
 };
 struct PromisingNothing {
   using refinements = refines<>;

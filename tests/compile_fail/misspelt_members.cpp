@@ -1,31 +1,31 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-// error: 'open' has another form here; it must be: bool open.Tick. const noexcept
-// error: 'normalize' has another form here; it must be: void normalize.. noexcept
-// error: 'draw_for_leg' has another form here; it must be: void draw_for_leg.std::uint32_t.
-// error: 'recorded' has another form here; it must be: static constexpr bool recorded = true
-// error: 'sample_interval' has another form here; it must be: double sample_interval.. const noexcept
-// error: 'validate' has another form here; it must be: void validate.const Laser&. const
-// error: 'prepare' has another form here; it must be: void prepare.const Laser&.
-// error: 'reads_velocity' has another form here; it must be: static constexpr bool reads_velocity = true
-// error: 'measured' has another form here; it must be: std::optional<Pose<frame::Beam, frame::Instrument>>
-// measured.PulseIndex, Tick. const noexcept error: 'width' has another form here; it must be: double width.const
-// WaveformMoments&. const noexcept error: 'uniform_surface' has another form here; it must be: static constexpr bool
-// uniform_surface = true error: 'prefetch' has another form here; it must be: void prefetch.std::span<const
-// PrimitiveIndex>. const noexcept error: 'is_consistent' has another form here; it must be: bool
-// is_consistent.std::size_t. const error: 'identity' has another form here; it must be: std::shared_ptr<const void>
-// identity.. const noexcept error: 'misses_cone' has another form here; it must be: bool misses_cone.const RayCone&.
-// const noexcept error: 'is_consistent' has another form here; it must be: bool is_consistent.. const error:
-// 'next_open' is promised by `refinements`, but is missing; it must be: Tick next_open.Tick. const noexcept error:
-// 'validate' is promised by `refinements`, but is missing; it must be: void validate.. const error: 'slot_from' is
-// promised by `refinements`, but is missing; it must be: PulseIndex slot_from.Tick. const noexcept error:
-// 'rotates_per_pulse' is promised by `refinements`, but is missing; it must be: static constexpr bool rotates_per_pulse
-// = true error: 'runs_without_reflections' is promised by `refinements`, but is missing; it must be: static constexpr
-// bool runs_without_reflections = true error: 'min_share' is promised by `refinements`, but is missing; it must be:
-// double min_share.. const noexcept error: 'deterministic' is promised by `refinements`, but is missing; it must be:
-// static constexpr bool deterministic = true error: 'misses_cone' is promised by `refinements`, but is missing; it must
-// be: bool misses_cone.const RayCone&. const noexcept error: 'reads_empty_shots' is promised by `refinements`, but is
-// missing; it must be: bool reads_empty_shots.. const noexcept error: no refinement in refinements.hpp has this name
+// error: 'open' has another form here. it must be: bool open.Tick. const noexcept
+// error: 'normalize' has another form here. it must be: void normalize.. noexcept
+// error: 'draw_for_leg' has another form here. it must be: void draw_for_leg.std::uint32_t.
+// error: 'recorded' has another form here. it must be: static constexpr bool recorded = true
+// error: 'sample_interval' has another form here. it must be: double sample_interval.. const noexcept
+// error: 'validate' has another form here. it must be: void validate.const Laser&. const
+// error: 'prepare' has another form here. it must be: void prepare.const Laser&.
+// error: 'reads_velocity' has another form here. it must be: static constexpr bool reads_velocity = true
+// error: 'measured' has another form here. .*: std::optional<Pose<.*>> measured.PulseIndex, Tick. const noexcept
+// error: 'width' has another form here. it must be: double width.const WaveformMoments&. const noexcept
+// error: 'uniform_surface' has another form here. it must be: static constexpr bool uniform_surface = true
+// error: 'prefetch' has another form here. it must be: void prefetch.std::span<const PrimitiveIndex>. const noexcept
+// error: 'is_consistent' has another form here. it must be: bool is_consistent.std::size_t. const
+// error: 'identity' has another form here. it must be: std::shared_ptr<const void> identity.. const noexcept
+// error: 'misses_cone' has another form here. it must be: bool misses_cone.const RayCone&. const noexcept
+// error: 'is_consistent' has another form here. it must be: bool is_consistent.. const
+// error: 'next_open' is promised .* is missing. it must be: Tick next_open.Tick. const noexcept
+// error: 'validate' is promised .* is missing. it must be: void validate.. const
+// error: 'slot_from' is promised .* is missing. it must be: PulseIndex slot_from.Tick. const noexcept
+// error: 'rotates_per_pulse' is promised .* is missing. it must be: static constexpr bool rotates_per_pulse = true
+// error: 'runs_without_reflections' is promised .* missing. .*: static constexpr bool runs_without_reflections = true
+// error: 'min_share' is promised .* is missing. it must be: double min_share.. const noexcept
+// error: 'deterministic' is promised .* is missing. it must be: static constexpr bool deterministic = true
+// error: 'misses_cone' is promised .* is missing. it must be: bool misses_cone.const RayCone&. const noexcept
+// error: 'reads_empty_shots' is promised .* is missing. it must be: bool reads_empty_shots.. const noexcept
+// error: 'Validating' is not a member of 'pulsecast::.*tag'|no member named 'Validating' in namespace 'pulsecast::tag'
 //
 // Each stage checks the optional members that it uses, and the promises of its parts. tests/refinements.cpp has a wrong
 // form of each member.
@@ -56,7 +56,7 @@ struct OwnOptic : LeastOptic {
   bool open(Tick) const NAME(noexcept, ) { return true; }
 };
 struct OwnMirror : LeastOptic {
-  using refinements = refines<"Gated", "ForeseesOpening", "Validated">;
+  using refinements = refines<tag::Gated, tag::ForeseesOpening, tag::Validated>;
   bool open(Tick) const noexcept { return true; }
   Tick NAME(next_open, next_opening)(Tick t) const noexcept { return t; }
   void NAME(validate, check)() const {}
@@ -65,7 +65,7 @@ struct OwnTrajectory : LeastTrajectory {
   void normalize() NAME(noexcept, ) {}
 };
 struct OwnLaser : LeastSource<frame::Beam> {
-  using refinements = refines<"FindsSlots">;
+  using refinements = refines<tag::FindsSlots>;
   PulseIndex NAME(slot_from, slot_at)(Tick) const noexcept { return 0; }
 };
 struct OwnSource : LeastSource<frame::World> {
@@ -79,7 +79,7 @@ struct OwnFootprint : LeastFootprint {
   static constexpr NAME(bool, int) recorded = true;
 };
 struct TurningFootprint : LeastFootprint {
-  using refinements = refines<"RotatesPerPulse">;
+  using refinements = refines<tag::RotatesPerPulse>;
   static constexpr bool NAME(rotates_per_pulse, turned_per_pulse) = true;
 };
 struct OwnDetector : LeastDetector {
@@ -88,18 +88,18 @@ struct OwnDetector : LeastDetector {
   NAME(void, bool) prepare(const Laser&) { return NAME(, true); }
 };
 struct ListeningDetector : LeastDetector {
-  using refinements = refines<"RunsWithoutReflections">;
+  using refinements = refines<tag::RunsWithoutReflections>;
   static constexpr bool NAME(runs_without_reflections, always_listens) = true;
   static constexpr NAME(bool, int) reads_velocity = NAME(false, 1);
 };
 struct OwnWidth {
-  using refinements = refines<"TruncatedWidthMeasure">;
+  using refinements = refines<tag::TruncatedWidthMeasure>;
   double width(std::span<const double>, double) const noexcept { return 1; }
   double width(const WaveformMoments&) const NAME(noexcept, ) { return 1; }
   double NAME(min_share, share_min)() const noexcept { return 0.5; }
 };
 struct OwnShape : LeastGeometry {
-  using refinements = refines<"DeterministicGeometry">;
+  using refinements = refines<tag::DeterministicGeometry>;
   static constexpr bool deterministic = NAME(true, false);
   static constexpr NAME(bool, int) uniform_surface = true;
 };
@@ -115,7 +115,7 @@ struct OwnIndex : LeastAccelerator {
   bool is_consistent(NAME(std::size_t, )) const { return true; }
 };
 struct OwnMap : LeastRayTarget {
-  using refinements = refines<"MissesCones">;
+  using refinements = refines<tag::MissesCones>;
   bool NAME(misses_cone, misses)(const RayCone&) const noexcept { return false; }
 };
 struct OwnSurvey : Survey<LeastSource<frame::World>, LeastFootprint, LeastRayTarget, LeastDetector> {
@@ -123,7 +123,7 @@ struct OwnSurvey : Survey<LeastSource<frame::World>, LeastFootprint, LeastRayTar
   std::shared_ptr<const void> identity() const NAME(noexcept, ) { return nullptr; }
 };
 struct OwnSink : LeastSink {
-  using refinements = refines<"ChoosesShots">;
+  using refinements = refines<tag::ChoosesShots>;
   bool NAME(reads_empty_shots, reads_misses)() const noexcept { return false; }
 };
 struct OwnTable {
@@ -132,7 +132,7 @@ struct OwnTable {
   bool is_consistent() NAME(const, ) { return true; }
 };
 struct OwnSettings {
-  using refinements = refines<NAME("Validated", "Validating")>;
+  using refinements = refines<NAME(tag::Validated, tag::Validating)>;
   void validate() const {}
 };
 

@@ -5,10 +5,10 @@
 // mistake 3: a sink must be callable with one batch
 // mistake 4: a bare Scanner needs a deflector
 // mistake 5: the map is a temporary
-// mistake 6: optional member 'open' has another form here; it must be: bool open.Tick. const noexcept
+// mistake 6: optional member 'open' has another form here. it must be: bool open.Tick. const noexcept
 // mistake 7: Executor: 'threads' is missing or has another form
 // mistake 8: Executor: 'for_each' is missing or has another form
-// mistake 9: Executor: a temporary; name it
+// mistake 9: Executor: a temporary. name it
 // mistake 10: Platform.trajectory, mount, source.: the second argument must be a mount
 // mistake 11: Platform.trajectory, mount, source.: the second argument must be a mount
 // mistake 12: Transport, Survey's fourth argument: 'workspace' is missing
@@ -61,7 +61,7 @@ struct OwnOptic {
   bool open(Tick) const noexcept { return true; }
 #endif
 #if MISTAKE == 15
-  using refinements = refines<"Gated", "ForeseesOpening">;
+  using refinements = refines<tag::Gated, tag::ForeseesOpening>;
   Tick next_opening(Tick t) const noexcept { return t; }
 #endif
 };

@@ -3,41 +3,21 @@
 #ifndef PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 #define PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 
-#include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <type_traits>
 
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
-
-/// Name of a refinement as a template argument.
-struct RefinementName {
-  char text[32]{};
-  template <std::size_t size>
-  consteval RefinementName(const char (&name)[size]) {
-    std::copy_n(name, size, text);
-  }
-};
-
-/// Checks of the optional member of a refinement, which `PULSECAST_OPTIONAL_MEMBER` defines.
-template <RefinementName name>
-struct OptionalMember {
-  static_assert(name.text[0] == 0, "pulsecast::refines: no refinement in refinements.hpp has this name");
-};
-
-}  // namespace detail
-
-/// Promise of a type to model refinements, by the names of their concepts: a public member
-/// `using refinements = pulsecast::refines<"Gated", "ForeseesOpening">;`. The absence of a promised member is an error.
-template <detail::RefinementName... names>
+/// Promise of a type to model refinements, by a tag of the name of each concept: a public member
+/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. The absence of a promised member is an
+/// error.
+template <class... Tags>
 struct refines {
   /// True; refuses a type that breaks the promise.
   template <class T>
-  static constexpr bool kept = (detail::OptionalMember<names>::template checked<T, true>() && ...);
+  static constexpr bool kept = (Tags::template checked<T, true>() && ...);
 };
 
 namespace detail {
@@ -52,27 +32,26 @@ template <PromisesRefinements T>
 inline constexpr bool promise_kept<T> = T::refinements::template kept<T>;
 
 /// True; refuses a type that breaks its promise, or has a member of one of the refinements in another form.
-template <class T, RefinementName... names>
-inline constexpr bool members_checked = promise_kept<T> && (OptionalMember<names>::template checked<T>() && ...);
+template <class T, class... Tags>
+inline constexpr bool members_checked = promise_kept<T> && (Tags::template checked<T>() && ...);
 
 }  // namespace detail
 }  // namespace PULSECAST_NAMESPACE
 
-/// Defines the checks of a refinement, the concept `Model` of one optional member `name`. A type has the member if it
-/// is accessible, or callable with the arguments `call`, as one of several overloads is. A last argument `&& ...`
-/// excepts types `T` with a member of that name for another purpose. Other names are never looked at.
+/// Defines the tag of a refinement, the concept `Model` of one optional member `name`, with its checks. A type has the
+/// member if it is accessible, or callable with the arguments `call`, as one of several overloads is. A last argument
+/// `&& ...` excepts types `T` with a member of that name for another purpose. Other names are never looked at.
 #define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                                     \
-  namespace detail {                                                                                                \
-  template <>                                                                                                       \
-  struct OptionalMember<#Model> {                                                                                   \
+  namespace tag {                                                                                                   \
+  struct Model {                                                                                                    \
     template <class T>                                                                                              \
     static constexpr bool right =                                                                                   \
-        Model<T> || !(                                                                                              \
-                        requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);                    \
+        pulsecast::Model<T> || !(                                                                                   \
+                                   requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);         \
     template <class T, bool promised = false>                                                                       \
     static consteval bool checked() {                                                                               \
       static_assert(right<T>, "optional member '" #name "' has another form here; it must be: " form);              \
-      static_assert(Model<T> || !promised,                                                                          \
+      static_assert(pulsecast::Model<T> || !promised,                                                               \
                     "optional member '" #name "' is promised by `refinements`, but is missing; it must be: " form); \
       return true;                                                                                                  \
     }                                                                                                               \

@@ -92,15 +92,15 @@ concept Normalizable = requires(Settings& settings) {
   noexcept->std::same_as<void>;
 };
 
-PULSECAST_OPTIONAL_MEMBER(Validated, "void validate() const", validate, (), &&!ValidatesLaser<T>)
+PULSECAST_OPTIONAL_MEMBER(Validated, "void validate() const", validate, (), &&!pulsecast::ValidatesLaser<T>)
 PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate, (std::declval<const Laser&>()),
-                          &&!Validated<T>)
+                          &&!pulsecast::Validated<T>)
 PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, ())
 
 /// Validates settings in place, and normalizes them. Throws a `SettingError`.
 template <class Settings>
 void validate_in_place(Settings& settings) {
-  static_assert(detail::members_checked<Settings, "Validated", "Normalizable">);
+  static_assert(detail::members_checked<Settings, tag::Validated, tag::Normalizable>);
   if constexpr (Validated<Settings>) settings.validate();
   if constexpr (Normalizable<Settings>) settings.normalize();
 }

@@ -27,7 +27,7 @@ class Deflector {
   static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;
 
  public:
-  using refinements = refines<"MakesLanes">;
+  using refinements = refines<tag::MakesLanes>;
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source)
       : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}

@@ -45,7 +45,7 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
-  using refinements = refines<"SamplesWaveforms", "ValidatesLaser">;
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
   /// @throws SettingError for settings out of range, a prominence, or a timing that is read from samples
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {

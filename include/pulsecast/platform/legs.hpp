@@ -30,7 +30,7 @@ struct Leg {
 template <WorldSource P>
 class Legs {
  public:
-  using refinements = refines<"MakesLanes">;
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
   /// `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {

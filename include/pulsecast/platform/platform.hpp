@@ -35,7 +35,7 @@ struct Mount {
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
-  using refinements = refines<"MakesLanes">;
+  using refinements = refines<tag::MakesLanes>;
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
       : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}

@@ -11,7 +11,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Static trajectory, level.
 struct Tripod {
-  using refinements = refines<"MovesInLanes", "Validated">;
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 position{};     ///< foot of the tripod, in the world [m]
   double heading = 0;  ///< compass heading, clockwise from north [rad]
 

@@ -28,7 +28,7 @@ concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<
 template <detail::SourceInSomeFrame Source>
 class Channels {
  public:
-  using refinements = refines<"MakesLanes">;
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a
   /// `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {

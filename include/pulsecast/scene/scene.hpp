@@ -34,8 +34,8 @@ namespace PULSECAST_NAMESPACE {
 /// between repetitions of a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::members_checked<Shapes, "UniformGeometry", "DeterministicGeometry", "TimeDependentGeometry",
-                                         "MissesCones"> &&
+  static_assert((detail::members_checked<Shapes, tag::UniformGeometry, tag::DeterministicGeometry,
+                                         tag::TimeDependentGeometry, tag::MissesCones> &&
                  ...));
 
  public:

@@ -288,7 +288,7 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    static_assert(pulsecast::detail::members_checked<T, "SelfChecking", "Validated">);
+    static_assert(pulsecast::detail::members_checked<T, tag::SelfChecking, tag::Validated>);
     if constexpr (SelfChecking<T>) require(object.is_consistent());
     if constexpr (Validated<T>) object.validate();
   }
