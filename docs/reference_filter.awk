@@ -5,7 +5,7 @@
 # - Functions that a concept or convention explains once for all of its models are given that explanation.
 # - A unit literal is named by its unit.
 # - Links of the README to other files, which the reference does not have, become their text.
-# - Checks of optional members, which a macro defines, are left out.
+# - Checks and promises of optional members are left out; concepts of constants, which a macro defines, are written out.
 # - A comment after several variables of one declaration is given to each of them.
 BEGIN {
   says["validate"] = "Refuses settings outside of their limits. Errors: `SettingError`."
@@ -55,6 +55,11 @@ FILENAME ~ /\.md$/ {
   next
 }
 /^PULSECAST_OPTIONAL_MEMBER\(/ { hidden = 1 }
+/^PULSECAST_OPTIONAL_CONSTANT\(/ {
+  gsub(/.*\(|[,)]/, "")
+  $0 = "template <class T> concept " $1 " = T::" $2 ";"
+}
+/^ +using refinements = / { $0 = "" }
 hidden {
   if (/\)$/) hidden = 0
   print ""

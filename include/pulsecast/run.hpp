@@ -79,7 +79,6 @@ struct WorkspaceMemory : ScratchItem {
 
  private:
   static std::shared_ptr<const void> identity_of(const Survey& survey) noexcept {
-    static_assert(detail::IdentifiedSurveyCheck<Survey>::passed);
     if constexpr (IdentifiedSurvey<Survey>)
       return survey.identity();
     else
@@ -90,7 +89,7 @@ struct WorkspaceMemory : ScratchItem {
 /// True unless a sink says that it reads no empty shots.
 template <class Sink>
 [[nodiscard]] bool reads_empty_shots(const Sink& sink) noexcept {
-  static_assert(ChoosesShotsCheck<Sink>::passed);
+  static_assert(members_checked<Sink, tag::ChoosesShots>);
   if constexpr (ChoosesShots<Sink>) return sink.reads_empty_shots();
   return true;
 }
@@ -100,7 +99,6 @@ template <class Sink>
 template <class Survey, class Workspace>
 void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace,
               bool empty_shots, ResultChunk& chunk) {
-  static_assert(SkipsBlockedCheck<Survey>::passed && SimulatesInOrderCheck<Survey>::passed);
   const auto add = [&](const Outcome& outcome) {  // returns the next slot
     chunk.add(outcome, empty_shots);
     n = chunk.error == PulseError::none ? n + 1 : end;
@@ -138,6 +136,7 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
 /// after the sinks have got all pulses before it
 template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
+  static_assert(detail::members_checked<Survey, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>);
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
   const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // few in a short run

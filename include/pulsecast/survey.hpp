@@ -36,7 +36,8 @@ struct ReceiverUnit {
 template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector,
           Transport<Target> Transport = DirectLight>
 class Survey {
-  static_assert(detail::SkipsBlockedCheck<Source>::passed);
+  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
+                detail::detector_checked<Detector>);
   static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
                 "DirectLight has");
@@ -279,7 +280,6 @@ class Survey {
                   !unit.receiver.range_errors.none()};
   }
 
-  static_assert(detail::SurveyMembers<Footprint, Detector>::checked);
   static constexpr bool recorded = RecordsSubrays<Footprint>;
 
   /// Pulse i with its beam turned about its axis.

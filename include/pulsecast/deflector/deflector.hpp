@@ -20,13 +20,13 @@ namespace PULSECAST_NAMESPACE {
 template <class Moving, class Source>
 requires detail::Deflectable<Moving, Source>
 class Deflector {
-  static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
-  static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
+  // clang-format on
   static_assert(Gated<Moving> || !ForeseesOpening<Moving>,
                 "Deflector: an optic with next_open(Tick) needs open(Tick), too");
   static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;
 
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source)
       : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}

@@ -12,6 +12,7 @@ namespace PULSECAST_NAMESPACE {
 /// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included,
 /// and repeat.
 struct FiberArray {
+  using refinements = refines<tag::Validated>;
   std::uint32_t fibers = 128;  ///< number of fibres in the row
   double fiber_rate = 100e3;   ///< fibres per second, best the pulse rate; at most 1e12 [Hz]
   double half_angle = pi / 9;  ///< angle of the outermost fibres to either side of forward [rad]

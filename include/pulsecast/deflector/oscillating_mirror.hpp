@@ -18,6 +18,7 @@ enum class Swing : std::uint8_t {
 /// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a
 /// cycle is two lines.
 struct OscillatingMirror {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   double cycle_rate = 50;         ///< full oscillations per second, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
   Swing swing = Swing::triangle;  ///< motion from end to end

@@ -15,6 +15,7 @@ namespace PULSECAST_NAMESPACE {
 /// the cone elliptical. The deviation from forward is the first half angle times the cosine upwards, and the second
 /// times the sine to the right.
 struct PalmerMirror {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   double rotation_rate = 50;                  ///< rate of turns around the cone, at most 1e12 [Hz]
   double half_angle = pi / 9;                 ///< half angle of the cone, upwards and downwards [rad]
   std::optional<double> half_angle_across{};  ///< half angle to the right and left; that above if empty [rad]

@@ -16,6 +16,7 @@ namespace PULSECAST_NAMESPACE {
 /// next one takes over. The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside
 /// the gate are blocked; those on its ends pass, whatever the rounding of their time.
 struct PolygonMirror {
+  using refinements = refines<tag::Gated, tag::ForeseesOpening, tag::MovesInLanes, tag::Validated>;
   double line_rate = 100;     ///< rate of facets, at most 1e12 [Hz]
   double sweep = 2 * pi / 3;  ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
   double angle_min = -pi;     ///< lower end of the gate [rad]

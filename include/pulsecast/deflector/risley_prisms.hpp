@@ -38,6 +38,7 @@ inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double 
 /// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked.
 /// The wedges bend the beam without shifting it: thickness and distance are neglected.
 struct RisleyPrisms {
+  using refinements = refines<tag::Gated, tag::MovesInLanes, tag::Validated>;
   std::vector<Prism> prisms{};    ///< wedges in the order of the beam, from 1 to 16
   double surrounding_index = 1;   ///< refractive index between and around the prisms
   Vec3 incident = axis::forward;  ///< direction of the laser, of any length but zero

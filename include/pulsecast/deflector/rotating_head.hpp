@@ -10,6 +10,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   double angular_rate = 2 * pi;  ///< positive to the left about an upward axis; from -1e12 to 1e12, rounded as
                                  ///< turns per second [rad/s]
   double start = 0;              ///< angle at the survey's start, from -2 pi to 2 pi [rad]

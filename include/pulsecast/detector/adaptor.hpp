@@ -27,6 +27,7 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
 ///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
 template <Detector Inner>
 struct DetectorAdaptor {
+  static_assert(detail::detector_checked<Inner>);
   Inner inner;  ///< detector inside
 
   static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< that of `inner`

@@ -43,6 +43,7 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
   /// @throws SettingError for settings out of range, a prominence, or a timing that is read from samples
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {
@@ -134,7 +135,6 @@ class AnalyticWaveform {
   }
 
  private:
-  static_assert(detail::MomentWidthMeasureCheck<Width>::passed);
   static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid

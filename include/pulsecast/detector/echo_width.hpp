@@ -42,6 +42,7 @@ struct NoWidth {
 
 /// Width by the second central moment of the waveform.
 struct MomentWidth {
+  using refinements = refines<tag::MomentWidthMeasure>;
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
     WaveformMoments m;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -61,7 +62,7 @@ static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
-  static_assert(detail::TruncatedWidthMeasureCheck<Width>::passed);
+  static_assert(detail::members_checked<Width, tag::MomentWidthMeasure, tag::TruncatedWidthMeasure>);
   if constexpr (TruncatedWidthMeasure<Width>)
     return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.min_share()));
   else

@@ -59,6 +59,7 @@ struct FmcwSettings {
 /// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
+  using refinements = refines<tag::ReadsVelocity>;
   /// @throws SettingError for settings out of range
   explicit Fmcw(FmcwSettings settings = {}) : s_(validated(settings)) {}
 

@@ -66,6 +66,7 @@ concept WaveformReceiver = std::copyable<R> &&
 template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
   /// @throws SettingError for settings out of range
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}

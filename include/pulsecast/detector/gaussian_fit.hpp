@@ -30,6 +30,7 @@ struct Gaussian {
 /// Gaussian lacks. The positions of samples on a steep edge change the width of a pulse by less than 0.5 %. Source:
 /// Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
 struct GaussianFit {
+  using refinements = refines<tag::TruncatedWidthMeasure, tag::Validated>;
   int iterations_max = 50;  ///< iteration limit, from 1 to 1000
   double share = 0.03;      ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
 

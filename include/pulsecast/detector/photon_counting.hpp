@@ -68,6 +68,7 @@ struct PhotonCountingSettings {
 template <PulseForm Form = GammaPulse>
 class PhotonCounting {
  public:
+  using refinements = refines<tag::RunsWithoutReflections, tag::PreparesForLasers>;
   /// @throws SettingError for settings out of range
   explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {})
       : s_(validated(settings)), form_(std::move(form)) {}

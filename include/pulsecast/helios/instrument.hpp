@@ -34,6 +34,7 @@ struct InstrumentOptions {
 /// it, only size, duration and emitters have a meaning.
 class Instrument {
  public:
+  using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
   /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at
   /// fault
   Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,

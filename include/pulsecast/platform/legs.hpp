@@ -28,9 +28,8 @@ struct Leg {
 /// overlap. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
-  static_assert(detail::DrawsByLegCheck<P>::passed);
-
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
   /// `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {

@@ -48,6 +48,7 @@ struct PoseErrors {
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
+  using refinements = refines<tag::MakesLanes, tag::DrawsByLeg>;
   /// Plans the drifts. @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
       : truth_(std::move(truth)), errors_(validated(errors)) {

@@ -11,6 +11,7 @@ namespace PULSECAST_NAMESPACE {
 /// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if
 /// vertical or empty.
 struct StraightLine {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
   Vec3 to{0, 1000, 0};  ///< end, in the world [m]
   double speed = 60;    ///< speed along the path, slopes included [m/s]

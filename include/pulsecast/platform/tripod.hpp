@@ -10,6 +10,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Static trajectory, level.
 struct Tripod {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 position{};     ///< foot of the tripod, in the world [m]
   double heading = 0;  ///< compass heading, clockwise from north [rad]
 

@@ -33,6 +33,7 @@ enum class Interpolation : std::uint8_t {
 /// on, the last counts. Cubic positions are interpolated on either side of a jump alone.
 class Waypoints {
  public:
+  using refinements = refines<tag::MovesInLanes>;
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
       : points_(std::move(points)) {

@@ -20,6 +20,7 @@ namespace PULSECAST_NAMESPACE {
 template <class First, class... Others>
 class AnySource {
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)

@@ -23,6 +23,7 @@ template <class Source>
 requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a
   /// `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {

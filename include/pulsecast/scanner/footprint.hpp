@@ -215,6 +215,7 @@ static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<Sunf
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
+  using refinements = refines<tag::RecordsSubrays>;
   static constexpr bool recorded = true;  ///< as the concept RecordsSubrays describes
   /// Takes a valid footprint.
   explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
@@ -227,6 +228,7 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 /// that errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
+  using refinements = refines<tag::RotatesPerPulse>;
   static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
   /// Takes a valid footprint.
   explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}

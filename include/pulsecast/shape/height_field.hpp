@@ -33,6 +33,7 @@ namespace PULSECAST_NAMESPACE {
 /// (bundles by interval arithmetic).
 class HeightField {
  public:
+  using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 

@@ -43,6 +43,7 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
+  using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
@@ -81,7 +82,7 @@ class TriangleMesh {
     if (!texture_.empty() && texture_.size() != size()) return false;
     if (!masks_.empty() && texture_.empty()) return false;
     if (material_count_ == 0 || !in_table(materials8_) || !in_table(materials_)) return false;
-    static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
+    static_assert(detail::members_checked<Index, tag::SelfCheckingAccelerator, tag::MissesCones>);
     if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
     return true;
   }

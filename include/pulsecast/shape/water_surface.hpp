@@ -41,6 +41,7 @@ struct WaterArea {
 /// first derivative).
 class WaterSurface {
  public:
+  using refinements = refines<tag::DeterministicGeometry, tag::TimeDependentGeometry>;
   static constexpr bool deterministic = true;   ///< as the concept DeterministicGeometry describes
   static constexpr bool time_dependent = true;  ///< as the concept TimeDependentGeometry describes
 

@@ -287,8 +287,7 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    static_assert(pulsecast::detail::ConsistencyCheckingCheck<T>::passed &&
-                  pulsecast::detail::ValidatingCheck<T>::passed);
+    static_assert(pulsecast::detail::members_checked<T, tag::SelfChecking, tag::Validated>);
     if constexpr (SelfChecking<T>) require(object.is_consistent());
     if constexpr (Validated<T>) object.validate();
   }
