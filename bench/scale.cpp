@@ -88,6 +88,17 @@ void grow_triangles(Report& report) {
   }
 }
 
+/// Down from 300 m, in lines of 64 pulses, 10 cm apart, that lie anywhere in a square of twice `half`.
+Aims lines_over(double half, wood::Dice& dice) {
+  Aims aims;
+  for (std::size_t line = 0; line < 64; ++line) {
+    const double width = std::min(6.4, 2 * half), x = dice.between(-half, half - width), y = dice.between(-half, half);
+    for (std::size_t i = 0; i < 64; ++i)
+      aims.push_back({{x + width * static_cast<double>(i) / 64, y, 300}, rotation_about(axis::right, -90_deg)});
+  }
+  return aims;
+}
+
 /// A wood of one tree, many times, 8 m apart, turned and sized at random, seen from above.
 void grow_instances(Report& report) {
   const auto shape = std::make_shared<const Mesh>(tree());
@@ -113,14 +124,7 @@ void grow_instances(Report& report) {
     const Scene<Mesh> scene(std::move(parts));
     const double built = process_seconds() - start;
 
-    Aims aims;  // down, in lines of 64 pulses, 10 cm apart, that lie anywhere
-    for (std::size_t line = 0; line < 64; ++line) {
-      const double width = std::min(6.4, 2 * half), x = dice.between(-half, half - width),
-                   y = dice.between(-half, half);
-      for (std::size_t i = 0; i < 64; ++i)
-        aims.push_back({{x + width * static_cast<double>(i) / 64, y, 300}, rotation_about(axis::right, -90_deg)});
-    }
-    const Bundles all = beams(aims, 19, 0.3_mrad);
+    const Bundles all = beams(lines_over(half, dice), 19, 0.3_mrad);
     std::vector<Hit> hits(RayBundle::capacity), expected(RayBundle::capacity);
     const auto check = [&](std::size_t i) {  // against all parts one by one
       const RayBundle rays = all[i];

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/scene_cache.hpp>

@@ -5,7 +5,7 @@
 # - Functions that a concept or convention explains once for all of its models are given that explanation.
 # - A unit literal is named by its unit.
 # - Links of the README to other files, which the reference does not have, become their text.
-# - Checks of optional members, which a macro defines, are left out.
+# - Checks and promises of optional members are left out; concepts of constants, which a macro defines, are written out.
 # - A comment after several variables of one declaration is given to each of them.
 BEGIN {
   says["validate"] = "Refuses settings outside of their limits. Errors: `SettingError`."
@@ -14,11 +14,18 @@ BEGIN {
   says["memory"] = "Memory that this occupies [bytes]."
   says["bounds"] = "Smallest box around all that can be met [m]."
   of["at"] = "Motion"; of["open"] = "Gated"; of["pulse"] = of["duration"] = "PulseSource"; of["share"] = of["offset"] = "Footprint"
-  of["closest"] = "Target, and as the concept Geometry,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
+  of["closest"] = "Target, and as the concepts Geometry and Accelerator,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
   of["reflections"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
+  of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
+  of["draw_for_leg"] = "DrawsByLeg"; of["power"] = "PulseForm"; of["min_share"] = "TruncatedWidthMeasure"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."
+  says["settings"] = "Settings, as validated."
+  says["set"] = "Sets a lane."
+  says["angle"] = "Elevation of the beam above forward [rad]."
+  says["pulse_width"] = "Width of a laser's outgoing pulse, by the measure of its echoes [s]. Errors: as `validate`."
+  says["depth"] = "Steps from the root to the deepest leaf, at most 64."
   says["data"] = says["begin"] = "Pointer to the first element."
   says["end"] = "Pointer past the last element."
   says["empty"] = "True without elements."
@@ -48,9 +55,25 @@ FILENAME ~ /\.md$/ {
   next
 }
 /^PULSECAST_OPTIONAL_MEMBER\(/ { hidden = 1 }
+/^PULSECAST_OPTIONAL_CONSTANT\(/ {
+  gsub(/.*\(|[,)]/, "")
+  $0 = "template <class T> concept " $1 " = T::" $2 ";"
+}
+/^ +using refinements = / { $0 = "" }
 hidden {
   if (/\)$/) hidden = 0
   print ""
+  next
+}
+# Each line of the list of units gives two literals.
+/^#define PULSECAST_UNIT/, !/\\$/ {
+  print ""
+  next
+}
+/^PULSECAST_UNIT\(/ {
+  name = substr($0, 16, index($0, ",") - 16)
+  text = "/** Number with the unit `" substr(name, 2) "`, in SI units and radians. */ consteval double operator\"\"" name
+  print text "(long double v); " text "(unsigned long long v);"
   next
 }
 function with(text, line) {
@@ -60,11 +83,9 @@ function with(text, line) {
 # Explanation of the function declared in a line without a docstring; empty if there is none.
 function explanation(line,   name) {
   if (line ~ /^ +explicit [A-Za-z]+\(DeserializeTag/) return tag
-  if (match(line, /^consteval double operator""_[A-Za-z]+/)) {
-    name = substr(line, RSTART, RLENGTH)
-    sub(/.*_/, "", name)
-    return "Number with the unit `" name "`, in SI units and radians."
-  }
+  if (line ~ /^ +(explicit )?[A-Z][A-Za-z0-9]+Lanes\(const /) return "Of components by lane, or of one value in all lanes."
+  if (line ~ /^ +struct Workspace \{/) return "Scratch memory of one worker."
+  if (line ~ /^ +class Columns \{/) return "Data of the voxels that this filling needs, by number of the voxel."
   if (line ~ /^ +.*\(.* override( |;|$)/) return overrides
   if (line ~ /^ *(return|else|throw|if|for) / || !match(line, function_of_a_class)) return ""
   name = substr(line, RSTART, RLENGTH - 1)

@@ -153,6 +153,19 @@ struct House {
   [[nodiscard]] double width() const noexcept { return 2.7 * bays; }  ///< [m]
 };
 
+/// What a shop of that width sells, in a room behind its windows: vases on a shelf, and taller ones before it.
+inline void add_shop(MeshData& mesh, double width, double floor, double ceiling) {
+  constexpr double back = 4;
+  add_upright(mesh, 0, width, back, floor, ceiling, plaster);
+  for (const double z : {floor, ceiling})
+    add_face(mesh, {{0, 0.3, z}, {width, 0.3, z}, {width, back, z}, {0, back, z}}, paving);
+  for (double x = 0.8; x < width; x += 1.3) {
+    add_tube(mesh, {x, 0.8, floor}, {x, 0.8, floor + 1.1}, 0.22, 0.1, 12, door);
+    add_tube(mesh, {x + 0.5, 2.4, floor}, {x + 0.5, 2.4, floor + 1.7}, 0.1, 0.3, 12, brick);
+  }
+  add_face(mesh, {{0, 3.2, 1.6}, {width, 3.2, 1.6}, {width, 3.8, 1.6}, {0, 3.8, 1.6}}, frame);
+}
+
 /// Its front stands on x, and it reaches to y = 9 m. In front it has windows with frames, and a door; its saddle roof
 /// has a chimney. It goes down below the ground, for slopes.
 [[nodiscard]] inline MeshData house(const House& kind) {
@@ -187,17 +200,7 @@ struct House {
       add_upright(mesh, l, r, bars, cross - 0.04, cross + 0.04, frame);
     }
   }
-  if (kind.shop) {
-    constexpr double back = 4;  // of the room behind the windows
-    add_upright(mesh, 0, width, back, plinth, plinth + storey, plaster);
-    for (const double z : {plinth, plinth + storey})
-      add_face(mesh, {{0, 0.3, z}, {width, 0.3, z}, {width, back, z}, {0, back, z}}, paving);
-    for (double x = 0.8; x < width; x += 1.3) {  // what it sells: vases on a shelf, and taller ones before it
-      add_tube(mesh, {x, 0.8, plinth}, {x, 0.8, plinth + 1.1}, 0.22, 0.1, 12, door);
-      add_tube(mesh, {x + 0.5, 2.4, plinth}, {x + 0.5, 2.4, plinth + 1.7}, 0.1, 0.3, 12, brick);
-    }
-    add_face(mesh, {{0, 3.2, 1.6}, {width, 3.2, 1.6}, {width, 3.8, 1.6}, {0, 3.8, 1.6}}, frame);
-  }
+  if (kind.shop) add_shop(mesh, width, plinth, plinth + storey);
   const double ridge = eaves + 3.4, beyond = 0.4, drop = beyond * 3.4 / (depth / 2);
   for (const double x : {0.0, width}) {
     add_face(mesh, {{x, 0, -1.5}, {x, depth, -1.5}, {x, depth, eaves}, {x, 0, eaves}}, kind.wall);

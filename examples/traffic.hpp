@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 #include "street.hpp"
 

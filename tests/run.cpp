@@ -339,7 +339,6 @@ struct ThreadPerTask {
 
 static_assert(Executor<Reverse> && Executor<const ThreadPerTask> && !MemoryKeepingExecutor<Reverse>);
 static_assert(!Executor<const Reverse>);
-static_assert(!std::constructible_from<ExecutorRef, Reverse>);  // a temporary would dangle
 
 template <class Survey>
 std::string checksum_of(const Survey& survey, const RunOptions& options) {

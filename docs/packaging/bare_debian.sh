@@ -61,7 +61,7 @@ step "a program of a user's own"
 cat > "$root/opt/try/CMakeLists.txt" <<'CMAKE'
 cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES CXX)
-find_package(pulsecast 0.2 REQUIRED COMPONENTS io)
+find_package(pulsecast 0.3 REQUIRED COMPONENTS io)
 add_executable(embed embed.cpp)
 target_link_libraries(embed PRIVATE pulsecast::pulsecast pulsecast::io)
 CMAKE

@@ -133,6 +133,16 @@ void tidy(const fs::path& folder, const fs::path& newest) {
   }
 }
 
+std::uintmax_t size_of(const std::set<fs::path>& files) {
+  std::uintmax_t size = 0;
+  for (const fs::path& file : files) {
+    std::error_code error;
+    const std::uintmax_t one = fs::file_size(file, error);
+    size += error ? 0 : one;
+  }
+  return size;
+}
+
 }  // namespace
 
 KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build,
@@ -168,13 +178,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
   KeptParts made{.built = build()};
   if (!store.write) return made;
   try {
-    std::uintmax_t size = 0;
-    for (const fs::path& file : made.built.files) {
-      std::error_code error;
-      const std::uintmax_t one = fs::file_size(file, error);
-      size += error ? 0 : one;
-    }
-    if (size < worth_keeping) return made;
+    if (size_of(made.built.files) < worth_keeping) return made;
     const Fingerprint key = key_of(made.built.files);
     std::error_code error;
     fs::create_directories(store.folder, error);

@@ -15,6 +15,7 @@ namespace {
 
 /// Two thin prisms in series, each of which bends the beam by the same angle towards its orientation.
 struct Rosette {
+  using refinements = refines<tag::Validated>;
   double bend;           ///< by each prism [rad]
   double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
 

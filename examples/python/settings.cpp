@@ -131,15 +131,20 @@ Variant alternative_of(py::handle object, const std::string& where, std::string 
   }
 }
 
+template <Enum T>
+T enum_of(py::handle object, const std::string& where) {
+  std::string names;
+  for (std::size_t i = 0; i < Described<T>::values.size(); ++i) {
+    if (py::str(Described<T>::values[i]).equal(object)) return static_cast<T>(i);
+    names += std::string(i > 0 ? " or '" : "'") + Described<T>::values[i] + "'";
+  }
+  refuse(where, names, object);
+}
+
 template <class T>
 T value_of(py::handle object, const std::string& where) {
   if constexpr (Enum<T>) {
-    std::string names;
-    for (std::size_t i = 0; i < Described<T>::values.size(); ++i) {
-      if (py::str(Described<T>::values[i]).equal(object)) return static_cast<T>(i);
-      names += std::string(i > 0 ? " or '" : "'") + Described<T>::values[i] + "'";
-    }
-    refuse(where, names, object);
+    return enum_of<T>(object, where);
   } else if constexpr (std::same_as<T, bool>) {
     py::detail::make_caster<bool> truth;  // Python's, or NumPy's
     if (!truth.load(object, false)) refuse(where, "True or False", object);

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_CLOUD_HPP
 #define PULSECAST_CLOUD_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/echo.hpp>
@@ -21,8 +20,7 @@ struct Cloud {
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) {
-        const Vec3 point = point_of(shot, echo);
-        points.push_back(point);
+        points.push_back(point_of(shot, echo));
         echoes.push_back(echo);
         pulses.push_back(shot.index);
         ticks.push_back(shot.tick);

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <type_traits>
 
@@ -39,13 +37,12 @@ struct Divergence {
 /// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. The ranges keep
 /// received powers, down to 10^-30 of the power sent, and their squares within a double's range.
 struct Laser {
-  double wavelength = 1.064e-6;  ///< wavelength, from 10 nm to 1 cm [m]
-  double peak_power = 4;         ///< peak power of a pulse, from 1e-20 to 1e20 [W]
-  double pulse_length = 4e-9;    ///< full width at half maximum, from 1 fs to 1 s [s]
-  Divergence divergence =
-      0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]
-  double waist_diameter = 0;  ///< waist at 1/e^2, across; up in proportion to the divergences [m]
-  double waist_range = 0;     ///< distance of the waist from the exit; a focus if positive [m]
+  double wavelength = 1.064e-6;    ///< wavelength, from 10 nm to 1 cm [m]
+  double peak_power = 4;           ///< peak power of a pulse, from 1e-20 to 1e20 [W]
+  double pulse_length = 4e-9;      ///< full width at half maximum, from 1 fs to 1 s [s]
+  Divergence divergence = 0.3e-3;  ///< full angles, from 0 to 30 degrees; across and up within a factor of 1e6 [rad]
+  double waist_diameter = 0;       ///< waist at 1/e^2, across; up in proportion to the divergences [m]
+  double waist_range = 0;          ///< distance of the waist from the exit; a focus if positive [m]
 
   /// Energy of a pulse: peak power times pulse length [J].
   [[nodiscard]] double energy() const noexcept { return peak_power * pulse_length; }
@@ -101,6 +98,18 @@ struct PulseOnPlatform<frame::World> {
   std::uint16_t leg = 0;   ///< number of its leg, from 0
 };
 
+/// Data of pulses in lanes that no stage before the platform knows.
+template <class Frame>
+struct LanesOnPlatform {};
+
+template <>
+struct LanesOnPlatform<frame::World> {
+  simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
+  PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
+  std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
+  std::array<std::uint16_t, simd::lane_count> leg{};     ///< as in `Pulse`
+};
+
 }  // namespace detail
 
 /// One laser pulse, in a frame. In the world it also has `reported`, `scan_angle` and `leg`.
@@ -122,22 +131,6 @@ struct Pulse : detail::PulseOnPlatform<Frame> {
   /// Unit vector along the beam.
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
 };
-
-namespace detail {
-
-/// Data of pulses in lanes that the platform adds.
-template <class Frame>
-struct LanesOnPlatform {};
-
-template <>
-struct LanesOnPlatform<frame::World> {
-  simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
-  PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
-  std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
-  std::array<std::uint16_t, simd::lane_count> leg{};     ///< as in `Pulse`
-};
-
-}  // namespace detail
 
 /// Pulses of consecutive slots, one in each lane of a register, in a frame.
 template <class Frame>

@@ -15,7 +15,7 @@ namespace PULSECAST_NAMESPACE {
 /// does not move in lanes, or that replaces the `at` of one, is asked tick by tick.
 template <class M>
 simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked, detail::PosesOf<M>& poses) noexcept {
-  static_assert(detail::MovesInLanesCheck<M>::passed);
+  static_assert(detail::members_checked<M, tag::Gated, tag::ForeseesOpening, tag::MovesInLanes>);
   if constexpr (MovesInLanes<M> && detail::LanesOfItsPoses<M>) {
     return asked & motion.poses(ticks, poses);
   } else {
@@ -33,7 +33,8 @@ simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked,
 /// replaces the `pulse` of one that does.
 template <class S>
 [[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
-  static_assert(detail::MakesLanesCheck<S>::passed);
+  static_assert(detail::members_checked<S, tag::MakesLanes, tag::FindsSlots, tag::SkipsBlocked, tag::DrawsByLeg,
+                                        tag::MeasuresBeam>);
   if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>) return source.pulse_lanes(i, count);
   detail::PulsesOf<S> one;
   one.push_back(source.pulse(i));

@@ -22,49 +22,12 @@
 #include <pulsecast/pulse.hpp>
 
 /// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses
-/// the member refuses one of another form, or of a name that is near, by a static assertion. `Validated`,
+/// the member refuses one of another form by a static assertion. A model that states `using refinements =
+/// pulsecast::refines<tag::Gated, tag::ForeseesOpening>;` is refused without these members, too. `Validated`,
 /// `ValidatesLaser` and `Normalizable`, for settings of all kinds, are in base/require.hpp.
 // clang-format off
 // version 14 breaks up compound requirements
 namespace PULSECAST_NAMESPACE {
-
-namespace detail {
-template <class G>
-concept UniformConstant = requires {
-  requires std::same_as<decltype(G::uniform_surface), const bool>;
-  typename std::bool_constant<G::uniform_surface>;
-};
-template <class G>
-concept DeterministicConstant = requires {
-  requires std::same_as<decltype(G::deterministic), const bool>;
-  typename std::bool_constant<G::deterministic>;
-};
-template <class G>
-concept TimeDependentConstant = requires {
-  requires std::same_as<decltype(G::time_dependent), const bool>;
-  typename std::bool_constant<G::time_dependent>;
-};
-template <class F>
-concept RecordedConstant = requires {
-  requires std::same_as<decltype(F::recorded), const bool>;
-  typename std::bool_constant<F::recorded>;
-};
-template <class F>
-concept RotatesConstant = requires {
-  requires std::same_as<decltype(F::rotates_per_pulse), const bool>;
-  typename std::bool_constant<F::rotates_per_pulse>;
-};
-template <class D>
-concept RunsWithoutReflectionsConstant = requires {
-  requires std::same_as<decltype(D::runs_without_reflections), const bool>;
-  typename std::bool_constant<D::runs_without_reflections>;
-};
-template <class D>
-concept VelocityConstant = requires {
-  requires std::same_as<decltype(D::reads_velocity), const bool>;
-  typename std::bool_constant<D::reads_velocity>;
-};
-}  // namespace detail
 
 /// Optic or head that transmits light at some times only.
 /// Law: as for `Motion`.
@@ -72,23 +35,24 @@ template <class M>
 concept Gated = requires(const M m, Tick t) {
   { m.open(t) } noexcept -> std::same_as<bool>;
 };
-PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}), is_open, opened, gate, transmits)
+PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}))
 
 /// Ground of several levels, such as roads and the bridges above them.
-/// Law: `ground(place, near)` is the level nearest to the height `near` [m]; for infinity the highest, which is `ground(place)`.
+/// Law: `ground(place, near)` is the level nearest to the height `near` [m]; for infinity the highest, which is
+/// `ground(place)`.
 template <class G>
 concept LevelledGround = requires(const G ground, Vec2 place, double near) {
   { ground(place, near) } -> std::convertible_to<std::optional<double>>;
 };
 
 /// Gated optic or head that foresees its opening, as `PolygonMirror`, so that a run passes over slots without a visit.
-/// Law: `open` is false from t up to, but not at, `next_open(t)`, which is not before t. It may be early, and is t if nothing is foreseen.
+/// Law: `open` is false from t up to, but not at, `next_open(t)`, which is not before t. It may be early, and is t if
+/// nothing is foreseen.
 template <class M>
 concept ForeseesOpening = requires(const M m, Tick t) {
   { m.next_open(t) } noexcept -> std::same_as<Tick>;
 };
-PULSECAST_OPTIONAL_MEMBER(ForeseesOpening, "Tick next_open(Tick) const noexcept", next_open, (Tick{}), next_opening, opens_next, opens_at,
-                          open_after)
+PULSECAST_OPTIONAL_MEMBER(ForeseesOpening, "Tick next_open(Tick) const noexcept", next_open, (Tick{}))
 
 namespace detail {
 template <class P>
@@ -101,14 +65,10 @@ template <class C, class Result, class... Arguments>
 std::type_identity<C> declared_in(Result (C::*)(Arguments...) const noexcept);
 /// Source whose `pulse_lanes` goes with its `pulse`: not one that inherits both and replaces one.
 template <class S>
-concept LanesOfItsPulses = requires {
-  requires std::same_as<decltype(declared_in(&S::pulse)), decltype(declared_in(&S::pulse_lanes))>;
-};
+concept LanesOfItsPulses = std::same_as<decltype(declared_in(&S::pulse)), decltype(declared_in(&S::pulse_lanes))>;
 /// Motion whose `poses` goes with its `at`.
 template <class M>
-concept LanesOfItsPoses = requires {
-  requires std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
-};
+concept LanesOfItsPoses = std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
 /// `PoseLanes` of a motion.
 template <class M>
 using PosesOf = typename InLanes<decltype(std::declval<const M&>().at(Tick{}))>::type;
@@ -117,25 +77,26 @@ template <class S>
 using PulsesOf = typename InLanes<decltype(std::declval<const S&>().pulse(PulseIndex{}))>::type;
 }  // namespace detail
 
-/// Motion that answers for a register of ticks at once, as `PolygonMirror`. It sets the poses, and returns the lanes at whose ticks it is
-/// open: all, unless it is `Gated`. Poses of the other lanes have no meaning.
-/// Law: a lane has the pose that `at` gives for its tick, bit for bit, whatever is in the other lanes, and is set where `open` is true.
+/// Motion that answers for a register of ticks at once, as `PolygonMirror`. It sets the poses, and returns the lanes at
+/// whose ticks it is open: all, unless it is `Gated`. Poses of the other lanes have no meaning.
+/// Law: a lane has the pose that `at` gives for its tick, bit for bit, whatever is in the other lanes, and is set where
+/// `open` is true.
 template <class M>
 concept MovesInLanes = requires(const M m, const TickLanes& ticks, detail::PosesOf<M>& poses) {
   { m.poses(ticks, poses) } noexcept -> std::same_as<simd::Mask>;
 };
 PULSECAST_OPTIONAL_MEMBER(MovesInLanes, "simd::Mask poses(const TickLanes&, PoseLanes<From, To>&) const noexcept", poses,
-                          (TickLanes{}, std::declval<detail::PosesOf<T>&>()), at_lanes, pose_lanes, lanes, poses_at)
+                          (TickLanes{}, std::declval<detail::PosesOf<T>&>()))
 
-/// Source that makes the pulses of a register at once, as `Scanner`: from 1 to `count` slots from i on, where `count` is at least 1 and at
-/// most `simd::lane_count`, and the slots are below `size()`.
+/// Source that makes the pulses of a register at once, as `Scanner`: from 1 to `count` slots from i on, where `count`
+/// is at least 1 and at most `simd::lane_count`, and the slots are below `size()`.
 /// Law: slot i + k is `pulse(i + k)`, bit for bit.
 template <class S>
 concept MakesLanes = requires(const S s, PulseIndex i, std::size_t count) {
   { s.pulse_lanes(i, count) } noexcept -> std::same_as<detail::PulsesOf<S>>;
 };
 PULSECAST_OPTIONAL_MEMBER(MakesLanes, "PulseLanes<Frame> pulse_lanes(PulseIndex, std::size_t) const noexcept", pulse_lanes,
-                          (PulseIndex{}, std::size_t{}), pulses_in_lanes, lanes, pulses, lanes_of)
+                          (PulseIndex{}, std::size_t{}))
 
 /// Source that finds slots by time, as `Scanner`.
 /// Law: all slots before `slot_from(t)` are at times before t; it may be early, and is at most `size()`.
@@ -143,37 +104,37 @@ template <class S>
 concept FindsSlots = requires(const S s, Tick t) {
   { s.slot_from(t) } noexcept -> std::same_as<PulseIndex>;
 };
-PULSECAST_OPTIONAL_MEMBER(FindsSlots, "PulseIndex slot_from(Tick) const noexcept", slot_from, (Tick{}), slot_at, slot_after, first_slot,
-                          slot_of)
+PULSECAST_OPTIONAL_MEMBER(FindsSlots, "PulseIndex slot_from(Tick) const noexcept", slot_from, (Tick{}))
 
-/// Source or survey that passes over blocked slots. `run` asks it after each blocked slot, and counts those between without a visit.
-/// Law: for i below `size()`, all slots from i up to, but not at, `next_pulse(i)` are blocked; it is at least i and at most `size()`.
+/// Source or survey that passes over blocked slots. `run` asks it after each blocked slot, and counts those between
+/// without a visit.
+/// Law: for i below `size()`, all slots from i up to, but not at, `next_pulse(i)` are blocked; it is at least i and at
+/// most `size()`.
 template <class S>
 concept SkipsBlocked = requires(const S& s, PulseIndex i) {
   { s.next_pulse(i) } noexcept -> std::same_as<PulseIndex>;
 };
-PULSECAST_OPTIONAL_MEMBER(SkipsBlocked, "PulseIndex next_pulse(PulseIndex) const noexcept", next_pulse, (PulseIndex{}), next_slot,
-                          pulse_after, skip_blocked, next_open)
+PULSECAST_OPTIONAL_MEMBER(SkipsBlocked, "PulseIndex next_pulse(PulseIndex) const noexcept", next_pulse, (PulseIndex{}))
 
-/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
-/// independent.
+/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their
+/// draws are independent.
 /// Law: place 0 changes nothing.
 template <class S>
 concept DrawsByLeg = requires(S& s, std::uint32_t leg) {
   { s.draw_for_leg(leg) } -> std::same_as<void>;
 };
-PULSECAST_OPTIONAL_MEMBER(DrawsByLeg, "void draw_for_leg(std::uint32_t)", draw_for_leg, (std::uint32_t{}), draw_leg, draw_by_leg,
-                          draw_of_leg, set_leg)
+PULSECAST_OPTIONAL_MEMBER(DrawsByLeg, "void draw_for_leg(std::uint32_t)", draw_for_leg, (std::uint32_t{}))
 
-/// Instrument that measures its beams with errors, as `helios::Instrument`. `measured(i, t)` is the beam of pulse i, fired at t, as the
-/// instrument reports it, or empty if exact. A platform computes the reported pose from it.
+/// Instrument that measures its beams with errors, as `helios::Instrument`. `measured(i, t)` is the beam of pulse i,
+/// fired at t, as the instrument reports it, or empty if exact. A platform computes the reported pose from it.
 /// Law: pure; a wrapper of an instrument passes it on, as it does the pulse.
 template <class S>
 concept MeasuresBeam = requires(const S s, PulseIndex i, Tick t) {
   { s.measured(i, t) } noexcept -> std::same_as<std::optional<Pose<frame::Beam, frame::Instrument>>>;
 };
-PULSECAST_OPTIONAL_MEMBER(MeasuresBeam, "std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex, Tick) const noexcept",
-                          measured, (PulseIndex{}, {}), measured_beam, measured_pose, reported, reported_beam)
+PULSECAST_OPTIONAL_MEMBER(MeasuresBeam,
+                          "std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex, Tick) const noexcept",
+                          measured, (PulseIndex{}, {}))
 
 /// Leaf test of an accelerator that loads primitives into the cache ahead of their test.
 template <class T>
@@ -181,32 +142,27 @@ concept PrefetchesPrimitives = requires(const T& test, std::span<const Primitive
   { test.prefetch(primitives) } noexcept -> std::same_as<void>;
 };
 PULSECAST_OPTIONAL_MEMBER(PrefetchesPrimitives, "void prefetch(std::span<const PrimitiveIndex>) const noexcept", prefetch,
-                          (std::span<const PrimitiveIndex>{}), soon, pre_fetch, prefetch_primitives, announce)
+                          (std::span<const PrimitiveIndex>{}))
 
-/// Target, shape or accelerator that tells of a cone of rays, at little cost, that none meets anything, so that they need not be made. It
-/// need not look further than its bounds and the upper levels of its trees.
-/// Law: pure; true only if every ray in the cone misses at the cone's tick, and so it stays for any near and far ends of the rays.
+/// Target, shape or accelerator that tells of a cone of rays, at little cost, that none meets anything, so that they
+/// need not be made. It need not look further than its bounds and the upper levels of its trees.
+/// Law: pure; true only if every ray in the cone misses at the cone's tick, and so it stays for any near and far ends
+/// of the rays.
 template <class T>
 concept MissesCones = requires(const T target, const RayCone& cone) {
   { target.misses_cone(cone) } noexcept -> std::same_as<bool>;
 };
-PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const noexcept", misses_cone, (RayCone{}), misses, miss_cone,
-                          cone_misses, misses_all)
+PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const noexcept", misses_cone, (RayCone{}))
 
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
-template <class G>
-concept UniformGeometry = detail::UniformConstant<G> && G::uniform_surface;
-PULSECAST_OPTIONAL_MEMBER(UniformConstant, "static constexpr bool uniform_surface = true", uniform_surface, , is_flat, planar, is_planar, flat_surface)
+PULSECAST_OPTIONAL_CONSTANT(UniformGeometry, uniform_surface)
 
-/// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at random.
-template <class G>
-concept DeterministicGeometry = detail::DeterministicConstant<G> && G::deterministic;
-PULSECAST_OPTIONAL_MEMBER(DeterministicConstant, "static constexpr bool deterministic = true", deterministic, , is_keyless, without_key, no_key, key_less)
+/// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at
+/// random.
+PULSECAST_OPTIONAL_CONSTANT(DeterministicGeometry, deterministic)
 
 /// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
-template <class G>
-concept TimeDependentGeometry = detail::TimeDependentConstant<G> && G::time_dependent;
-PULSECAST_OPTIONAL_MEMBER(TimeDependentConstant, "static constexpr bool time_dependent = true", time_dependent, , is_timed, timed_hits, time_dependent, timeless)
+PULSECAST_OPTIONAL_CONSTANT(TimeDependentGeometry, time_dependent)
 
 struct Triangle;
 
@@ -223,46 +179,33 @@ concept Textured = MadeOfTriangles<G> && requires(const G g, PrimitiveIndex i, c
 };
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
-template <class F>
-concept RecordsSubrays = detail::RecordedConstant<F> && F::recorded;
-PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = true", recorded, , is_recorded, record, records,
-                          records_subrays)
+PULSECAST_OPTIONAL_CONSTANT(RecordsSubrays, recorded)
 
-/// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as `TurnedFootprint`. The beams
-/// are round.
-template <class F>
-concept RotatesPerPulse = detail::RotatesConstant<F> && F::rotates_per_pulse;
-PULSECAST_OPTIONAL_MEMBER(RotatesConstant, "static constexpr bool rotates_per_pulse = true", rotates_per_pulse, , turned_per_pulse,
-                          turned_each_pulse, turns_by_pulse, turn_by_pulse)
+/// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as
+/// `TurnedFootprint`. The beams are round.
+PULSECAST_OPTIONAL_CONSTANT(RotatesPerPulse, rotates_per_pulse)
 
 /// Detector that samples waveforms, every so many seconds [s].
 template <class D>
 concept SamplesWaveforms = requires(const D detector) {
   { detector.sample_interval() } noexcept -> std::same_as<double>;
 };
-PULSECAST_OPTIONAL_MEMBER(SamplesWaveforms, "double sample_interval() const noexcept", sample_interval, (), sampling_interval,
-                          sample_spacing,
-                          sample_time, sampling_period)
+PULSECAST_OPTIONAL_MEMBER(SamplesWaveforms, "double sample_interval() const noexcept", sample_interval, ())
 
 /// Detector that is told of each laser that it will hear, before the first pulse, as one with tables by pulse length.
 template <class D>
 concept PreparesForLasers = requires(D& detector, const Laser& laser) {
   { detector.prepare(laser) } -> std::same_as<void>;
 };
-PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepare, (std::declval<const Laser&>()), prepare_for,
-                          prepare_laser, set_laser, configure)
+PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepare, (std::declval<const Laser&>()))
 
-/// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
-template <class D>
-concept RunsWithoutReflections = detail::RunsWithoutReflectionsConstant<D> && D::runs_without_reflections;
-PULSECAST_OPTIONAL_MEMBER(RunsWithoutReflectionsConstant, "static constexpr bool runs_without_reflections = true", runs_without_reflections, , always_listens, listens,
-                          listen_always, always_on)
+/// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections
+/// only.
+PULSECAST_OPTIONAL_CONSTANT(RunsWithoutReflections, runs_without_reflections)
 
-/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a map with `SceneQueries`.
-template <class D>
-concept ReadsVelocity = detail::VelocityConstant<D> && D::reads_velocity;
-PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, reads_velocities,
-                          uses_velocity, with_velocity)
+/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a target with
+/// `SceneQueries`.
+PULSECAST_OPTIONAL_CONSTANT(ReadsVelocity, reads_velocity)
 
 struct WaveformMoments;
 
@@ -271,16 +214,17 @@ template <class W>
 concept MomentWidthMeasure = requires(const W w, const WaveformMoments& moments) {
   { w.width(moments) } noexcept -> std::same_as<double>;
 };
-PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width_of_moments,
-                          (std::declval<const WaveformMoments&>()), width, moment_width, width_by_moments, width_from_moments)
+// each `EchoWidth` has a `width` of samples, too
+PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width,
+                          (std::declval<const WaveformMoments&>()), && false)
 
-/// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be sampled.
+/// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be
+/// sampled.
 template <class W>
 concept TruncatedWidthMeasure = requires(const W w) {
   { w.min_share() } noexcept -> std::same_as<double>;
 };
-PULSECAST_OPTIONAL_MEMBER(TruncatedWidthMeasure, "double min_share() const noexcept", min_share, (), least_share, share_min, minimum_share,
-                          min_fraction)
+PULSECAST_OPTIONAL_MEMBER(TruncatedWidthMeasure, "double min_share() const noexcept", min_share, ())
 
 /// Data structure that checks itself after it was read from a file: true if all indices in its arrays are in bounds.
 template <class T>
@@ -294,37 +238,31 @@ concept SelfCheckingAccelerator = requires(const A& a, std::size_t primitives) {
   { a.is_consistent(primitives) } -> std::same_as<bool>;
 };
 
-namespace detail {
-template <class T>
-concept ConsistencyChecking = SelfChecking<T> || SelfCheckingAccelerator<T>;
-}  // namespace detail
-PULSECAST_OPTIONAL_MEMBER(ConsistencyChecking, "bool is_consistent() const", is_consistent, (), sound, consistent, check_consistency,
-                          is_valid)
-PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}), sound,
-                          consistent, check_consistency, is_valid)
+PULSECAST_OPTIONAL_MEMBER(SelfChecking, "bool is_consistent() const", is_consistent, (), && !pulsecast::SelfCheckingAccelerator<T>)
+PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}))
 
-/// Sink that says whether it reads shots that give nothing: no echo, waveform or recorded subray. They are left out of the batches if no
-/// sink of the run reads them. A sink without this member gets all shots.
+/// Sink that says whether it reads shots that give nothing: no echo, waveform or recorded subray. They are left out of
+/// the batches if no sink of the run reads them. A sink without this member gets all shots.
 /// Law: the same answer during a run.
 template <class S>
 concept ChoosesShots = requires(const S& sink) {
   { sink.reads_empty_shots() } noexcept -> std::same_as<bool>;
 };
-PULSECAST_OPTIONAL_MEMBER(ChoosesShots, "bool reads_empty_shots() const noexcept", reads_empty_shots, (), reads_empty, reads_misses,
-                          wants_empty_shots, wants_misses)
+PULSECAST_OPTIONAL_MEMBER(ChoosesShots, "bool reads_empty_shots() const noexcept", reads_empty_shots, ())
 
 struct Outcome;
 
-/// Survey that simulates slots in order, from i up to `end`, so that it may prepare several at once, as `Survey`. `next(outcome)` takes the
-/// outcome of a slot, and returns the slot to go on with, which is a later one.
-/// Law: outcomes are those of single calls, bit for bit; what trajectory, map or clock said is not kept for another call.
+/// Survey that simulates slots in order, from i up to `end`, so that it may prepare several at once, as `Survey`.
+/// `next(outcome)` takes the outcome of a slot, and returns the slot to go on with, which is a later one.
+/// Law: outcomes are those of single calls, bit for bit; what trajectory, map or clock said is not kept for another
+/// call.
 template <class S>
 concept SimulatesInOrder = requires(const S& s, PulseIndex i, decltype(s.workspace())& workspace, PulseIndex (&next)(const Outcome&)) {
   { s.simulate_in_order(i, i, workspace, next) } -> std::same_as<void>;
 };
-PULSECAST_OPTIONAL_MEMBER(SimulatesInOrder, "void simulate_in_order(PulseIndex, PulseIndex, Workspace&, const Next&) const", simulate_in_order,
-                          (PulseIndex{}, PulseIndex{}, std::declval<decltype(t.workspace())&>(), std::declval<PulseIndex (&)(const Outcome&)>()),
-                          simulates_in_order, simulate_slots, simulate_all, outcomes_in_order)
+PULSECAST_OPTIONAL_MEMBER(SimulatesInOrder, "void simulate_in_order(PulseIndex, PulseIndex, Workspace&, const Next&) const",
+                          simulate_in_order, (PulseIndex{}, PulseIndex{}, std::declval<decltype(t.workspace())&>(),
+                                              std::declval<PulseIndex (&)(const Outcome&)>()))
 
 /// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
 /// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
@@ -332,8 +270,15 @@ template <class S>
 concept IdentifiedSurvey = requires(const S& s) {
   { s.identity() } noexcept -> std::convertible_to<std::shared_ptr<const void>>;
 };
-PULSECAST_OPTIONAL_MEMBER(IdentifiedSurvey, "std::shared_ptr<const void> identity() const noexcept", identity, (), get_identity, identify,
-                          identifier, workspace_identity)
+PULSECAST_OPTIONAL_MEMBER(IdentifiedSurvey, "std::shared_ptr<const void> identity() const noexcept", identity, ())
+
+namespace detail {
+/// True; refuses a detector with an optional member in another form.
+template <class D>
+inline constexpr bool detector_checked =
+    members_checked<D, tag::ValidatesLaser, tag::PreparesForLasers, tag::SamplesWaveforms, tag::RunsWithoutReflections,
+                    tag::ReadsVelocity>;
+}  // namespace detail
 
 }  // namespace pulsecast
 

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_RESULT_BUFFER_HPP
 #define PULSECAST_RESULT_BUFFER_HPP
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include <pulsecast/survey.hpp>
@@ -81,11 +78,7 @@ struct ResultBuffer {
     shot.first_sample = samples.size();
     shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
     for (const Echo& echo : outcome.echoes) echoes.push_back(echo);
-    if (!outcome.waveform.empty()) {
-      samples.resize(samples.size() + outcome.waveform.size());
-      std::copy(outcome.waveform.begin(), outcome.waveform.end(),
-                samples.end() - static_cast<std::ptrdiff_t>(outcome.waveform.size()));
-    }
+    if (!outcome.waveform.empty()) samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
     for (const SubrayRecord& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
   }

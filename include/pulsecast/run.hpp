@@ -4,24 +4,20 @@
 #define PULSECAST_RUN_HPP
 
 #include <algorithm>
-#include <bit>
 #include <condition_variable>  // includes the steady clock: <chrono> would add a calendar, a tenth of this header's cost
-#include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/progress.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
+#include <pulsecast/detail/reorder_buffer.hpp>
 #include <pulsecast/result_buffer.hpp>
 #include <pulsecast/survey.hpp>
 
@@ -68,61 +64,6 @@ struct RunOptions {
 
 namespace detail {
 
-/// Results of consecutive slots, in reused memory.
-struct ResultChunk : ResultBuffer {
-  std::uint64_t number = 0;
-  ResultChunk* next_free = nullptr;
-  PulseError error =
-      PulseError::none;  ///< of the slot after the last; ends the run once all slots before it are delivered
-  Shot wrong{};          ///< that slot
-
-  /// Appends the result of a slot, or notes its error.
-  void add(const Outcome& outcome, bool empty_shots) {
-    error = outcome.error;
-    if (error == PulseError::none)
-      append(outcome, empty_shots);
-    else
-      wrong = outcome.shot;
-  }
-
-  /// Makes at least as much room as another has.
-  void reserve_as(const ResultChunk& other) {
-    shots.reserve(other.shots.capacity());
-    echoes.reserve(other.echoes.capacity());
-    samples.reserve(other.samples.capacity());
-    subrays.reserve(other.subrays.capacity());
-  }
-
-  /// Memory of the results, and of the room for results [byte].
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return bytes_of([](const auto& results) { return results.size(); });
-  }
-  [[nodiscard]] std::size_t room() const noexcept {
-    return bytes_of([](const auto& results) { return results.capacity(); });
-  }
-
- private:
-  template <class Count>
-  [[nodiscard]] std::size_t bytes_of(const Count& count) const noexcept {
-    return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) +
-           count(subrays) * sizeof(SubrayRecord);
-  }
-};
-
-/// Chunks of a reorder buffer, which an executor may keep for the next run.
-struct ChunkMemory : ScratchItem {
-  std::size_t size;
-  std::unique_ptr<ResultChunk[]> chunks;
-  std::unique_ptr<ResultChunk*[]> finished;  ///< ring by chunk number; null until finished
-
-  explicit ChunkMemory(std::size_t count)
-      : size(count),
-        chunks(std::make_unique<ResultChunk[]>(count)),
-        finished(std::make_unique<ResultChunk*[]>(count)) {}
-  [[nodiscard]] bool fits(std::size_t count) const noexcept { return size >= count; }
-  [[nodiscard]] bool outdated(std::size_t) const noexcept { return true; }  ///< a larger one serves all
-};
-
 /// Workspace of a worker, which an executor may keep for the next run of the same survey.
 template <class Survey>
 struct WorkspaceMemory : ScratchItem {
@@ -138,7 +79,6 @@ struct WorkspaceMemory : ScratchItem {
 
  private:
   static std::shared_ptr<const void> identity_of(const Survey& survey) noexcept {
-    static_assert(detail::IdentifiedSurveyCheck<Survey>::passed);
     if constexpr (IdentifiedSurvey<Survey>)
       return survey.identity();
     else
@@ -146,102 +86,10 @@ struct WorkspaceMemory : ScratchItem {
   }
 };
 
-/// Reorder buffer: hands out chunks to workers, and delivers finished ones in order, one at a time. Workers run ahead,
-/// so that none waits for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few
-/// megabytes, or at two chunks per worker if these are large. The chunk delivered last is reused first, as it is in the
-/// cache.
-class ReorderBuffer {
- public:
-  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers,
-                std::stop_token stop)
-      : chunks_(chunks),
-        always_ahead_(2 * workers + 2),
-        max_ahead_(16 * always_ahead_),
-        memory_(kept, max_ahead_),
-        stop_(std::move(stop)) {
-    if (kept) make_room(std::bit_ceil(slots_per_chunk));  // steps of a loop differ by some slots
-    for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
-    std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
-  }
-
-  /// Next empty chunk to work on; null at the end, or when the run is stopped.
-  [[nodiscard]] ResultChunk* next() {
-    std::unique_lock lock(mutex_);
-    moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || may_go_ahead(); });
-    if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return nullptr;
-    ResultChunk* const chunk = std::exchange(free_, free_->next_free);
-    chunk->clear();
-    chunk->error = PulseError::none;
-    chunk->number = handed_out_++;
-    return chunk;
-  }
-
-  /// Takes back a finished chunk, and delivers all that are due unless another worker is delivering.
-  template <class Deliver>
-  void finish(ResultChunk& chunk, const Deliver& deliver) {
-    std::unique_lock lock(mutex_);
-    finished_bytes_ += chunk.bytes();
-    place(chunk.number) = &chunk;
-    if (delivering_) return;
-    delivering_ = true;
-    while (!failure_ && place(delivered_)) {
-      ResultChunk* const due = std::exchange(place(delivered_), nullptr);
-      lock.unlock();
-      deliver(*due);
-      lock.lock();
-      ++delivered_;
-      finished_bytes_ -= due->bytes();
-      due->next_free = std::exchange(free_, due);
-      moved_.notify_all();
-    }
-    delivering_ = false;
-  }
-
-  /// Makes room for a short run in the chunks that it may need, as much as any had. At the end of a run, the next one
-  /// over as many results then allocates nothing, whichever chunks it takes.
-  void make_room(PulseIndex slots = 0) {
-    ResultChunk& first = memory_->chunks[0];
-    first.reserve(slots);
-    for (std::size_t i = 1; i < max_ahead_; ++i) first.reserve_as(memory_->chunks[i]);
-    const std::uint64_t some =
-        std::min<std::uint64_t>({chunks_, max_ahead_, std::max(always_ahead_, max_bytes / (first.room() + 1))});
-    for (std::size_t i = 1; i < some; ++i) memory_->chunks[i].reserve_as(first);
-  }
-
-  /// Ends the run for all workers; the first failure counts.
-  void fail(std::exception_ptr failure) noexcept {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::move(failure);
-    moved_.notify_all();
-  }
-
-  [[nodiscard]] std::exception_ptr failure() const noexcept { return failure_; }
-
- private:
-  static constexpr std::size_t max_bytes = std::size_t{6}
-                                           << 20;  // finished but not delivered: some milliseconds of fast work
-
-  [[nodiscard]] bool may_go_ahead() const noexcept {
-    const std::uint64_t ahead = handed_out_ - delivered_;
-    return ahead < always_ahead_ || (ahead < max_ahead_ && finished_bytes_ < max_bytes);
-  }
-  [[nodiscard]] ResultChunk*& place(std::uint64_t number) noexcept { return memory_->finished[number % max_ahead_]; }
-
-  std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
-  std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
-  Borrowed<ChunkMemory> memory_;
-  ResultChunk* free_ = nullptr;  // head of the free list
-  std::stop_token stop_;
-  bool delivering_ = false;
-  std::exception_ptr failure_;
-  std::mutex mutex_;
-  std::condition_variable moved_;
-};
-
 /// True unless a sink says that it reads no empty shots.
 template <class Sink>
 [[nodiscard]] bool reads_empty_shots(const Sink& sink) noexcept {
-  static_assert(ChoosesShotsCheck<Sink>::passed);
+  static_assert(members_checked<Sink, tag::ChoosesShots>);
   if constexpr (ChoosesShots<Sink>) return sink.reads_empty_shots();
   return true;
 }
@@ -251,7 +99,6 @@ template <class Sink>
 template <class Survey, class Workspace>
 void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace,
               bool empty_shots, ResultChunk& chunk) {
-  static_assert(SkipsBlockedCheck<Survey>::passed && SimulatesInOrderCheck<Survey>::passed);
   const auto add = [&](const Outcome& outcome) {  // returns the next slot
     chunk.add(outcome, empty_shots);
     n = chunk.error == PulseError::none ? n + 1 : end;
@@ -289,10 +136,10 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
 /// after the sinks have got all pulses before it
 template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
+  static_assert(detail::members_checked<Survey, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>);
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
-  const PulseIndex most =
-      std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // fewer in a short run, for all workers
+  const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // few in a short run
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, most);
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;

@@ -3,6 +3,8 @@
 #ifndef PULSECAST_STAGE_ARGUMENTS_HPP
 #define PULSECAST_STAGE_ARGUMENTS_HPP
 
+#include <concepts>
+#include <cstddef>
 #include <type_traits>
 
 #include <pulsecast/base/require.hpp>
@@ -27,18 +29,13 @@ template <class Source, class Pattern, class Map, class Instrument>
 concept Surveyable =
     WorldSource<Source> && Footprint<Pattern> && !Temporary<Map> && Target<std::remove_cvref_t<Map>> && Detector<Instrument>;
 
-template <class M>
-concept PosedAnyhow = requires(M m, Tick t) { m.at(t); };
-template <class M>
-concept PosedConst = !PosedAnyhow<M> || requires(const M m, Tick t) { m.at(t); };
-template <class M>
-concept PosedNoexcept = !PosedAnyhow<M> || requires(const M m, Tick t) { { m.at(t) } noexcept; };
-
 /// Own optic, head or trajectory.
 template <class M>
 struct MotionArgument {
-  static_assert(PosedConst<M>, "at(Tick) of an optic, head or trajectory must be const");
-  static_assert(!PosedConst<M> || PosedNoexcept<M>, "at(Tick) of an optic, head or trajectory must be noexcept");
+  static_assert(!requires(M m, Tick t) { m.at(t); } || requires(const M m, Tick t) { m.at(t); },
+                "at(Tick) of an optic, head or trajectory must be const");
+  static_assert(!requires(const M m, Tick t) { m.at(t); } || requires(const M m, Tick t) { { m.at(t) } noexcept; },
+                "at(Tick) of an optic, head or trajectory must be noexcept");
 };
 
 template <class Moving, class Source>
@@ -53,7 +50,7 @@ template <class Path, class Source, bool mounted>
 struct PlatformArguments : MotionArgument<Path> {
   static_assert(!BeamSource<Source>,
                 "Platform{trajectory, mount, source}: a bare Scanner needs a deflector: Deflector{FixedBeam{}, scanner}");
-  static_assert(mounted, "Platform{trajectory, mount, source}: the mount is missing: Mount{}");
+  static_assert(mounted, "Platform{trajectory, mount, source}: the second argument must be a mount: Mount{}");
   static_assert(Trajectory<Path> && InstrumentSource<Source>,
                 "Platform{trajectory, mount, source} takes a Trajectory and a Deflector; of your own: static_assert(Trajectory<T>)");
   using First = Path;
@@ -71,16 +68,16 @@ struct SurveyArguments {
 
 template <class Source, class Pattern, class Map, class Light, class Instrument>
 struct TransportArguments : SurveyArguments<Source, Pattern, Map, Instrument> {
-  static_assert(Transport<Light, std::remove_cvref_t<Map>>,
-                "Survey: the fourth argument must be a Transport for this map; of your own: static_assert(Transport<T, Map>)");
-};
-
-/// Optional members of the stages of a survey.
-template <class Pattern, class Instrument>
-struct SurveyMembers {
-  static constexpr bool checked =
-      RecordedConstantCheck<Pattern>::passed && RotatesConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
-      RunsWithoutReflectionsConstantCheck<Instrument>::passed && PreparesForLasersCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
+  static_assert(requires(const Light t, std::size_t n) { t.workspace(n); },
+                "Transport, Survey's fourth argument: 'workspace' is missing or has another form; it must be: "
+                "Workspace workspace(std::size_t) const");
+  static_assert(requires(const Light t, std::size_t n) { { t.reflections(n) } noexcept -> std::same_as<std::size_t>; },
+                "Transport, Survey's fourth argument: 'reflections' is missing or has another form; it must be: "
+                "std::size_t reflections(std::size_t) const noexcept");
+  static_assert(!std::copyable<Light> || Transport<Light, std::remove_cvref_t<Map>>,
+                "Transport, Survey's fourth argument: 'trace' is missing or has another form for this map; it must be: "
+                "TransportResult trace(const Map&, const TransportInput&, Workspace&, std::span<Reflection>) const noexcept");
+  static_assert(std::copyable<Light>, "Transport, Survey's fourth argument: it must be copyable");
 };
 
 }  // namespace pulsecast::detail

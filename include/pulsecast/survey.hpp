@@ -16,6 +16,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/transport_input.hpp>
@@ -35,7 +36,8 @@ struct ReceiverUnit {
 template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector,
           Transport<Target> Transport = DirectLight>
 class Survey {
-  static_assert(detail::SkipsBlockedCheck<Source>::passed);
+  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
+                detail::detector_checked<Detector>);
   static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
                 "DirectLight has");
@@ -278,7 +280,6 @@ class Survey {
                   !unit.receiver.range_errors.none()};
   }
 
-  static_assert(detail::SurveyMembers<Footprint, Detector>::checked);
   static constexpr bool recorded = RecordsSubrays<Footprint>;
 
   /// Pulse i with its beam turned about its axis.

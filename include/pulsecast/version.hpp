@@ -4,6 +4,6 @@
 #define PULSECAST_VERSION_HPP
 
 /// The version of the library; CMake reads it here.
-#define PULSECAST_VERSION "0.2.0"
+#define PULSECAST_VERSION "0.3.0"
 
 #endif

@@ -6,19 +6,31 @@
 
 #include <doctest/doctest.h>
 
-namespace {
+namespace PULSECAST_NAMESPACE {
 
 template <class T>
 concept Rings = requires(const T& t) {
   { t.ring(1) } -> std::same_as<int>;
 };
-PULSECAST_OPTIONAL_MEMBER(Rings, "int ring(int) const", ring, (1), rings, sound, chime, toll)
-
 template <class T>
-concept Loud = requires {
-  requires std::same_as<decltype(T::loud), const bool>;
+concept RingsAloud = requires(const T& t) {
+  { t.ring() } -> std::same_as<int>;
 };
-PULSECAST_OPTIONAL_MEMBER(Loud, "static constexpr bool loud", loud, , is_loud, noisy, strong, audible)
+PULSECAST_OPTIONAL_MEMBER(Rings, "int ring(int) const", ring, (1))
+PULSECAST_OPTIONAL_MEMBER(RingsAloud, "int ring() const", ring, (), &&!pulsecast::Rings<T>)
+
+PULSECAST_OPTIONAL_CONSTANT(Loud, loud)
+
+namespace {
+
+using detail::members_checked;
+using detail::promise_kept;
+template <class T>
+constexpr bool rings_right = tag::Rings::right<T>;
+template <class T>
+constexpr bool aloud_right = tag::RingsAloud::right<T>;
+template <class T>
+constexpr bool loud_right = tag::Loud::right<T>;
 
 struct Silent {
   void play() const {}
@@ -26,14 +38,10 @@ struct Silent {
 struct Bell {
   int ring(int times) const { return times; }
 };
-struct BellThatChimes : Bell {
-  void chime(int) const {}
-};
 struct FinalBell final : Bell {};
-static_assert(detail::RingsCheck<Silent>::passed && detail::RingsCheck<int>::passed &&
-              detail::RingsCheck<void (*)(int)>::passed);
-static_assert(detail::RingsCheck<Bell>::passed && detail::RingsCheck<BellThatChimes>::passed &&
-              detail::RingsCheck<FinalBell>::passed);
+static_assert(members_checked<Silent, tag::Rings> && members_checked<int, tag::Rings> &&
+              members_checked<void (*)(int), tag::Rings>);
+static_assert(members_checked<Bell, tag::Rings> && members_checked<FinalBell, tag::Rings>);
 
 struct OfAnotherResult {
   double ring(int) const { return 1; }
@@ -57,42 +65,63 @@ struct Generic {
 struct Data {
   int ring = 1;
 };
-struct Chimes {
-  int chime(int) const { return 1; }
-};
-struct ChimesFinally final : Chimes {};
-static_assert(!detail::RingsOrAbsent<OfAnotherResult> && !detail::RingsOrAbsent<OfAnotherArgument> &&
-              !detail::RingsOrAbsent<NotConst>);
-static_assert(!detail::RingsOrAbsent<Overloaded> && !detail::RingsOrAbsent<Generic> && !detail::RingsOrAbsent<Data>);
-static_assert(!detail::RingsOrAbsent<Chimes> && !detail::RingsOrAbsent<ChimesFinally>);
+struct OfAnotherResultFinally final : OfAnotherResult {};
+static_assert(!rings_right<OfAnotherResult> && !rings_right<OfAnotherArgument> && !rings_right<NotConst>);
+static_assert(!rings_right<Overloaded> && !rings_right<Generic> && !rings_right<Data>);
+static_assert(!rings_right<OfAnotherResultFinally>);
 
 class Private {
-  [[maybe_unused]] int ring() const { return 1; }
-  [[maybe_unused]] int chime(int) const { return 1; }
+  [[maybe_unused]] double ring(int) const { return 1; }
 };
-struct ChimesAlone {
-  int chime() const { return 1; }
+struct NearNames {
+  int rings = 0;
+  void rang(int) {}
+  bool is_ringing() const { return true; }
 };
-static_assert(detail::RingsOrAbsent<Private> && detail::RingsOrAbsent<ChimesAlone>, "neither could be meant");
+static_assert(rings_right<Private> && rings_right<NearNames>, "neither could be meant");
+
+struct BothBells : Bell {
+  using Bell::ring;
+  double ring() const { return 1; }
+};
+static_assert(aloud_right<Bell>, "its `ring` has another purpose");
+static_assert(rings_right<BothBells> && !aloud_right<BothBells> && !aloud_right<OfAnotherArgument>);
 
 struct IsLoud {
   static constexpr bool loud = true;
 };
+struct IsNotLoud {
+  static constexpr bool loud = false;
+};
 struct Number {
   static constexpr int loud = 1;
 };
-struct Noisy {
-  bool noisy = true;
+struct Variable {
+  [[maybe_unused]] static inline bool loud = true;
+};
+struct PerObject {
+  const bool loud = true;
 };
 struct Function {
   bool loud() const { return true; }
 };
-struct OtherFunction {
-  bool noisy() const { return true; }
+struct StaticFunction {
+  static constexpr bool loud() { return true; }
 };
-static_assert(detail::LoudCheck<IsLoud>::passed && detail::LoudCheck<Silent>::passed &&
-              detail::LoudCheck<OtherFunction>::passed);
-static_assert(!detail::LoudOrAbsent<Number> && !detail::LoudOrAbsent<Noisy> && !detail::LoudOrAbsent<Function>);
+static_assert(Loud<IsLoud> && !Loud<IsNotLoud> && !Loud<Number> && !Loud<Variable> && !Loud<PerObject>);
+static_assert(!Loud<Function> && !Loud<StaticFunction> && !Loud<Silent> && !Loud<int>);
+static_assert(loud_right<IsLoud> && loud_right<IsNotLoud> && loud_right<Silent>);
+static_assert(!loud_right<Number> && !loud_right<Variable> && !loud_right<PerObject> && !loud_right<Function> &&
+              !loud_right<StaticFunction>);
+
+// Broken promises are in tests/compile_fail/misspelt_members.cpp.
+struct Promising : Bell, IsLoud {
+  using refinements = refines<tag::Rings, tag::Loud>;
+};
+struct PromisingNothing {
+  using refinements = refines<>;
+};
+static_assert(promise_kept<Promising> && promise_kept<PromisingNothing> && promise_kept<Silent> && promise_kept<int>);
 
 }  // namespace
 
@@ -100,3 +129,5 @@ TEST_CASE("members of the right form are called") {
   CHECK(Bell{}.ring(2) == 2);
   CHECK(FinalBell{}.ring(3) == 3);
 }
+
+}  // namespace PULSECAST_NAMESPACE

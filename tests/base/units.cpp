@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/base/units.hpp>
 
+#include <cmath>
 #include <numbers>
 
 #include <doctest/doctest.h>
@@ -39,4 +40,8 @@ TEST_CASE("degrees and radians undo each other") {
 TEST_CASE("a literal in degrees says the same as the conversion") {
   CHECK(20_deg == support::relative(radians(20), 1e-15));
   CHECK(0.5_deg == support::relative(radians(0.5), 1e-15));
+}
+
+TEST_CASE("a metre is fallen in the time of the textbook") {
+  CHECK(std::sqrt(2 / standard_gravity) == doctest::Approx(0.4516).epsilon(1e-4));
 }

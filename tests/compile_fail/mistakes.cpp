@@ -5,13 +5,22 @@
 // mistake 3: a sink must be callable with one batch
 // mistake 4: a bare Scanner needs a deflector
 // mistake 5: the map is a temporary
-// mistake 6: another name or form here; it must be: bool open.Tick. const noexcept
+// mistake 6: optional member 'open' has another form here. it must be: bool open.Tick. const noexcept
+// mistake 7: Executor: 'threads' is missing or has another form
+// mistake 8: Executor: 'for_each' is missing or has another form
+// mistake 9: Executor: a temporary. name it
+// mistake 10: Platform.trajectory, mount, source.: the second argument must be a mount
+// mistake 11: Platform.trajectory, mount, source.: the second argument must be a mount
+// mistake 12: Transport, Survey's fourth argument: 'workspace' is missing
+// mistake 13: Transport, Survey's fourth argument: 'reflections' is missing or has another form
+// mistake 14: Transport, Survey's fourth argument: 'trace' is missing or has another form
+// mistake 15: optional member 'next_open' is promised by `refinements`, but is missing
 // error: MotionArgument<Stepping
 // error: at.Tick. of an optic, head or trajectory must be const
 // error: MotionArgument<Throwing
 // error: takes an optic and a Scanner, or a head and a Deflector
 // error: a bare Scanner needs a deflector
-// error: the mount is missing
+// error: the second argument must be a mount
 // error: the map is a temporary
 // error: the source must be a Platform
 // error: the second argument must be a Footprint
@@ -47,10 +56,43 @@ struct OwnOptic {
   Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {}; }
 #endif
 #if MISTAKE == 6
-  bool is_open(Tick) const noexcept { return true; }
+  bool open(Tick) const { return true; }
 #else
   bool open(Tick) const noexcept { return true; }
 #endif
+#if MISTAKE == 15
+  using refinements = refines<tag::Gated, tag::ForeseesOpening>;
+  Tick next_opening(Tick t) const noexcept { return t; }
+#endif
+};
+struct OwnThreads {
+#if MISTAKE != 7
+  unsigned threads() { return 1; }
+#endif
+#if MISTAKE == 8
+  void for_each(std::size_t, void (*)(std::size_t)) {}
+#else
+  void for_each(std::size_t count, const IndexTask& task) {
+    while (count-- > 0) task(count);
+  }
+#endif
+};
+struct OwnLight {
+#if MISTAKE != 12
+  int workspace(std::size_t) const { return 0; }
+#endif
+#if MISTAKE == 13
+  int reflections(std::size_t) const noexcept { return 0; }
+#else
+  std::size_t reflections(std::size_t) const noexcept { return 0; }
+#endif
+  TransportResult trace(const Nothing&, const TransportInput&, int&, std::span<Reflection>) const
+#if MISTAKE != 14
+      noexcept
+#endif
+  {
+    return {};
+  }
 };
 struct Stepping {
   Pose<frame::Instrument, frame::Instrument> at(Tick) noexcept { return {}; }
@@ -68,7 +110,9 @@ int main() {
   const std::vector<ReceiverUnit<SingleRay, FirstHit>> receivers(1);
   const Survey survey{platform, SingleRay{}, map, Receiver{}, FirstHit{}};
   const Survey of_receivers{platform, receivers, map, 7};
-  run(survey, {}, [](const EchoBatch&) {});
+  OwnThreads threads;
+  run(survey, {.executor = threads}, [](const EchoBatch&) {});
+  const Survey lit{platform, SingleRay{}, map, OwnLight{}, Receiver{}, FirstHit{}};
 #if MISTAKE == 1
   const Deflector mistake{scanner, OwnOptic{}};
 #elif MISTAKE == 3
@@ -77,6 +121,12 @@ int main() {
   const Platform mistake{Tripod{}, scanner};
 #elif MISTAKE == 5
   const Survey mistake{platform, SingleRay{}, Nothing{}, Receiver{}, FirstHit{}};
+#elif MISTAKE == 9
+  run(survey, {.executor = OwnThreads{}}, [](const EchoBatch&) {});
+#elif MISTAKE == 10
+  const Platform mistake{Mount{}, Tripod{}, turned};
+#elif MISTAKE == 11
+  const Platform mistake{Tripod{}, turned, Mount{}};
 #elif MISTAKE == 0
   const Deflector stepping{Stepping{}, device};
   const Deflector mirror_around_a_mirror{PolygonMirror{}, device};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <pulsecast/base/units.hpp>
@@ -39,6 +40,13 @@ double behind_prism(double light, double wedge, bool inclined_exit, double index
 }
 
 double off_forward(const Vec3& d) { return std::atan2(std::hypot(d.x, d.z), d.y); }
+
+/// Unit direction of one refracted ray; empty where `refract` does not return its lane.
+std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) {
+  Vec3Lanes light(direction);
+  if (refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
+  return light[0];
+}
 
 }  // namespace
 

@@ -18,7 +18,7 @@
 #include <tuple>
 #include <vector>
 
-#include <pulsecast/io/detail/geotiff/samples.hpp>
+#include <pulsecast/io/detail/geotiff/raster_layout.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
 #include "support/data_folder.hpp"

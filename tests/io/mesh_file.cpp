@@ -19,7 +19,7 @@
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
 
-#include <pulsecast/io/detail/mesh_file/placement.hpp>
+#include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/pulsecast.hpp>
 

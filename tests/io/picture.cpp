@@ -16,6 +16,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/scene/scene.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
 
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"

@@ -8,8 +8,10 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/material/material.hpp>
 
 #include "support/generators.hpp"
+#include "support/scattering_laws.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -92,4 +94,24 @@ TEST_CASE("what returns to its source is the lobe's value there, up to what hide
     }
   CHECK(Microfacets{}.backscatter(0) == 0);
   CHECK(Microfacets{.slope = 0.1}.backscatter(1) == doctest::Approx(0.04 / (4 * 0.01)));  // F / (4 s^2)
+}
+
+TEST_CASE("rough facets add their glint to what is scattered under them") {
+  const Material m{.reflectance = 0.4, .law = Microfacet{0.3}};
+  for (const double angle : {0.0, 0.3, 0.9, 1.4}) {
+    const double c = std::cos(angle), facets = Microfacets{0.3, 1.5}.reflected(c);
+    CHECK(m.backscatter(c, 1e-6) == doctest::Approx(Microfacets{0.3, 1.5}.backscatter(c) + (1 - facets) * 0.4 * c));
+    CHECK(m.scattered_share(1e-6, c) == doctest::Approx(facets + (1 - facets) * 0.4));
+    const Vec3 from{std::sin(angle), 0, c}, to{0, 0.6, 0.8};
+    CHECK(m.scattered(from, to, axis::up, 1e-6) ==
+          doctest::Approx(pi * Microfacets{0.3, 1.5}.scattered(from, to, axis::up) + (1 - facets) * 0.4 * 0.8));
+  }
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, 0.8}, axis::up, 1e-6) == doctest::Approx(0.32));
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, -0.8}, axis::up, 1e-6) == 0);
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, -0.8}, Vec3{}, 1e-6) == doctest::Approx(0.1));
+  CHECK_THROWS_AS((Material{.law = Microfacet{0}}.validate()), SettingError);
+}
+
+TEST_CASE("rough facets keep the laws of scattering, but for light that facets hide") {
+  CHECK(support::scattering_laws(Microfacet{0.3}, {.peaked = true, .loses = true}) == "");
 }

@@ -47,7 +47,8 @@ includes_of_higher_layers() {
     may["sensor"] = words " concepts pulse_lanes stage_arguments scanner deflector detector"
     may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud stage_arguments pulse_lanes"
     may["result_buffer"] = may["survey"] " survey"
-    may["run"] = may["result_buffer"] " result_buffer"
+    may["detail"] = may["result_buffer"] " result_buffer"
+    may["run"] = may["detail"] " detail"
     may["pulsecast"] = may["run"] " run version"
     may["io"] = may["pulsecast"] " sensor"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"
@@ -80,8 +81,8 @@ found() {
   grep -nE "$1" $headers | grep -vE "^include/pulsecast/(${2:-no exception}):?"
 }
 rule 'GLM is named in base/vector.hpp only' found '<glm/|glm::' 'base/vector\.hpp'
-rule 'threads live in run.hpp and three headers of base/ only' found \
-     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
+rule 'threads live in run.hpp, its reorder buffer and three headers of base/ only' found \
+     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|detail/reorder_buffer|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/bind)\.hpp'
 rule 'files are for the rooms beside the core' found '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
 rule 'degrees and nanoseconds are for the rooms beside the core' found '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 rule 'the library never prints and never exits' found '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
@@ -204,7 +205,7 @@ unclaimed_includes() {
   for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
     name=${header#include/pulsecast/}
     name=${name%.hpp}
-    case " $claimed" in *" $name "*) continue ;; esac
+    case " $claimed" in *" $name "* | *" ${name%/*}/* "*) continue ;; esac
     case " $with_library" in *" ${name%%/*} "*) continue ;; esac
     without="$without $header"
   done

@@ -43,12 +43,12 @@ notices "$below" "$add #include <pulsecast/scanner/scanner.hpp>\" include/pulsec
 notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/detector/radiometry.hpp"
 notices "$below" "$add #include <pulsecast/io/las.hpp>\" include/pulsecast/run.hpp"
 notices "$below" "$add #include <pulsecast/page/page.hpp>\" include/pulsecast/mpi/run.hpp"
-notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/layout.hpp>\" include/pulsecast/mpi/las.hpp"
+notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/settings.hpp>\" include/pulsecast/mpi/las.hpp"
 notices "the README's table lists the public headers" 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
 notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
-threads='threads live in run.hpp and three headers of base/ only'
+threads='threads live in run.hpp, its reorder buffer and three headers of base/ only'
 notices "$threads" "$add #include <mutex>\" include/pulsecast/survey.hpp"
 notices "$threads" "$add #include <thread>\" include/pulsecast/base/shared_array.hpp"
 notices 'files are for the rooms beside the core' "$add #include <fstream>\" include/pulsecast/survey.hpp"

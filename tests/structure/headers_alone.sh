@@ -29,7 +29,7 @@ awk -v headers="$headers" '
       if (!(list[k] in done) && (above == "" || (above, list[k]) in reached) && (best == "" || size[list[k]] > size[best])) best = list[k]
     return best
   }
-  /^#if PULSECAST_DEFINITIONS/ { getline; next }
+  /^#if PULSECAST_DEFINES/, /^#endif/ { next }
   /^#include <pulsecast\// { gsub(/[<>]/, "", $2); includes[FILENAME] = includes[FILENAME] " " $2 }
   END {
     count = split(headers, list, " ")

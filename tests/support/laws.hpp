@@ -292,6 +292,18 @@ inline std::string continuous_laws(std::span<const ContinuousReturn> returns, co
 }
 }  // namespace detail
 
+namespace detail {
+inline std::string ledger_laws(const EnergyLedger& e, double sent) {
+  if (!(std::fabs(e.sent - sent) <= 1e-9 * sent)) return sentence(e.sent, " J are sent, not ", sent);
+  for (const double term : {e.missed, e.out_of_range, e.absorbed, e.scattered, e.cut, e.received})
+    if (!(term >= 0)) return sentence("a term of ", term, " J");
+  const double sum = e.missed + e.out_of_range + e.absorbed + e.scattered + e.cut;
+  if (!(std::fabs(sum - sent) <= 1e-6 * sent)) return sentence("the terms sum to ", sum, " J of ", sent);
+  if (!(e.received <= e.scattered)) return "more is received than was scattered";
+  return {};
+}
+}  // namespace detail
+
 /// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and
 /// continuous returns, which are inside the gate and of positive power, no more than there is room for; every subray is
 /// recorded if asked for; the answer depends neither on the record nor on what the workspace was used for before.
@@ -322,15 +334,8 @@ template <class T, class Map>
     std::vector<SubrayRecord> record(subrays, unset);
     const TransportResult r = trace(fresh, reflections, record);
     const EnergyLedger& e = r.energy;
-    const double sent = emitter.laser.energy();
-    if (!(std::fabs(e.sent - sent) <= 1e-9 * sent))
-      return detail::sentence("pulse ", k, ": ", e.sent, " J are sent, not ", sent);
-    for (const double term : {e.missed, e.out_of_range, e.absorbed, e.scattered, e.cut, e.received})
-      if (!(term >= 0)) return detail::sentence("pulse ", k, ": a term of ", term, " J");
-    const double sum = e.missed + e.out_of_range + e.absorbed + e.scattered + e.cut;
-    if (!(std::fabs(sum - sent) <= 1e-6 * sent))
-      return detail::sentence("pulse ", k, ": the terms sum to ", sum, " J of ", sent);
-    if (!(e.received <= e.scattered)) return detail::sentence("pulse ", k, ": more is received than was scattered");
+    if (const std::string broken = detail::ledger_laws(e, emitter.laser.energy()); !broken.empty())
+      return detail::sentence("pulse ", k, ": ", broken);
     if (r.reflections > most || reflections[most].power != -1)
       return detail::sentence("pulse ", k, ": there is no room for its reflections");
     double received = 0;
@@ -541,6 +546,20 @@ template <class Survey, class WorkspaceOf>
   return sum.hex();
 }
 
+/// Checksum of a part simulated in order.
+template <class Survey, class Workspace>
+[[nodiscard]] std::string checksum_in_order(const Survey& survey, const RunOptions& part, Workspace& workspace) {
+  Checksum sum;
+  ResultBuffer result;
+  survey.simulate_in_order(part.first, part.end, workspace, [&](const Outcome& outcome) {
+    result.clear();
+    result.append(outcome);
+    sum.add(result.batch(survey.sample_interval()));
+    return outcome.shot.index + part.stride;
+  });
+  return sum.hex();
+}
+
 }  // namespace detail
 
 /// Results are those of trajectory, map and clock as they are, whatever they were in the calls before: each of these
@@ -593,15 +612,8 @@ template <PulseSurvey Survey, class Change>
                                             survey, slots, [&]() -> auto& { return kept; }))})
         if (!broken.empty()) return broken;
       if constexpr (SimulatesInOrder<Survey>) {
-        Checksum sum;
-        ResultBuffer result;
-        survey.simulate_in_order(first, first + stride * step, kept_in_order, [&](const Outcome& outcome) {
-          result.clear();
-          result.append(outcome);
-          sum.add(result.batch(survey.sample_interval()));
-          return outcome.shot.index + stride;
-        });
-        if (std::string broken = differs("a kept workspace in order", sum.hex()); !broken.empty()) return broken;
+        const std::string sum = detail::checksum_in_order(survey, part, kept_in_order);
+        if (std::string broken = differs("a kept workspace in order", sum); !broken.empty()) return broken;
       }
       if (step == 1667 && place == 2) {
         if (expected == first_of_twice) return detail::sentence("change ", k, " changes nothing");

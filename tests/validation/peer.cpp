@@ -16,6 +16,7 @@
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
 
 #include "validation/table.hpp"
 

@@ -12,7 +12,7 @@ from conan.tools.files import copy
 
 class Pulsecast(ConanFile):
     name = "pulsecast"
-    version = "0.2.0"
+    version = "0.3.0"
     license = "MIT"
     description = "Virtual laser scanning: a header-only C++20 library"
     package_type = "header-library"

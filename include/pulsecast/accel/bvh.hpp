@@ -7,8 +7,6 @@
 #include <array>
 #include <bit>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -48,12 +46,8 @@ class Bvh {
   }
 
   explicit Bvh(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, centre_, depth_, nodes_, primitives_);
-  }
+  void archive(auto& a) { a(bounds_, centre_, depth_, nodes_, primitives_); }
 
-  /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
     std::vector<std::uint8_t> depths(nodes_.size());  // 0 for no parent so far
     if (!depths.empty()) depths[0] = 1;
@@ -76,19 +70,14 @@ class Bvh {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + primitives_.memory(); }
 
-  /// Primitives in the order of the leaves.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept {
     return {primitives_.data(), primitives_.size()};
   }
 
-  /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
-  /// hit.
-  template <class Rays, class Test, class Hits>
-  requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  template <class Rays>
+  void closest(const Rays& rays, const detail::LeafTest auto& test, auto& nearest) const noexcept {
     if (nodes_.empty()) return;
     if constexpr (Rays::capacity == 1)
       descend_alone(rays, test, nearest);
@@ -128,10 +117,9 @@ class Bvh {
 
   struct alignas(64) Node {
     QuantizedBox8<Real> boxes;
-    std::uint32_t children = 0;    ///< index of the first child node; the others follow it
-    std::uint32_t primitives = 0;  ///< index of the first leaf primitive; the others follow it
-    std::uint8_t kinds[places] =
-        {};  ///< per child: leaf size in the lower three bits, 0 for a node; above, offset from the first
+    std::uint32_t children = 0;       ///< index of the first child node; the others follow it
+    std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
+    std::uint8_t kinds[places] = {};  ///< by child: leaf size in the lower three bits, 0 for a node; above, its offset
 
     [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
     [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {
@@ -146,8 +134,7 @@ class Bvh {
   };
   static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< sentinel in place of a size
 
-  template <class Interval, class Rays, class Test, class Hits>
-  void descend(const Interval& interval, const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  void descend(const auto& interval, const auto& rays, const auto& test, auto& nearest) const noexcept {
     std::array<StackEntry, (places - 1) * detail::max_depth + 1> stack;
     std::size_t stack_size = 0;
     Real limit = interval.limit(rays, nearest);
@@ -195,8 +182,7 @@ class Bvh {
   };
 
   /// As `descend`, for a single ray.
-  template <class Rays, class Test, class Hits>
-  void descend_alone(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  void descend_alone(const auto& rays, const auto& test, auto& nearest) const noexcept {
     using Interval = RayInterval<Real>;
     const auto size_of = [](typename Interval::Key key) noexcept { return static_cast<std::uint32_t>(key & 7); };
     const Interval interval(rays, bounds_, centre_);
@@ -244,7 +230,7 @@ class Bvh {
 
   template <class Test>
   void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
-    static_assert(detail::PrefetchesPrimitivesCheck<Test>::passed);
+    static_assert(detail::members_checked<Test, tag::PrefetchesPrimitives>);
     if (next.size == 0)
       prefetch(&nodes_[next.first]);
     else if constexpr (PrefetchesPrimitives<Test>)

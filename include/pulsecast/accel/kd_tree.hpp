@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,19 +32,15 @@ class KdTree {
     centre_ = input.centre;
     if (input.primitives.empty()) return;
     const detail::KdTreeBuilder<Real, Node> builder(input.primitives, workers);
-    cell_ = builder.cell();
-    depth_ = builder.depth();
-    nodes_ = builder.nodes();
-    order_ = builder.order();
+    cell_ = builder.cell;
+    depth_ = builder.depth;
+    nodes_ = builder.nodes;
+    order_ = builder.order;
   }
 
   explicit KdTree(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, centre_, cell_, depth_, nodes_, order_);
-  }
+  void archive(auto& a) { a(bounds_, centre_, cell_, depth_, nodes_, order_); }
 
-  /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
     std::vector<std::uint8_t> depths(nodes_.size());  // 0 for no parent so far
     if (!depths.empty()) depths[0] = 1;
@@ -71,14 +65,9 @@ class KdTree {
   /// Primitives in the order of the leaves, repeated in every leaf that they reach.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {order_.data(), order_.size()}; }
 
-  /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `SingleRayPacket` may
-  /// hit.
-  template <class Rays, class Test, class Hits>
-  requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+  void closest(const auto& rays, const detail::LeafTest auto& test, auto& nearest) const noexcept {
     if (nodes_.empty()) return;
     const BundleInterval<Real> interval(rays, bounds_, centre_);
     std::array<StackEntry, detail::max_depth> stack;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,11 +31,7 @@ class Linear {
   }
 
   explicit Linear(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bounds_, primitives_);
-  }
-  /// True if all archived indices are below `primitives`.
+  void archive(auto& a) { a(bounds_, primitives_); }
   [[nodiscard]] bool is_consistent(std::size_t primitives) const noexcept {
     return std::all_of(primitives_.begin(), primitives_.end(), [&](PrimitiveIndex i) { return i < primitives; });
   }
@@ -47,9 +42,7 @@ class Linear {
     return {primitives_.data(), primitives_.size()};
   }
 
-  template <class Rays, class Test, class Hits>
-  requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const Rays&, const Test& test, Hits&) const noexcept {
+  void closest(const auto&, const detail::LeafTest auto& test, auto&) const noexcept {
     if (!primitives_.empty()) test(std::span<const PrimitiveIndex>(primitives_.data(), primitives_.size()));
   }
 

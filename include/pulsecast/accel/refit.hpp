@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -49,8 +47,7 @@ class BvhRefit {
   /// some primitives of `from.order()`. `bounds` hold all of them [m]. `to`, last set by this object or empty, gives
   /// its memory; without another owner nothing is allocated. Returns false if the cost exceeds `max_growth`: `to` is
   /// then empty. @throws SettingError for boxes beyond 1e18 m
-  template <class BoxOf>
-  [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const BoxOf& box_of,
+  [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const auto& box_of,
                            Bvh<Real>& to) {
     if (from.nodes_.empty()) {
       to = from;
@@ -119,9 +116,8 @@ class BvhRefit {
   }
 
   /// Computes all boxes, children before their parents, and sets the tree unless its cost is too high.
-  template <class BoxOf>
   [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth,
-                            const Box& bounds, const BoxOf& box_of, Bvh<Real>& to) {
+                            const Box& bounds, const auto& box_of, Bvh<Real>& to) {
     const double extent = std::max(max_norm(bounds.min), max_norm(bounds.max));
     if (!(extent <= detail::max_coordinate))
       throw_setting_error("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");

@@ -9,10 +9,11 @@
 /// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML
 /// surveys. The target defines `PULSECAST_COMPILED` for its users, who then include declarations only.
 
+/// True where a header ends with its definitions: in no user of the library, and in its source of that header.
 #if defined(PULSECAST_COMPILED)
-#define PULSECAST_DEFINITIONS 0  ///< true where a public header ends with its definitions
+#define PULSECAST_DEFINES(header) PULSECAST_DEFINES_##header
 #else
-#define PULSECAST_DEFINITIONS 1
+#define PULSECAST_DEFINES(header) 1
 #endif
 
 #if defined(PULSECAST_COMPILED_SOURCE)

@@ -54,9 +54,8 @@ class SettingError : public std::invalid_argument {
                             : SettingError(std::move(field), problem_);
   }
 
-  [[nodiscard]] const std::string& field() const noexcept {
-    return field_;
-  }                                                               ///< name of the setting, as in `Scanner::pulse_rate`
+  /// Name of the setting, as in `Scanner::pulse_rate`.
+  [[nodiscard]] const std::string& field() const noexcept { return field_; }
   [[nodiscard]] double value() const noexcept { return value_; }  ///< value that was refused, in `unit()`; NaN if none
   [[nodiscard]] const std::string& unit() const noexcept { return unit_; }  ///< SI symbol; empty for a pure number
   [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
@@ -73,8 +72,7 @@ class SettingError : public std::invalid_argument {
 };
 
 /// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there already.
-template <class Function>
-decltype(auto) naming(const std::string& name, const Function& function) {
+decltype(auto) naming(const std::string& name, const auto& function) {
   try {
     return function();
   } catch (const SettingError& error) {
@@ -94,9 +92,8 @@ class FileError : public std::runtime_error {
         problem_(std::move(problem)) {}
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< name of the file
-  [[nodiscard]] const std::string& place() const noexcept {
-    return place_;
-  }  ///< as in "line 12"; empty for the whole file
+  /// As in "line 12"; empty for the whole file.
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< defect and expectation, in words
 
  private:

@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_EXTINCTION_HPP
 
 #include <cmath>
-#include <cstdint>
 
 #include <pulsecast/base/namespace.hpp>
 

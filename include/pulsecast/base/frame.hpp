@@ -67,6 +67,14 @@ struct TimedPose {
 /// Converts axes x forward, y left, z up (ROS REP 103) to x right, y forward, z up.
 [[nodiscard]] inline Vec3 from_forward_left_up(const Vec3& v) noexcept { return {-v.y, v.x, v.z}; }
 
+/// Heading of a direction: clockwise from north, in [-pi, pi]; `otherwise` if the direction is vertical or zero [rad].
+[[nodiscard]] inline double heading_of(const Vec3& direction, double otherwise = 0) noexcept {
+  return direction.x == 0 && direction.y == 0 ? otherwise : std::atan2(direction.x, direction.y);
+}
+
+/// Attitude of a level body with a compass heading, clockwise from north [rad].
+[[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(axis::up, -heading); }
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

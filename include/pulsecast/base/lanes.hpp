@@ -3,9 +3,6 @@
 #ifndef PULSECAST_BASE_LANES_HPP
 #define PULSECAST_BASE_LANES_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
@@ -49,9 +46,7 @@ struct TickLanes {
   simd::Doubles fraction{};  ///< fractional parts, in [0, 1) [s]
 
   TickLanes() = default;
-  /// Of whole and fractional parts.
   TickLanes(const simd::Doubles& whole, const simd::Doubles& part) noexcept : second(whole), fraction(part) {}
-  /// One time in all lanes.
   explicit TickLanes(const Tick& t) noexcept
       : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
 
@@ -76,7 +71,6 @@ struct TickLanes {
   [[nodiscard]] Tick operator[](std::size_t lane) const noexcept {
     return {static_cast<std::int64_t>(second[lane]), fraction[lane]};
   }
-  /// Sets the time of a lane.
   void set(std::size_t lane, const Tick& t) noexcept {
     second[lane] = static_cast<double>(t.second);
     fraction[lane] = t.fraction;
@@ -112,13 +106,10 @@ struct Vec3Lanes {
   simd::Doubles z{};  ///< third components
 
   Vec3Lanes() = default;
-  /// Of components.
   Vec3Lanes(const simd::Doubles& x_, const simd::Doubles& y_, const simd::Doubles& z_) noexcept : x(x_), y(y_), z(z_) {}
-  /// One vector in all lanes.
   explicit Vec3Lanes(const Vec3& v) noexcept : x(in_all_lanes(v.x)), y(in_all_lanes(v.y)), z(in_all_lanes(v.z)) {}
 
   [[nodiscard]] Vec3 operator[](std::size_t lane) const noexcept { return {x[lane], y[lane], z[lane]}; }
-  /// Sets the vector of a lane.
   void set(std::size_t lane, const Vec3& v) noexcept {
     x[lane] = v.x;
     y[lane] = v.y;
@@ -148,11 +139,9 @@ struct RotationLanes {
   simd::Doubles z{};                  ///< third imaginary parts
 
   RotationLanes() = default;
-  /// Of components.
   RotationLanes(const simd::Doubles& w_, const simd::Doubles& x_, const simd::Doubles& y_,
                 const simd::Doubles& z_) noexcept
       : w(w_), x(x_), y(y_), z(z_) {}
-  /// One rotation in all lanes.
   explicit RotationLanes(const Rotation& r) noexcept
       : w(in_all_lanes(r.w)), x(in_all_lanes(r.x)), y(in_all_lanes(r.y)), z(in_all_lanes(r.z)) {}
   /// About a unit axis, by an angle [rad].
@@ -164,7 +153,6 @@ struct RotationLanes {
   [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept {
     return detail::rotation_wxyz(w[lane], x[lane], y[lane], z[lane]);
   }
-  /// Sets the rotation of a lane.
   void set(std::size_t lane, const Rotation& r) noexcept {
     w[lane] = r.w;
     x[lane] = r.x;
@@ -195,13 +183,10 @@ struct PoseLanes {
   Vec3Lanes position{};      ///< origins of `From` in `To` [m]
 
   PoseLanes() = default;
-  /// Of rotations and positions.
   explicit PoseLanes(const RotationLanes& r, const Vec3Lanes& p = {}) noexcept : rotation(r), position(p) {}
-  /// One pose in all lanes.
   explicit PoseLanes(const Pose<From, To>& p) noexcept : rotation(p.rotation), position(p.position) {}
 
   [[nodiscard]] Pose<From, To> operator[](std::size_t lane) const noexcept { return {rotation[lane], position[lane]}; }
-  /// Sets the pose of a lane.
   void set(std::size_t lane, const Pose<From, To>& p) noexcept {
     rotation.set(lane, p.rotation);
     position.set(lane, p.position);
@@ -216,17 +201,21 @@ template <class A, class B, class C>
 }
 
 /// True if in each of these lanes the pose is `rigid`, or not finite: a run reports NaN.
-template <class From, class To>
-[[nodiscard]] bool rigid_lanes(const PoseLanes<From, To>& poses, const simd::Mask& lanes) noexcept {
+[[nodiscard]] bool rigid_lanes(const auto& poses, const simd::Mask& lanes) noexcept {
   for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
     if (lanes[lane] != 0 && poses[lane].finite() && !poses[lane].rigid()) return false;
   return true;
 }
 
-/// Pose at one tick of a motion that `MovesInLanes`: its register of one.
+namespace detail {
 template <class From, class To, class Motion>
-[[nodiscard]] Pose<From, To> pose_in_lanes(const Motion& motion, Tick t) noexcept {
-  PoseLanes<From, To> poses;
+PoseLanes<From, To> lanes_of(simd::Mask (Motion::*poses)(const TickLanes&, PoseLanes<From, To>&) const noexcept);
+}
+
+/// Pose at one tick of a motion that `MovesInLanes`: its register of one.
+template <class Motion>
+[[nodiscard]] auto pose_in_lanes(const Motion& motion, Tick t) noexcept {
+  decltype(detail::lanes_of(&Motion::poses)) poses;
   motion.poses(TickLanes(t), poses);
   return poses[0];
 }

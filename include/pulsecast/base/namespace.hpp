@@ -3,7 +3,17 @@
 #ifndef PULSECAST_BASE_NAMESPACE_HPP
 #define PULSECAST_BASE_NAMESPACE_HPP
 
-#include <cstddef>  // with the macros of the standard library
+#include <cstddef>  // for all headers; with the macros of the standard library
+#include <cstdint>  // for all headers
+
+/// Rejects compiler options that give up IEEE 754 arithmetic: infinities, NaN rays, the order of additions. Contraction
+/// of a product and a sum into one rounding (-ffp-contract=fast, on machines that have it) is welcome.
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
+// clang-format off
+#error "pulsecast needs IEEE 754 arithmetic: compile without -ffast-math, -Ofast, -ffinite-math-only, -funsafe-math-optimizations; -O3 will do"
+// clang-format on
+#endif
 
 /// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones
 /// by macros that change the layout of types or the meaning of their constructors. Files of one program may thus be

@@ -3,23 +3,70 @@
 #ifndef PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 #define PULSECAST_BASE_OPTIONAL_MEMBER_HPP
 
-/// Defines `detail::ModelCheck<T>` for a refinement concept `Model` of one optional member `name`. Its `passed`
-/// refuses, by a static assertion that quotes `form`, a type with an accessible member of that name in another form, or
-/// with a member under one of four near names that takes the arguments `call`. For constants `call` is empty. A member
-/// of a near name is allowed beside one of the right form.
-#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, near_1, near_2, near_3, near_4)                    \
-  namespace detail {                                                                                          \
-  template <class T>                                                                                          \
-  concept Model##OrAbsent =                                                                                   \
-      Model<T> || !(                                                                                          \
-                      requires { &T::name; } || requires(T & t) { t.name call; } ||                           \
-                      requires(T & t) { t.near_1 call; } || requires(T & t) { t.near_2 call; } ||             \
-                      requires(T & t) { t.near_3 call; } || requires(T & t) { t.near_4 call; });              \
-  template <class T>                                                                                          \
-  struct Model##Check {                                                                                       \
-    static_assert(Model##OrAbsent<T>, "an optional member has another name or form here; it must be: " form); \
-    static constexpr bool passed = true;                                                                      \
-  };                                                                                                          \
+#include <concepts>
+#include <type_traits>
+
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Promise of a type to model refinements, by a tag of the name of each concept: a public member
+/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. The absence of a promised member is an
+/// error.
+template <class... Tags>
+struct refines {
+  /// True; refuses a type that breaks the promise.
+  template <class T>
+  static constexpr bool kept = (Tags::template checked<T, true>() && ...);
+};
+
+namespace detail {
+
+template <class T>
+concept PromisesRefinements = requires {
+  typename T::refinements;
+};
+template <class T>
+inline constexpr bool promise_kept = true;
+template <PromisesRefinements T>
+inline constexpr bool promise_kept<T> = T::refinements::template kept<T>;
+
+/// True; refuses a type that breaks its promise, or has a member of one of the refinements in another form.
+template <class T, class... Tags>
+inline constexpr bool members_checked = promise_kept<T> && (Tags::template checked<T>() && ...);
+
+}  // namespace detail
+}  // namespace PULSECAST_NAMESPACE
+
+/// Defines the tag of a refinement, the concept `Model` of one optional member `name`, with its checks. A type has the
+/// member if it is accessible, or callable with the arguments `call`, as one of several overloads is. A last argument
+/// `&& ...` excepts types `T` with a member of that name for another purpose. Other names are never looked at.
+#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                                     \
+  namespace tag {                                                                                                   \
+  struct Model {                                                                                                    \
+    template <class T>                                                                                              \
+    static constexpr bool right =                                                                                   \
+        pulsecast::Model<T> || !(                                                                                   \
+                                   requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);         \
+    template <class T, bool promised = false>                                                                       \
+    static consteval bool checked() {                                                                               \
+      static_assert(right<T>, "optional member '" #name "' has another form here; it must be: " form);              \
+      static_assert(pulsecast::Model<T> || !promised,                                                               \
+                    "optional member '" #name "' is promised by `refinements`, but is missing; it must be: " form); \
+      return true;                                                                                                  \
+    }                                                                                                               \
+  };                                                                                                                \
   }
+
+/// Defines the concept `Model` of types with a constant `static constexpr bool name = true`, and its checks. A constant
+/// that is false is as one that is absent.
+#define PULSECAST_OPTIONAL_CONSTANT(Model, name)                                                     \
+  template <class T>                                                                                 \
+  concept Model = std::same_as<decltype(T::name), const bool> && std::bool_constant<T::name>::value; \
+  PULSECAST_OPTIONAL_MEMBER(                                                                         \
+      Model, "static constexpr bool " #name " = true", name, (), &&!requires {                       \
+        requires std::same_as<decltype(T::name), const bool>;                                        \
+        typename std::bool_constant<T::name>;                                                        \
+      })
 
 #endif

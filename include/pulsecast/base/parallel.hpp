@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <concepts>
-#include <cstddef>
 #include <exception>
 #include <memory>
 #include <thread>
@@ -68,6 +67,20 @@ class ExecutorRef {
   requires(!std::same_as<std::remove_const_t<E>, ExecutorRef>) ExecutorRef(E& executor)
   noexcept : executor_(const_cast<std::remove_const_t<E>*>(&executor)), functions_(&functions<E>) {}
 
+  /// Names the mistake in the argument.
+  template <class E>
+  requires(!std::same_as<std::remove_cvref_t<E>, ExecutorRef>) ExecutorRef(E&&)
+  noexcept {
+    // clang-format off
+    static_assert(requires(E e) { { e.threads() } -> std::convertible_to<unsigned>; },
+                  "Executor: 'threads' is missing or has another form; it must be: unsigned threads()");
+    static_assert(requires(E e, const IndexTask& task) { e.for_each(std::size_t{}, task); },
+                  "Executor: 'for_each' is missing or has another form; it must be: "
+                  "void for_each(std::size_t, const IndexTask&)");
+    // clang-format on
+    static_assert(std::is_lvalue_reference_v<E>, "Executor: a temporary; name it, as it must outlive the run");
+  }
+
   /// False without an executor; the other functions then must not be called.
   explicit operator bool() const noexcept { return executor_ != nullptr; }
   /// Threads that a call may use, the caller's included.
@@ -105,7 +118,7 @@ class Workers {
   Workers(unsigned threads = 0) noexcept : threads_(threads) {}
   /// The threads of an executor.
   template <class E>
-  requires std::constructible_from<ExecutorRef, E&> Workers(E& executor)
+  requires Executor<E> Workers(E& executor)
   noexcept : executor_(executor) {}
   /// Up to `threads` threads of an executor, 0 for all of its threads; without an executor as above.
   Workers(ExecutorRef executor, unsigned threads) noexcept : executor_(executor), threads_(threads) {}

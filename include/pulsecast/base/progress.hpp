@@ -4,8 +4,6 @@
 #define PULSECAST_BASE_PROGRESS_HPP
 
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 
 #include <pulsecast/base/tick.hpp>
 

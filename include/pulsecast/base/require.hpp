@@ -92,21 +92,15 @@ concept Normalizable = requires(Settings& settings) {
   noexcept->std::same_as<void>;
 };
 
-/// Settings or detector with a `validate` of either form.
-template <class T>
-concept Validating = Validated<T> || ValidatesLaser<T>;
-
-PULSECAST_OPTIONAL_MEMBER(Validating, "void validate() const, or of a detector void validate(const Laser&) const",
-                          validate, (), check, verify, is_valid, validate_settings)
-PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate_laser,
-                          (std::declval<const Laser&>()), validate, check, check_laser, validate_for)
-PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, (), normalise, normalized, normalised,
-                          make_unit)
+PULSECAST_OPTIONAL_MEMBER(Validated, "void validate() const", validate, (), &&!pulsecast::ValidatesLaser<T>)
+PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate, (std::declval<const Laser&>()),
+                          &&!pulsecast::Validated<T>)
+PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, ())
 
 /// Validates settings in place, and normalizes them. Throws a `SettingError`.
 template <class Settings>
 void validate_in_place(Settings& settings) {
-  static_assert(detail::ValidatingCheck<Settings>::passed && detail::NormalizableCheck<Settings>::passed);
+  static_assert(detail::members_checked<Settings, tag::Validated, tag::Normalizable>);
   if constexpr (Validated<Settings>) settings.validate();
   if constexpr (Normalizable<Settings>) settings.normalize();
 }

@@ -22,9 +22,7 @@ class ScanAngle {
   ScanAngle(double right, double down) noexcept : right_(std::isnan(down) ? down : right), down_(down) {}
 
   /// Angle [rad].
-  operator double() const noexcept {
-    return std::isnan(down_) ? right_ : std::atan2(right_, down_);
-  }  // NOLINT: as above
+  operator double() const noexcept { return std::isnan(down_) ? right_ : std::atan2(right_, down_); }  // NOLINT
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_BASE_SCRATCH_MEMORY_HPP
 #define PULSECAST_BASE_SCRATCH_MEMORY_HPP
 
-#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -99,8 +98,7 @@ template <class T>
 class Borrowed {
  public:
   /// Takes an object that fits, or makes one from `need`.
-  template <class Need>
-  Borrowed(ScratchMemory* memory, const Need& need) : memory_(memory), item_(memory ? memory->take<T>(need) : nullptr) {
+  Borrowed(ScratchMemory* memory, const auto& need) : memory_(memory), item_(memory ? memory->take<T>(need) : nullptr) {
     if (!item_) item_ = std::make_unique<T>(need);
   }
   Borrowed(const Borrowed&) = delete;

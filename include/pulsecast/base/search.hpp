@@ -3,16 +3,13 @@
 #ifndef PULSECAST_BASE_SEARCH_HPP
 #define PULSECAST_BASE_SEARCH_HPP
 
-#include <cstddef>
-
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Index of the first of `count` elements for which `before(i)` is false, by binary search. Requires a partition: true,
 /// then false. Compiles in a fraction of the time of std::lower_bound.
-template <class Before>
-[[nodiscard]] constexpr std::size_t first_not(std::size_t count, const Before& before) noexcept {
+[[nodiscard]] constexpr std::size_t first_not(std::size_t count, const auto& before) noexcept {
   std::size_t first = 0;
   while (count > 0) {
     const std::size_t half = count / 2;
@@ -34,8 +31,7 @@ struct Neighbours {
 
 /// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all elements before the
 /// place.
-template <class Before>
-[[nodiscard]] constexpr Neighbours neighbours(std::size_t count, const Before& before) noexcept {
+[[nodiscard]] constexpr Neighbours neighbours(std::size_t count, const auto& before) noexcept {
   const std::size_t i = first_not(count, before);
   return {i == 0 ? 0 : i - 1, i == count ? count - 1 : i};
 }

@@ -4,8 +4,6 @@
 #define PULSECAST_BASE_SHARED_ARRAY_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <new>
 #include <span>

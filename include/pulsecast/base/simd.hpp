@@ -3,13 +3,10 @@
 #ifndef PULSECAST_BASE_SIMD_HPP
 #define PULSECAST_BASE_SIMD_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
 
-#include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
 /// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set
@@ -83,8 +80,7 @@ template <class Real>
 }
 
 /// Register whose lanes are `number(lane)`.
-template <class Number>
-[[nodiscard]] inline Doubles generate(const Number& number) noexcept {
+[[nodiscard]] inline Doubles generate(const auto& number) noexcept {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Doubles{number(lane)...}; }
   (std::make_index_sequence<lane_count>());
 }
@@ -164,8 +160,7 @@ struct Vec4 {
   }
 
   /// Vector whose registers are `make(i)`.
-  template <class Make>
-  [[nodiscard]] static Vec4 made(const Make& make) noexcept {
+  [[nodiscard]] static Vec4 made(const auto& make) noexcept {
     Vec4 four;
     each([&](std::size_t i) { four.parts[i] = make(i); });
     return four;
@@ -196,8 +191,7 @@ struct Vec4 {
   using Bits = Vec<Word, 4 / count>;
   static constexpr Word sign_bit = Word{1} << (8 * sizeof(Real) - 1);
 
-  template <class Do>
-  static void each(const Do& act) noexcept {
+  static void each(const auto& act) noexcept {
     for (std::size_t i = 0; i < count; ++i) act(i);
   }
 };
@@ -214,10 +208,7 @@ template <class Real>
 }
 
 /// Loads consecutive numbers into `v`, beginning with `first`.
-template <class V, class Number>
-inline void fill(V& v, const Number& first) noexcept {
-  std::memcpy(&v, &first, sizeof v);
-}
+inline void fill(auto& v, const auto& first) noexcept { std::memcpy(&v, &first, sizeof v); }
 
 /// Vector of consecutive numbers in memory, beginning with `first`.
 template <class V, class Number>
@@ -228,14 +219,10 @@ template <class V, class Number>
 }
 
 /// Stores a vector to consecutive numbers, beginning with `first`.
-template <class V, class Number>
-inline void store(const V& v, Number& first) noexcept {
-  std::memcpy(&first, &v, sizeof v);
-}
+inline void store(const auto& v, auto& first) noexcept { std::memcpy(&first, &v, sizeof v); }
 
 /// Bit mask of the lanes where a mask is set.
-template <class M>
-[[nodiscard]] inline unsigned bits(const M& mask) noexcept {
+[[nodiscard]] inline unsigned bits(const auto& mask) noexcept {
   constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
 #if defined(__SSE2__)
   if constexpr (sizeof mask == 16)

@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_SUGGESTION_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <numeric>
 #include <span>
 #include <string>

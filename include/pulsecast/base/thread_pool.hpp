@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_THREAD_POOL_HPP
 
 #include <condition_variable>
-#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -71,7 +70,6 @@ class ThreadPool {
     Job* jobs = nullptr;  ///< linked list, on the stacks of the callers
     bool ending = false;
 
-    /// Work of a thread of the pool.
     void help() noexcept {
       std::unique_lock lock(mutex);
       for (;;) {

@@ -5,9 +5,7 @@
 
 #include <cmath>
 #include <compare>
-#include <cstdint>
 
-#include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -67,6 +65,14 @@ struct Tick {
     return fraction < 1 ? Tick{second, fraction} : Tick{second + 1, fraction - 1};
   }
 };
+
+/// Index, from 0, of the current step in a cycle of n steps at a constant rate [Hz].
+/// A time between two steps takes the nearer one, so at the pulse rate every pulse takes one step in spite of rounding.
+[[nodiscard]] inline std::size_t step_in_cycle(const Tick& t, double steps_per_second, std::size_t n) noexcept {
+  const double length = static_cast<double>(n);
+  const auto step = static_cast<std::size_t>(std::floor(t.phase(steps_per_second / length) * length + 0.5));
+  return step < n ? step : 0;
+}
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -16,7 +16,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
 // GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it must not be linked.

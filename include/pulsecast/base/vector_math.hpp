@@ -5,8 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -23,6 +21,13 @@
 /// the number of lanes and the instruction set. With contraction the errors below hold, but the last bits differ.
 /// Errors are in units in the last place of the result (ulp).
 namespace PULSECAST_NAMESPACE::simd {
+
+/// Sine and cosine of the same angle.
+template <class V>
+struct SineCosine {
+  V sin;  ///< sine
+  V cos;  ///< cosine
+};
 
 namespace detail {
 template <class V>
@@ -42,8 +47,7 @@ template <class V>
 }
 /// True if a comparison holds in any lane.
 [[nodiscard]] inline bool any(bool mask) noexcept { return mask; }
-template <class M>
-[[nodiscard, gnu::always_inline]] inline bool any(const M& mask) noexcept {
+[[nodiscard, gnu::always_inline]] inline bool any(const auto& mask) noexcept {
   std::int64_t set = 0;
   for (std::size_t lane = 0; lane < sizeof mask / sizeof mask[0]; ++lane) set |= mask[lane];
   return set != 0;
@@ -93,16 +97,7 @@ template <class V>
   const V half = 0.5 * z, most = 1.0 - half;
   return most + (((1.0 - most) - half) + (z * r - high * low));
 }
-}  // namespace detail
 
-/// Sine and cosine of the same angle.
-template <class V>
-struct SineCosine {
-  V sin;  ///< sine
-  V cos;  ///< cosine
-};
-
-namespace detail {
 /// Sets the lanes of angles beyond `greatest_angle`.
 template <class V>
 [[gnu::noinline, gnu::cold]] void set_great_angles(const V& x, SineCosine<V>& both) noexcept {
@@ -118,6 +113,21 @@ template <class V>
   }
   std::memcpy(&both.sin, sines, sizeof x);
   std::memcpy(&both.cos, cosines, sizeof x);
+}
+
+/// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
+  constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
+  const Bits<V> shifted = bits_of(x) + (one - root_half);
+  const V k = std::bit_cast<V>(static_cast<Bits<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
+  const V f = std::bit_cast<V>(static_cast<Bits<V>>((shifted & fraction) + root_half)) - 1.0;
+  const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
+  const V r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
+              z * (6.666666666666735130e-01 +
+                   w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  return k * 6.93147180369123816490e-01 -
+         ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
 }
 }  // namespace detail
 
@@ -190,24 +200,7 @@ template <class V>
   return x == x ? (y == y ? detail::with_sign(angle, y) : nan) : nan;
 }
 
-namespace detail {
-/// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
-template <class V>
-[[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
-  constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
-  const Bits<V> shifted = bits_of(x) + (one - root_half);
-  const V k = std::bit_cast<V>(static_cast<Bits<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
-  const V f = std::bit_cast<V>(static_cast<Bits<V>>((shifted & fraction) + root_half)) - 1.0;
-  const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
-  const V r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
-              z * (6.666666666666735130e-01 +
-                   w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-  return k * 6.93147180369123816490e-01 -
-         ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
-}
-}  // namespace detail
-
-/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: that of `log_of_normal`.
+/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: as of `log_of_normal`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
   constexpr double least = std::numeric_limits<double>::min(), infinity = std::numeric_limits<double>::infinity();

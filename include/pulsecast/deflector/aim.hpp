@@ -36,8 +36,7 @@ namespace PULSECAST_NAMESPACE {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;
   if (y < 0 && aside_squared < 1e-300) return {detail::rotation_wxyz(0, 0, 0, 1), {}};  // straight back: about up
-  const double w =
-      y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
+  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y; near -1 only the first form does not cancel
   return {normalize(detail::rotation_wxyz(w, z, 0, -x)), {}};
 }
 

@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,18 +17,16 @@ namespace PULSECAST_NAMESPACE {
 
 /// Deflects the pulses of a laser by a moving optic, or rotates a whole instrument by a head:
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
-// clang-format off
 template <class Moving, class Source>
 requires detail::Deflectable<Moving, Source>
 class Deflector {
   // clang-format on
-  static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
-  static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
   static_assert(Gated<Moving> || !ForeseesOpening<Moving>,
                 "Deflector: an optic with next_open(Tick) needs open(Tick), too");
   static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;
 
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source)
       : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
@@ -42,7 +39,6 @@ class Deflector {
     return pulse_lanes(i, 1)[0];
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(source_, i, count);
     detail::PosesOf<Moving> poses;
@@ -53,10 +49,8 @@ class Deflector {
     return out;
   }
 
-  /// As the concept FindsSlots requires.
   [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return source_.slot_from(t); }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires foresees || SkipsBlocked<Source> {
     if constexpr (SkipsBlocked<Source>) i = source_.next_pulse(i);
     if constexpr (foresees)

@@ -3,19 +3,16 @@
 #ifndef PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 #define PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/cycle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included,
 /// and repeat.
 struct FiberArray {
+  using refinements = refines<tag::Validated>;
   std::uint32_t fibers = 128;  ///< number of fibres in the row
   double fiber_rate = 100e3;   ///< fibres per second, best the pulse rate; at most 1e12 [Hz]
   double half_angle = pi / 9;  ///< angle of the outermost fibres to either side of forward [rad]
@@ -29,7 +26,6 @@ struct FiberArray {
   /// Index of the lit fibre, from 0.
   [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fiber_rate, fibers); }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {
     return fibers == 1 ? 0 : half_angle * (2 * static_cast<double>(fiber(t)) / (fibers - 1.0) - 1);
   }

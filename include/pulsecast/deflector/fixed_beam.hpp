@@ -13,6 +13,7 @@ namespace PULSECAST_NAMESPACE {
 /// Laser fixed in its housing: an emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth,
 /// elevation)}`.
 struct FixedBeam {
+  using refinements = refines<tag::MovesInLanes, tag::Validated, tag::Normalizable>;
   Pose<frame::Beam, frame::Instrument> pose{};  ///< of the beam; rotation unit to within 1e-3
 
   void validate() const {
@@ -23,7 +24,6 @@ struct FixedBeam {
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes&, PoseLanes<frame::Beam, frame::Instrument>& at) const noexcept {
     at = PoseLanes(pose);
     return all_lanes();

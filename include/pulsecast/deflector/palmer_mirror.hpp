@@ -15,10 +15,10 @@ namespace PULSECAST_NAMESPACE {
 /// the cone elliptical. The deviation from forward is the first half angle times the cosine upwards, and the second
 /// times the sine to the right.
 struct PalmerMirror {
-  double rotation_rate = 50;   ///< turns around the cone per second, at most 1e12 [Hz]
-  double half_angle = pi / 9;  ///< half angle of the cone, upwards and downwards [rad]
-  std::optional<double>
-      half_angle_across{};  ///< half angle of the cone to the right and left; circular cone if empty [rad]
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
+  double rotation_rate = 50;                  ///< rate of turns around the cone, at most 1e12 [Hz]
+  double half_angle = pi / 9;                 ///< half angle of the cone, upwards and downwards [rad]
+  std::optional<double> half_angle_across{};  ///< half angle to the right and left; that above if empty [rad]
 
   void validate() const {
     require_rate("PalmerMirror::rotation_rate", rotation_rate);
@@ -26,16 +26,12 @@ struct PalmerMirror {
     if (half_angle_across) require_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
   }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(rotation_rate)));
     const simd::Doubles across = half_angle_across.value_or(half_angle) * turn.sin, upwards = half_angle * turn.cos;
-    const simd::Doubles off =
-        simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // angle from forward [rad]
+    const simd::Doubles off = simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // from forward [rad]
     const auto tilt = simd::sincos(off);
     const simd::Doubles aside = off > 0.0 ? tilt.sin / off : simd::Doubles{} + 1.0;
     poses = aimed_along(Vec3Lanes{aside * across, tilt.cos, aside * upwards});

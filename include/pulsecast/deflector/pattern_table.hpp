@@ -3,13 +3,11 @@
 #ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 #define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/cycle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -21,6 +19,7 @@ struct BeamAngles {
 
 /// Beam directions from a table, taken in turn and repeated: any solid-state sensor, or the log of a real one.
 struct PatternTable {
+  using refinements = refines<tag::Validated>;
   std::vector<BeamAngles> entries{};  ///< directions in the order of use; at least one
   double entry_rate = 100e3;          ///< entries per second, best the pulse rate; at most 1e12 [Hz]
 

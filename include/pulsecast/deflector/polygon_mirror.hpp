@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -17,12 +16,12 @@ namespace PULSECAST_NAMESPACE {
 /// next one takes over. The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside
 /// the gate are blocked; those on its ends pass, whatever the rounding of their time.
 struct PolygonMirror {
-  double line_rate = 100;     ///< lines, one per facet, per second; at most 1e12 [Hz]
+  using refinements = refines<tag::Gated, tag::ForeseesOpening, tag::MovesInLanes, tag::Validated>;
+  double line_rate = 100;     ///< rate of facets, at most 1e12 [Hz]
   double sweep = 2 * pi / 3;  ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
   double angle_min = -pi;     ///< lower end of the gate [rad]
   double angle_max = pi;      ///< upper end of the gate [rad]
-  std::vector<double>
-      facet_tilts{};  ///< deflection of each facet in turn out of the plane, to the right; none if empty [rad]
+  std::vector<double> facet_tilts{};  ///< deflection by each facet in turn, right of the plane; none if empty [rad]
 
   void validate() const {
     require_rate("PolygonMirror::line_rate", line_rate);
@@ -33,7 +32,6 @@ struct PolygonMirror {
     for (const double tilt : facet_tilts) require_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
-  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
 
   /// Index of the current facet: below the number of tilts, or 0 without tilts.
@@ -52,8 +50,7 @@ struct PolygonMirror {
   /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     if (open(t)) return t;
-    const double begin =
-        0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless it is there from the start [cycles]
+    const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless before 0 [cycles]
     const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
     const double wait = (left < 2 ? left : 1) - 2 * margin();
@@ -62,11 +59,8 @@ struct PolygonMirror {
   }
 
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = angles(t);
     poses = aimed_above(angle);

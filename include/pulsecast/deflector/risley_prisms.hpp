@@ -15,8 +15,9 @@ namespace PULSECAST_NAMESPACE {
 /// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end,
 /// towards which it bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;          ///< angle between the faces [rad]
-  double rotation_rate = 100;      ///< positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
+  double wedge = pi / 10;  ///< angle between the faces [rad]
+  double rotation_rate =
+      100;  ///< rate, positive from up to right as seen along forward; at most 1e12 in magnitude [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
   double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
@@ -34,16 +35,10 @@ inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double 
   return passes;
 }
 
-/// Unit direction of one refracted ray, as above; empty where `refract` does not return its lane.
-[[nodiscard]] inline std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) noexcept {
-  Vec3Lanes light(direction);
-  if (refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
-  return light[0];
-}
-
 /// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked.
 /// The wedges bend the beam without shifting it: thickness and distance are neglected.
 struct RisleyPrisms {
+  using refinements = refines<tag::Gated, tag::MovesInLanes, tag::Validated>;
   std::vector<Prism> prisms{};    ///< wedges in the order of the beam, from 1 to 16
   double surrounding_index = 1;   ///< refractive index between and around the prisms
   Vec3 incident = axis::forward;  ///< direction of the laser, of any length but zero
@@ -71,11 +66,8 @@ struct RisleyPrisms {
   [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
 
   /// Forward at total reflection.
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     Vec3Lanes light;
     const simd::Mask passes = directions(t, light);

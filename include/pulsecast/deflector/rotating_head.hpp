@@ -10,6 +10,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   double angular_rate = 2 * pi;  ///< positive to the left about an upward axis; from -1e12 to 1e12, rounded as
                                  ///< turns per second [rad/s]
   double start = 0;              ///< angle at the survey's start, from -2 pi to 2 pi [rad]
@@ -21,11 +22,8 @@ struct RotatingHead {
     require_positive("RotatingHead::axis (length)", length(axis), "");
   }
 
-  [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Instrument, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Instrument, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = start + 2 * pi * t.phase(angular_rate / (2 * pi));
     poses = PoseLanes<frame::Instrument, frame::Instrument>{RotationLanes::about(pulsecast::normalize(axis), angle)};

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/require.hpp>
@@ -22,19 +20,19 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
 ///
 ///     template <Detector Inner>
 ///     struct LastEcho : DetectorAdaptor<Inner> {
-///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept { ... this->inner.detect(input,
-///       workspace) ... }
+///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
+///         ... this->inner.detect(input, workspace) ... }
 ///     };
 ///     template <Detector Inner>
 ///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
 template <Detector Inner>
 struct DetectorAdaptor {
+  static_assert(detail::detector_checked<Inner>);
   Inner inner;  ///< detector inside
 
   static constexpr bool runs_without_reflections = RunsWithoutReflections<Inner>;  ///< that of `inner`
   static constexpr bool reads_velocity = ReadsVelocity<Inner>;                     ///< that of `inner`
 
-  /// Validates the detector inside. @throws SettingError
   void validate() const {
     if constexpr (Validated<Inner>) inner.validate();
   }
@@ -44,20 +42,15 @@ struct DetectorAdaptor {
   }
   /// Prepares the detector inside for the pulses of a laser. @throws SettingError as that does
   void prepare(const Laser& laser) requires PreparesForLasers<Inner> { inner.prepare(laser); }
-  /// Normalizes the detector inside.
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 
-  /// Sample spacing of waveforms [s].
   [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> {
     return inner.sample_interval();
   }
 
-  /// Scratch memory of the detector inside.
   [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }
 
-  /// Echoes of the detector inside.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& workspace) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
     return inner.detect(input, workspace);
   }
 };

@@ -4,10 +4,8 @@
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -45,6 +43,7 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
   /// @throws SettingError for settings out of range, a prominence, or a timing that is read from samples
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {
@@ -54,7 +53,6 @@ class AnalyticWaveform {
                          "true_range or peak");
   }
 
-  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -63,7 +61,6 @@ class AnalyticWaveform {
     if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
 
-  /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
@@ -80,7 +77,6 @@ class AnalyticWaveform {
     }
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     std::vector<Peak> peaks;           ///< peaks of the current pulse
     std::vector<double> samples;       ///< samples of one echo, for a fitted width [W]
@@ -89,7 +85,6 @@ class AnalyticWaveform {
     SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
-  /// Scratch memory for pulses of up to `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
     w.peaks.reserve(reflections + 64);  // some of continuous returns
@@ -140,7 +135,6 @@ class AnalyticWaveform {
   }
 
  private:
-  static_assert(detail::MomentWidthMeasureCheck<Width>::passed);
   static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid
@@ -167,7 +161,6 @@ class AnalyticWaveform {
     double since = 0;             ///< time from its valley to the current edge [tau]
     bool rising = false, met = false;
 
-    /// Ends the current peak.
     void finish(double end) noexcept {
       peak.end = end;
       if (!met || peak.height < detector.s_.threshold) return;
@@ -175,7 +168,6 @@ class AnalyticWaveform {
       last.add(m, (peak.begin - peaks.back().begin) / shape.tau);
       if constexpr (by_moments) peaks.back().width = shape.tau * detector.width_.width(last);
     }
-    /// Begins the next peak at a valley.
     void begin(double valley) noexcept {
       finish(valley);
       peak = {.begin = valley};
@@ -184,7 +176,6 @@ class AnalyticWaveform {
       met = false;
       rising = true;
     }
-    /// Enters the maximum of the current peak.
     void enter(double time, double height) noexcept {
       peak.time = peak.mark = time;
       peak.height = height;
@@ -192,7 +183,6 @@ class AnalyticWaveform {
       rising = false;
     }
 
-    /// Finds the maxima of reflections.
     void find(std::span<const Reflection> reflections) noexcept {
       const double per_metre = 2 / (speed_of_light * shape.tau);
       for (std::size_t k = 0; k < reflections.size(); ++k) {
@@ -258,7 +248,6 @@ class AnalyticWaveform {
       }
     };
 
-    /// Finds the maxima of reflections and continuous returns.
     void find(std::span<const Reflection> reflections, std::span<const ContinuousReturn> continuous) noexcept {
       detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
       const double to_edge = PulseShape::peak * shape.tau;

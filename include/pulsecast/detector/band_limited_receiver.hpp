@@ -7,8 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,7 +16,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
@@ -43,7 +40,6 @@ class BandLimitedReceiver {
   explicit BandLimitedReceiver(ReceiverChain settings, Form form = {})
       : chain_(validated(settings)), form_(std::move(form)) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: noise is detected without light
@@ -141,8 +137,7 @@ class BandLimitedReceiver {
     }
     const auto top = static_cast<std::size_t>(
         std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
-    if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1]))
-      return {};  // on the flank of continuous returns
+    if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};  // on their flank
     const Vertex between = vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
     const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);

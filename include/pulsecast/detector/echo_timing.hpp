@@ -4,10 +4,7 @@
 #define PULSECAST_DETECTOR_ECHO_TIMING_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/namespace.hpp>
@@ -18,13 +15,12 @@ namespace PULSECAST_NAMESPACE {
 /// instruments do, and are corrected by what the estimator gives for a flat target at normal incidence. Sources: Wagner
 /// et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
-  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument measures:
-  /// unbiased for an echo of any length. Returns of media do not count; an echo of a medium has the range of its peak.
+  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows:
+  /// unbiased for an echo of any length. What media send back does not count; their echo has the range of its peak.
   true_range,
   /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or
-  /// the steps of a
-  /// digitiser
-  /// it is that after a filter about as wide as the pulse, so that it errs less with more samples.
+  /// the steps of a digitiser it is that after a filter about as wide as the pulse, so that it errs less with more
+  /// samples.
   peak,
   leading_edge,       ///< first rise to the threshold: earlier for stronger echoes, which is the range walk
   constant_fraction,  ///< first rise to `WaveformSettings::fraction` of the maximum, whatever the echo's strength
@@ -114,24 +110,15 @@ namespace detail {
 
 }  // namespace detail
 
-inline constexpr double centroid_level =
-    0.1;  ///< share of the maximum above which `EchoTiming::centroid` weighs samples
+inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `centroid` weighs samples
 
 /// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is
 /// the level of a leading edge, and `fraction` the share of the maximum of a constant fraction.
 [[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top,
                                       double threshold, double fraction) noexcept {
-  switch (timing) {
-    case EchoTiming::leading_edge:
-      return detail::rise_before(y, i, threshold);
-    case EchoTiming::constant_fraction:
-      return detail::rise_before(y, i, fraction * top.height);
-    case EchoTiming::centroid:
-      return detail::centroid_about(y, i, centroid_level * top.height);
-    case EchoTiming::true_range:
-    case EchoTiming::peak:
-      break;
-  }
+  if (timing == EchoTiming::leading_edge) return detail::rise_before(y, i, threshold);
+  if (timing == EchoTiming::constant_fraction) return detail::rise_before(y, i, fraction * top.height);
+  if (timing == EchoTiming::centroid) return detail::centroid_about(y, i, centroid_level * top.height);
   return static_cast<double>(i) + top.offset;
 }
 

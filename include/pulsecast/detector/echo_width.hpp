@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -43,6 +42,7 @@ struct NoWidth {
 
 /// Width by the second central moment of the waveform.
 struct MomentWidth {
+  using refinements = refines<tag::MomentWidthMeasure>;
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
     WaveformMoments m;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -62,7 +62,7 @@ static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
-  static_assert(detail::TruncatedWidthMeasureCheck<Width>::passed);
+  static_assert(detail::members_checked<Width, tag::MomentWidthMeasure, tag::TruncatedWidthMeasure>);
   if constexpr (TruncatedWidthMeasure<Width>)
     return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.min_share()));
   else
@@ -71,8 +71,7 @@ template <EchoWidth Width>
 
 /// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence.
 /// Sampled every `interval` [s]; not for the hot path.
-template <EchoWidth Width>
-[[nodiscard]] double pulse_width(const Width& width, const PulseShape& shape, double interval) {
+[[nodiscard]] double pulse_width(const EchoWidth auto& width, const PulseShape& shape, double interval) {
   std::vector<double> samples;
   for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval)
     samples.push_back(shape(t));

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_FIRST_HIT_HPP
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
-#include <cstddef>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -12,11 +10,11 @@ namespace PULSECAST_NAMESPACE {
 /// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility. Continuous
 /// returns have no power at any one range, so that it does not detect fog, but what fog leaves of surfaces.
 struct FirstHit {
+  using refinements = refines<tag::Validated>;
   double threshold = 0;  ///< minimum detectable power [W]
 
   void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     Echo echo;  ///< echo of the current pulse
   };

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,17 +22,15 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
-  double bandwidth = 1e9;  ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from
-                           ///< 1e6 to 1e12 [Hz]
+  double bandwidth =
+      1e9;  ///< change of frequency in a sweep, 1e6 to 1e12: surfaces closer than c / 2B are one echo [Hz]
   double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
   double threshold = 1e-12;       ///< minimum power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
-  bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum
-                                  ///< efficiency, has the power of the noise
-  bool speckle = false;           ///< adds fields of random phases, such as those of rough surfaces, in place of powers
+  bool shot_noise = false;        ///< adds that of the reference beam: of power one photon by efficiency in a sweep
+  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
   std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 
-  /// @throws SettingError
   void validate() const {
     require_within("FmcwSettings::bandwidth", bandwidth, 1e6, 1e12, "Hz");
     require_within("FmcwSettings::sweep_time", sweep_time, 1e-8, 1, "s");
@@ -63,12 +59,12 @@ struct FmcwSettings {
 /// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
+  using refinements = refines<tag::ReadsVelocity>;
   /// @throws SettingError for settings out of range
   explicit Fmcw(FmcwSettings settings = {}) : s_(validated(settings)) {}
 
   static constexpr bool reads_velocity = true;  ///< as the concept ReadsVelocity describes
 
-  /// Settings, as validated.
   [[nodiscard]] const FmcwSettings& settings() const noexcept { return s_; }
 
   /// Peak of a spectrum.
@@ -78,7 +74,6 @@ class Fmcw {
     const Reflection* strongest = nullptr;  ///< strongest reflection near it
   };
 
-  /// Scratch memory of one worker.
   struct Workspace {
     /// Light of one frequency.
     struct Line {
@@ -90,7 +85,6 @@ class Fmcw {
     std::array<std::vector<Peak>, 2> peaks;  ///< of the sweeps
     std::vector<Echo> echoes;                ///< of the pulse
   };
-  /// Scratch memory for `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w;
     w.lines.reserve(reflections);
@@ -127,9 +121,8 @@ class Fmcw {
 
  private:
   using Line = Workspace::Line;
-  static constexpr double reach = 2;  ///< half the main lobe of the window [periods in a sweep]
-  static constexpr double grid =
-      0.25;  ///< spacing of the spectrum, of four times as many samples by zeros added [periods in a sweep]
+  static constexpr double reach = 2;    ///< half the main lobe of the window [periods in a sweep]
+  static constexpr double grid = 0.25;  ///< spacing of the spectrum, four points a period [periods in a sweep]
 
   /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
   struct Noise {
@@ -226,8 +219,7 @@ class Fmcw {
     RandomKey key;                              ///< of the speckle
 
     /// Calls `visit(period, power)` for the periods within 8 of a frequency that have power [W].
-    template <class Visit>
-    void visit_near(double beat, const Visit& visit) const noexcept {
+    void visit_near(double beat, const auto& visit) const noexcept {
       if (returns.empty()) return;
       for (double period = std::ceil(beat - 8); period <= beat + 8; ++period) {
         const double from = (period - 0.5) * resolution, to = (period + 0.5) * resolution;

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <utility>
@@ -67,13 +66,13 @@ concept WaveformReceiver = std::copyable<R> &&
 template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
   /// @throws SettingError for settings out of range
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
   static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< that of the receiver
 
-  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -91,8 +90,7 @@ class FullWaveform {
   /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold,
   /// whose pulse arrives at the place k of `places` between two samples [s]; the last place is the next sample.
   /// Records, if any, hold the whole pulse.
-  template <class Visit>
-  void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
+  void visit_flat_targets(const Laser& laser, std::size_t places, const auto& visit) const {
     FullWaveform quiet = *this;
     quiet.receiver_.silence();
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
@@ -107,13 +105,11 @@ class FullWaveform {
     }
   }
 
-  /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
     return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     SampleWindow<Width> window;               ///< current samples [W]
     std::vector<Peak> peaks;                  ///< peaks of the current pulse
@@ -274,8 +270,7 @@ class FullWaveform {
   [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape,
                                                 TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
-    const double before =
-        std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
+    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau,
                  step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;

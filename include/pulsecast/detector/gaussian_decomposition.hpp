@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <span>
@@ -42,12 +41,10 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     if (this->inner.settings().record_length > 0 && !waves_.find(laser)) waves_.add(laser, wave_of(laser));
   }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     typename Inner::Workspace inner;  ///< of the detector inside
     std::vector<Echo> echoes;         ///< echoes of the current pulse
   };
-  /// Scratch memory for pulses of up to `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{this->inner.workspace(reflections), {}};
     w.echoes.reserve(this->inner.settings().returns_max);
@@ -59,8 +56,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     Detection d = this->inner.detect(input, w.inner);
     const auto* wave = waves_.find(input.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
-    const double apart =
-        0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
+    const double apart = 0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes without overlap [m]
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;

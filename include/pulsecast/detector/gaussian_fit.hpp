@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 
@@ -31,6 +30,7 @@ struct Gaussian {
 /// Gaussian lacks. The positions of samples on a steep edge change the width of a pulse by less than 0.5 %. Source:
 /// Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
 struct GaussianFit {
+  using refinements = refines<tag::TruncatedWidthMeasure, tag::Validated>;
   int iterations_max = 50;  ///< iteration limit, from 1 to 1000
   double share = 0.03;      ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
 
@@ -39,15 +39,13 @@ struct GaussianFit {
     if (!(share >= 0 && share < 1)) throw SettingError("GaussianFit::share", share, "", "at least 0 and less than 1");
   }
 
-  /// As the concept EchoWidth describes.
   [[nodiscard]] double min_share() const noexcept { return share; }
 
   /// Fitted Gaussian, with its convergence.
   struct Result {
     Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
-    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within
-                             ///< its width of them
+    bool converged = false;  ///< true for a Gaussian no wider than the samples, and centred within its width of them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
@@ -109,8 +107,7 @@ struct GaussianFit {
   }
 
  private:
-  static constexpr double small_enough =
-      1e-3;  ///< tolerance of the last step, relative to amplitude and width; the error left is far smaller
+  static constexpr double small_enough = 1e-3;  ///< last step, by amplitude and width; the error left is far smaller
 
   /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared
   /// residuals.

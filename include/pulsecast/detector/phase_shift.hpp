@@ -4,9 +4,6 @@
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,7 +25,6 @@ struct PhaseShiftSettings {
   double threshold = 1e-12;  ///< minimum modulated power of an echo at the finest frequency [W]
   double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
 
-  /// @throws SettingError
   void validate() const {
     require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
@@ -58,28 +54,26 @@ class PhaseShift {
   /// @throws SettingError for settings out of range
   explicit PhaseShift(PhaseShiftSettings settings = {}) : s_(validated(std::move(settings))) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const PhaseShiftSettings& settings() const noexcept { return s_; }
 
-  /// Scratch memory of one worker.
   struct Workspace {
     Echo echo;  ///< the only echo
   };
-  /// Scratch memory for any number of reflections.
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
   /// The echo of all reflections. Noise is drawn from the seed and pulse of `input.key`.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const Reflection* strongest = nullptr;
-    for (const Reflection& r : input.reflections)
-      if (r.power > 0 && (!strongest || r.power > strongest->power)) strongest = &r;
     const ContinuousReturn* air = nullptr;
     double of_air = 0, solid = 0;
+    for (const Reflection& r : input.reflections) {
+      solid += r.power > 0 ? r.power : 0;
+      if (r.power > 0 && (!strongest || r.power > strongest->power)) strongest = &r;
+    }
     for (const ContinuousReturn& r : input.continuous) {
       of_air += r.power();
       if (!air || r.power() > air->power()) air = &r;
     }
-    for (const Reflection& r : input.reflections) solid += r.power > 0 ? r.power : 0;
     if (!strongest && !air) return {};
     RandomKey key = input.key;
     key.purpose = Purpose::receiver_noise;
@@ -88,8 +82,7 @@ class PhaseShift {
       const double period = 0.5 * speed_of_light / s_.frequencies[k];  // [m]
       double in_phase = 0, quadrature = 0;
       for (const Reflection& r : input.reflections) {
-        const double turns = r.range / period;
-        const auto phase = simd::sincos(2 * pi * (turns - std::floor(turns)));
+        const auto phase = turned(r.range, period);
         in_phase += r.power * phase.cos;
         quadrature += r.power * phase.sin;
       }
@@ -120,23 +113,24 @@ class PhaseShift {
   }
 
  private:
+  /// Sine and cosine of the phase of a range.
+  [[nodiscard]] static simd::SineCosine<double> turned(double range, double period) noexcept {
+    const double turns = range / period;
+    return simd::sincos(2 * pi * (turns - std::floor(turns)));
+  }
   /// Sums of power by cosine and sine of a phase [W].
   struct Phasor {
     double in_phase, quadrature;
   };
   /// Phasor of a continuous return, for a period in range [m]: by parts, or at the centre of one that is short.
   [[nodiscard]] static Phasor phasor_of(const ContinuousReturn& r, double period) noexcept {
-    const auto turned = [&](double range) noexcept {
-      const double turns = range / period;
-      return simd::sincos(2 * pi * (turns - std::floor(turns)));
-    };
     const double length = r.end - r.begin, k = 2 * pi / period, power = r.power();
     if (k * length < 1e-3) {
       const double share = power > 0 ? (r.at_begin + 2 * r.at_end) / (3 * (r.at_begin + r.at_end)) : 0;
-      const auto middle = turned(r.begin + share * length);
+      const auto middle = turned(r.begin + share * length, period);
       return {power * middle.cos, power * middle.sin};
     }
-    const auto begin = turned(r.begin), end = turned(r.end);
+    const auto begin = turned(r.begin, period), end = turned(r.end, period);
     const double bend = (r.at_end - r.at_begin) / (length * k * k);
     return {(r.at_end * end.sin - r.at_begin * begin.sin) / k + bend * (end.cos - begin.cos),
             (r.at_begin * begin.cos - r.at_end * end.cos) / k + bend * (end.sin - begin.sin)};

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -31,7 +29,7 @@ struct PhotonCountingSettings {
   double background = 0;    ///< received sunlight [W]
   std::size_t pixels = 1;   ///< detectors that share the light evenly, at most 4096
   double dead_time =
-      20e-9;  ///< time after a detection in which a pixel is blind; infinite for one detection a shot: Geiger mode [s]
+      20e-9;              ///< time after a detection in which a pixel is blind; infinite: one a shot, Geiger mode [s]
   double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
   double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
   double jitter = 0;                              ///< standard deviation of a detection's time [s]
@@ -41,7 +39,6 @@ struct PhotonCountingSettings {
   std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
-  /// @throws SettingError
   void validate() const {
     require_positive("PhotonCountingSettings::efficiency", efficiency, "");
     require_within("PhotonCountingSettings::efficiency", efficiency, 0, 1, "");
@@ -71,11 +68,11 @@ struct PhotonCountingSettings {
 template <PulseForm Form = GammaPulse>
 class PhotonCounting {
  public:
+  using refinements = refines<tag::RunsWithoutReflections, tag::PreparesForLasers>;
   /// @throws SettingError for settings out of range
   explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {})
       : s_(validated(settings)), form_(std::move(form)) {}
 
-  /// Settings, as validated.
   [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: sunlight and dark counts need no reflection
@@ -91,14 +88,12 @@ class PhotonCounting {
     std::uint32_t pixel;  ///< number of the pixel
     std::uint32_t label;  ///< index of the reflection, that of the continuous return after all reflections, or `none`
   };
-  /// Scratch memory of one worker.
   struct Workspace {
     std::vector<Count> shot;    ///< photoelectrons of a shot
     std::vector<Count> counts;  ///< detections of all shots
     std::vector<double> blind;  ///< end of the dead time of each pixel [s]
     std::vector<Echo> echoes;   ///< echoes of the current pulse
   };
-  /// Scratch memory for any number of reflections.
   [[nodiscard]] Workspace workspace(std::size_t) const {
     Workspace w{{}, {}, std::vector<double>(s_.pixels), {}};
     w.shot.reserve(counts_max);
@@ -187,9 +182,8 @@ class PhotonCounting {
     for (std::size_t r = 0; r < input.reflections.size(); ++r) {
       const double mean = input.reflections[r].power * per_watt, at = arrival(input.reflections[r]);
       last = std::max(last, at + quantiles.back());
-      for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential()) {
+      for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential())
         enter(at + spread(), r);
-      }
     }
     const auto enter_continuous = [&](double at, std::size_t label) {
       last = std::max(last, at + quantiles.back());
@@ -208,8 +202,7 @@ class PhotonCounting {
 
   /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back:
   /// one Poisson process along all of them, whose place in a return is that of the quantile of its density.
-  template <class Enter>
-  static void draw_continuous(const DetectorInput& input, double per_watt, const Enter& enter, Draws& draws) noexcept {
+  static void draw_continuous(const DetectorInput& input, double per_watt, const auto& enter, Draws& draws) noexcept {
     if (input.continuous.empty()) return;
     double next = draws.exponential();
     for (std::size_t k = 0; k < input.continuous.size(); ++k) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -35,7 +34,6 @@ concept PulseForm = std::copyable<F> && requires(const F form, double time, doub
 struct GammaPulse {
   double divisor = PulseShape::divisor;  ///< full width at half maximum by tau; the literature says 3.5
 
-  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept { return PulseShape(length, divisor)(time); }
   [[nodiscard]] double begin(double length) const noexcept { return -PulseShape::peak * length / divisor; }
   [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }  // 1e-10 of the peak is left
@@ -43,7 +41,6 @@ struct GammaPulse {
 
 /// Gaussian pulse.
 struct GaussianPulse {
-  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept {
     const double halves = 2 * time / length;
     return exponential(-std::numbers::ln2 * halves * halves);
@@ -54,7 +51,6 @@ struct GaussianPulse {
 
 /// Constant power; its peak is its middle.
 struct RectangularPulse {
-  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept {
     return std::fabs(time) <= 0.5 * length ? 1 : 0;
   }
@@ -88,14 +84,9 @@ class MeasuredPulse {
     for (PulseSample& sample : samples_) sample = {sample.time - peak.time, sample.power / peak.power};
   }
 
-  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double) const noexcept {
-    const std::size_t after =
-        detail::first_not(samples_.size(), [&](std::size_t i) noexcept { return samples_[i].time <= time; });
-    if (after == 0 || after == samples_.size())
-      return after > 0 && time == samples_.back().time ? samples_.back().power : 0;
-    const PulseSample &a = samples_[after - 1], &b = samples_[after];
-    return a.power + (b.power - a.power) * (time - a.time) / (b.time - a.time);
+    if (!(time >= samples_.front().time && time <= samples_.back().time)) return 0;
+    return detail::interpolated(samples_, time, &PulseSample::time, &PulseSample::power);
   }
   [[nodiscard]] double begin(double) const noexcept { return samples_.front().time; }
   [[nodiscard]] double end(double) const noexcept { return samples_.back().time; }

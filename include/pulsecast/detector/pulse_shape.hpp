@@ -31,9 +31,8 @@ struct PulseShape {
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
   [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< time of the leading edge since the peak [s]
-  [[nodiscard]] double end() const noexcept {
-    return 60 * tau;
-  }  ///< time since the peak when 1e-22 of a pulse is left [s]
+  /// Time since the peak when 1e-22 of a pulse is left [s].
+  [[nodiscard]] double end() const noexcept { return 60 * tau; }
 
   /// Power at time t since the peak [s]; 1 at t = 0.
   [[nodiscard]] double operator()(double t) const noexcept {

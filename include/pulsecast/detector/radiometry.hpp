@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -15,7 +14,6 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -34,13 +32,11 @@ struct RangeErrors {
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
   bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
-  double deviation_at_watt =
-      0;  ///< further deviation of an echo of an amplitude of 1 W, added [m]. Source: Wujanz et al. 2018
-  double power_exponent = -0.5;  ///< exponent of the amplitude in that deviation, from -4 to 0
+  double deviation_at_watt = 0;       ///< further deviation of an echo of 1 W, added [m]. Source: Wujanz et al. 2018
+  double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
-  SharedArray<double>
-      channel_biases{};  ///< further bias by number of the channel, as in `Emitter`; 0 for channels beyond [m]
+  SharedArray<double> channel_biases{};  ///< further bias by channel, as in `Emitter`; 0 for channels beyond [m]
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
@@ -150,10 +146,9 @@ struct Receiver {
   [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }
 };
 
-/// Link budget: received power of a subray from the power of a pulse.
-/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close
-/// range, an aperture on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 +
-/// D^2) in place of D^2 / (4 R^2).
+/// Link budget: received power of a subray from the power of a pulse. Source: laser radar equation for an extended
+/// target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close range, an aperture on the axis collects sin^2
+/// of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
   /// Budget of no power.
@@ -224,15 +219,14 @@ class WhiteTarget {
  public:
   /// Power received from a range [m] by the link budget, always the same one [W].
   [[nodiscard]] double power(const LinkBudget& budget, double range) noexcept {
-    if (range != range_) *this = WhiteTarget(range, budget.power(1, 1, range));
+    if (range != range_) {
+      power_ = budget.power(1, 1, range);
+      range_ = range;
+    }
     return power_;
   }
 
-  WhiteTarget() = default;
-
  private:
-  WhiteTarget(double range, double power) noexcept : range_(range), power_(power) {}
-
   double range_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet [m]
   double power_ = 0;                                         ///< [W]
 };

@@ -32,7 +32,6 @@ struct ReceiverChain {
   int bits = 10;                    ///< resolution of the digitiser, from 1 to 24
   bool matched_filter = false;      ///< true if the samples are correlated with the pulse before echoes are sought
 
-  /// @throws SettingError
   void validate() const {
     require_within("ReceiverChain::bandwidth", bandwidth, 0, 1e15, "Hz");
     require_within("ReceiverChain::noise_power", noise_power, 0, 1, "W/sqrt(Hz)");

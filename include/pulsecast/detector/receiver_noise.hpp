@@ -39,8 +39,7 @@ struct ReceiverNoise {
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
   }
 
-  static constexpr bool runs_without_reflections = false;  ///< false: it is called for pulses with reflections only
-  /// Scratch memory: none.
+  static constexpr bool runs_without_reflections = false;  ///< false: it is asked for pulses with reflections only
   struct Workspace {};
   [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
 

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -39,42 +37,37 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   }
 
   /// Selected echoes of the detector inside.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
-    const std::size_t n = d.echoes.size();
-    if (n < 2) return d;
-    switch (mode_) {
-      case ReturnMode::first:
-        d.echoes = d.echoes.first(1);
-        break;
-      case ReturnMode::last:
-        d.echoes = d.echoes.last(1);
-        break;
-      case ReturnMode::strongest:
-        d.echoes = keep_strongest(d.echoes, 1);
-        break;
-      case ReturnMode::first_and_last:
-        d.echoes[1] = d.echoes[n - 1];
-        d.echoes = d.echoes.first(2);
-        break;
-      case ReturnMode::strongest_and_last:
-        d.echoes = keep_strongest(d.echoes, 2, 1);
-        break;
-      case ReturnMode::n_nearest:
-        d.echoes = d.echoes.first(std::min(n, number_));
-        break;
-      case ReturnMode::n_strongest:
-        d.echoes = keep_strongest(d.echoes, number_);
-        break;
-    }
+    if (d.echoes.size() < 2) return d;
+    d.echoes = kept(d.echoes);
     number_echoes(d.echoes);
     return d;
   }
 
  private:
-  /// Removes the weakest echoes, the farther one of equals, until `number` are left; `held` at the end stay. A pulse
-  /// has few echoes.
+  [[nodiscard]] std::span<Echo> kept(std::span<Echo> echoes) const noexcept {
+    switch (mode_) {
+      case ReturnMode::first:
+        return echoes.first(1);
+      case ReturnMode::last:
+        return echoes.last(1);
+      case ReturnMode::strongest:
+        return keep_strongest(echoes, 1);
+      case ReturnMode::first_and_last:
+        echoes[1] = echoes.back();
+        return echoes.first(2);
+      case ReturnMode::strongest_and_last:
+        return keep_strongest(echoes, 2, 1);
+      case ReturnMode::n_nearest:
+        return echoes.first(std::min(echoes.size(), number_));
+      case ReturnMode::n_strongest:
+        return keep_strongest(echoes, number_);
+    }
+    return echoes;
+  }
+  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has
+  /// few echoes.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -91,14 +84,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   std::size_t number_;
 };
 
-/// Takes the type of the detector inside.
-template <Detector Inner>
-SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
-/// As above, with a number of returns.
-template <Detector Inner>
-SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
-
-/// Treatment of echoes that arrive after the next pulse left (multiple pulses in the air).
+/// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
 enum class RangeAmbiguity : std::uint8_t {
   folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
   resolved,  ///< assigns them to their pulse; those that arrive while another leaves are lost
@@ -124,8 +110,7 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
   /// Echoes of the detector inside, without those in blind zones.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(),
                                      [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
@@ -141,16 +126,6 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   double ambiguity_, blind_;
   RangeAmbiguity in_air_;
 };
-
-/// Takes the type of the detector inside.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner) -> MultiplePulsesInAir<Inner>;
-/// As above, with a range that is blind.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner, double) -> MultiplePulsesInAir<Inner>;
-/// As above, with what becomes of ranges.
-template <Detector Inner>
-MultiplePulsesInAir(double, Inner, double, RangeAmbiguity) -> MultiplePulsesInAir<Inner>;
 
 }  // namespace PULSECAST_NAMESPACE
 

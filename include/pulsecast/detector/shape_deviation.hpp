@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -38,8 +37,7 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
   }
 
   /// Echoes of the detector inside, with deviations.
-  template <class Workspace>
-  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     const Detection d = this->inner.detect(input, w);
     if (const std::vector<double>* shape = shapes_.find(input.emitter.laser))
       for (Echo& echo : d.echoes)

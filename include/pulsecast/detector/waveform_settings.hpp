@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
 
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/detector/detail/kept_returns.hpp>
@@ -18,8 +17,7 @@ namespace PULSECAST_NAMESPACE {
 /// A peak of the waveform is an echo if it passes these tests, in this order:
 /// - it reaches the threshold;
 /// - it is at least `separation` from the peak before it, and rises by at least `prominence` above the valley between
-/// them, else the two
-///   merge;
+///   them, else the two merge;
 /// - it is the highest within the window;
 /// - it is later than the dead time of the echo before it;
 /// - it is among the `returns_max` that are kept.
@@ -28,20 +26,18 @@ namespace PULSECAST_NAMESPACE {
 /// more than wider ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting,
 /// except for moments of `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval =
-      0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-9;       ///< minimum power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
-  double separation = 0;         ///< closer peaks merge, with the greater height [s]
-  double prominence = 0;         ///< minimum rise of the lower of two peaks above the valley between them [W]
-  double window = 1e-9;          ///< an echo is the highest peak within this time before and after it [s]
-  double dead_time = 0;          ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;  ///< number of echoes kept, in order of range; from 1 to 255
+  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1, and at most a pulse length [s]
+  double threshold = 1e-9;           ///< least power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
+  double separation = 0;             ///< closer peaks merge, with the greater height [s]
+  double prominence = 0;             ///< least rise of the lower of two peaks above the valley between them [W]
+  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;      ///< number of echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
   EchoTiming timing = EchoTiming::peak;           ///< definition of an echo's range
   double fraction = 0.5;     ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
   double record_length = 0;  ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor =
-      PulseShape::divisor;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double shape_divisor = PulseShape::divisor;  ///< full width at half maximum by tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");

@@ -6,11 +6,8 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/ray.hpp>
@@ -36,9 +33,8 @@ struct BundleOrigin {
 };
 
 /// Rays from one origin into a narrow cone: the subrays of a pulse, or some of them. A single ray is a bundle of one.
-/// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops.
-/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the
-/// world everywhere.
+/// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops. All directions have the same
+/// length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;             ///< greatest number of rays
   static constexpr std::size_t lanes = simd::lane_count;  ///< divisor of `padded_size()`

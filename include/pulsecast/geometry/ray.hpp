@@ -3,7 +3,6 @@
 #ifndef PULSECAST_GEOMETRY_RAY_HPP
 #define PULSECAST_GEOMETRY_RAY_HPP
 
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/base/tick.hpp>

@@ -21,12 +21,10 @@ struct RayCone {
   Tick tick{};                     ///< time, for parts that move
 
   static constexpr double near = 0;  ///< as in `BundleOrigin` [m]
-  [[nodiscard]] double direction_min(int k) const noexcept {
-    return direction[k] - spread;
-  }  ///< minimum of component k of the directions
-  [[nodiscard]] double direction_max(int k) const noexcept {
-    return direction[k] + spread;
-  }  ///< maximum of component k of the directions
+  /// Minimum of component k of the directions.
+  [[nodiscard]] double direction_min(int k) const noexcept { return direction[k] - spread; }
+  /// Maximum of component k of the directions.
+  [[nodiscard]] double direction_max(int k) const noexcept { return direction[k] + spread; }
 
   /// True only if no ray comes near a box: nearer than a millionth of its distance and size, which covers the rounding
   /// of primitive tests. False if anything is NaN, and for infinite boxes. Separating axes, with the directions as an
@@ -43,7 +41,7 @@ struct RayCone {
       away[k] = std::fabs(from[k]);
       fastest[k] = std::fabs(direction[k]) + aside;
       if (away[k] > reach[k] && (from[k] > 0 ? direction[k] : -direction[k]) > aside)
-        return true;  // beside the box, and leaves it
+        return true;  // beside it, leaving
     }
     for (int k = 0; k < 3; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;

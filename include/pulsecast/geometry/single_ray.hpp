@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -64,6 +62,13 @@ struct SingleRayPacket {
   return rays;
 }
 
+namespace detail {
+/// A range, or minus infinity for NaN.
+[[nodiscard]] inline double limit_of(double range) noexcept {
+  return range > -std::numeric_limits<double>::infinity() ? range : -std::numeric_limits<double>::infinity();
+}
+}  // namespace detail
+
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
 struct AnyHit {
   double far;              ///< greatest range that counts [m]; minus infinity after the first hit
@@ -82,10 +87,7 @@ struct AnyHit {
   }
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }  ///< as in `ClosestHits`
   /// Largest range at which a hit still counts [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return far > -infinity ? far : -infinity;
-  }
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(far); }
 };
 
 /// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts
@@ -139,9 +141,8 @@ class AllHits {
     if (full()) limit_ = hits_[capacity - 1].range;
   }
 
-  /// Offers the hits of a shape that finds the closest one only: `closest(ray, hit)` from each hit on.
-  template <class Closest>
-  void offer_chain(SingleRayPacket ray, const Closest& closest) noexcept {
+  /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
+  void offer_chain(SingleRayPacket ray, const auto& closest) noexcept {
     for (;;) {
       ClosestHit next(limit_);
       next.part = part;
@@ -153,8 +154,7 @@ class AllHits {
   }
 
   /// Offers the closest hit alone, of a shape whose hits are drawn at random from the ray's beginning on.
-  template <class Closest>
-  void offer_first(SingleRayPacket ray, const Closest& closest) noexcept {
+  void offer_first(SingleRayPacket ray, const auto& closest) noexcept {
     ray.near = near_;
     ClosestHit first(limit_);
     first.part = part;
@@ -164,10 +164,7 @@ class AllHits {
 
   [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
   /// Largest range at which a hit is still held [m]; minus infinity for NaN.
-  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return limit_ > -infinity ? limit_ : -infinity;
-  }
+  [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(limit_); }
 
  private:
   double near_, limit_, far_;

@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <concepts>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -67,8 +66,7 @@ struct TrianglePacket {
 
   /// Takes at least one triangle; `triangle_of(n)` returns the `Triangle` or `TriangleRef` of the n-th.
   // always inlined, so that a test reads its operands from registers
-  template <class TriangleOf>
-  [[gnu::always_inline]] TrianglePacket(std::size_t size, const TriangleOf& triangle_of) noexcept {
+  [[gnu::always_inline]] TrianglePacket(std::size_t size, const auto& triangle_of) noexcept {
     const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
       return std::array{triangle_of(std::min(lane, size - 1))...};
     }
@@ -285,8 +283,7 @@ void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& tri
 }
 
 /// Intersects one triangle.
-template <class Rays, class Hits>
-void intersect(const Triangle& triangle, PrimitiveIndex primitive, const Rays& rays, Hits& nearest) noexcept {
+void intersect(const Triangle& triangle, PrimitiveIndex primitive, const auto& rays, auto& nearest) noexcept {
   intersect(
       std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
 }

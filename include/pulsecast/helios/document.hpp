@@ -14,9 +14,8 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path>
-      assets{};                ///< search folders; the first match wins. The folders of survey and document follow
-  bool channel_files = false;  ///< each channel gets a file named by its id: ambiguous ids are refused
+  std::vector<std::filesystem::path> assets{};  ///< first search folders; those of survey and document follow
+  bool channel_files = false;                   ///< each channel gets a file named by its id: ambiguous ids are refused
 };
 
 /// Content of a survey document.
@@ -54,8 +53,58 @@ void write_assets(const std::filesystem::path& path, const AssetDocument& assets
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/helios/detail/xml/survey_documents.hpp>
+#if PULSECAST_DEFINES(HELIOS_DOCUMENT)
+#include <pulsecast/helios/detail/xml/survey.hpp>
+#include <pulsecast/helios/detail/xml/writer.hpp>
+
+namespace PULSECAST_NAMESPACE::helios {
+
+namespace detail {
+
+inline DocumentWriter document_of(const AssetDocument& assets) {
+  DocumentWriter document;
+  for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
+  for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
+  for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
+  return document;
+}
+
+}  // namespace detail
+
+PULSECAST_INLINE SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options) {
+  detail::SurveyReader reader(path, options.assets, options.channel_files);
+  SurveyDocument document{.survey = reader.read()};
+  document.warnings = reader.report().warnings();
+  document.leg_places = reader.leg_places();
+  document.place = reader.place();
+  return document;
+}
+
+PULSECAST_INLINE AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options) {
+  detail::SurveyReader reader(path, options.assets, options.channel_files);
+  AssetDocument assets;
+  reader.read_all("scanner", assets.scanners);
+  reader.read_all("platform", assets.platforms);
+  reader.read_all("scene", assets.scenes);
+  reader.report().require_clean();
+  assets.warnings = reader.report().warnings();
+  return assets;
+}
+
+PULSECAST_INLINE void write_survey(const std::filesystem::path& path, const SurveySettings& survey) {
+  detail::document_of(survey).write(path);
+}
+
+PULSECAST_INLINE std::string xml_text(const SurveySettings& survey) { return detail::document_of(survey).text(); }
+
+PULSECAST_INLINE void write_assets(const std::filesystem::path& path, const AssetDocument& assets) {
+  detail::document_of(assets).write(path);
+}
+
+PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
+
+}  // namespace PULSECAST_NAMESPACE::helios
+
 #endif
 
 #endif

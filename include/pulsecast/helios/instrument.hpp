@@ -34,6 +34,7 @@ struct InstrumentOptions {
 /// it, only size, duration and emitters have a meaning.
 class Instrument {
  public:
+  using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
   /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at
   /// fault
   Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,
@@ -95,8 +96,48 @@ template <EchoWidth Width = NoWidth>
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/helios/detail/instrument_channels.hpp>
+#if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
+#include <cmath>
+
+#include <pulsecast/base/require.hpp>
+
+namespace PULSECAST_NAMESPACE::helios {
+
+namespace detail {
+
+[[nodiscard]] inline std::vector<SurveyChannel> instrument_channels(const ScannerSettings& scanner,
+                                                                    const LegScannerSettings& settings, double duration,
+                                                                    const InstrumentOptions& options) {
+  if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
+  scanner.validate();
+  settings.validate();
+  const double rate = pulse_rate_of(scanner, settings);
+  require_within("Instrument::duration", duration, 0, 1e15, "s");
+  require_within("Instrument::duration (pulses)", duration * rate, 0, 1e15, "");
+  const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
+  const bool fires = slots > 0 && settings.active;  // otherwise, optics are never called
+  const ReceiverGroups receivers(scanner);
+  std::vector<SurveyChannel> channels;
+  for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
+    const ChannelSettings& channel = scanner.channels[c];
+    SurveyOptic optic;
+    if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
+    channels.emplace_back(std::move(optic), Scanner{.pulse_rate = rate,
+                                                    .pulses = slots,
+                                                    .laser = survey_laser(channel, settings),
+                                                    .receiver = receivers.of_channel[c]});
+  }
+  return channels;
+}
+
+}  // namespace detail
+
+PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings,
+                                        double duration, const InstrumentOptions& options)
+    : channels_(detail::instrument_channels(scanner, settings, duration, options)) {}
+
+}  // namespace PULSECAST_NAMESPACE::helios
+
 #endif
 
 #endif

@@ -36,7 +36,7 @@ using PartProvider = std::function<BuiltParts(int run, const std::function<Built
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(HELIOS_MAKE_SIMULATION)
 #include <pulsecast/helios/detail/loaded_simulation.hpp>
 #endif
 

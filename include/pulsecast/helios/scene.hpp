@@ -133,10 +133,9 @@ class SceneBuilder {
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/helios/detail/ground_builder.hpp>
-#include <pulsecast/helios/detail/mesh_parts.hpp>
+#if PULSECAST_DEFINES(HELIOS_SCENE)
 #include <pulsecast/helios/detail/scene_builder.hpp>
+#include <pulsecast/helios/detail/source_readers.hpp>
 #endif
 
 #endif

@@ -23,7 +23,7 @@
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
 namespace PULSECAST_NAMESPACE::helios {
@@ -78,10 +78,8 @@ class Simulation {
     bool las_waveforms = false;    ///< cut and sample waveforms to the limits of LAS
     bool waveform_noise = false;   ///< add receiver noise
     bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
-    bool library_physics =
-        false;  ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
-    bool light_paths =
-        false;  ///< true: follows multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
+    bool library_physics = false;  ///< true: the library's own physics, not that of HELIOS++: docs/surveys.md
+    bool light_paths = false;  ///< true: multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
     bool platform_noise = true;                   ///< true: as in the survey; false: none
     bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
@@ -102,9 +100,8 @@ class Simulation {
         : empty_shots_(pulsecast::detail::reads_empty_shots(sink)), take_(held(std::forward<Any>(sink))) {}
 
     void operator()(const EchoBatch& batch) const { take_(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept {
-      return empty_shots_;
-    }  ///< as the concept ChoosesShots describes
+    /// As the concept ChoosesShots describes.
+    [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
 
    private:
     template <class Any>
@@ -166,8 +163,31 @@ class Simulation {
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/helios/detail/check_without_scene.hpp>
+#if PULSECAST_DEFINES(HELIOS_SIMULATION)
+#include <algorithm>
+
+#include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+
+namespace PULSECAST_NAMESPACE::helios {
+
+PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey,
+                                                              const std::vector<std::string>& leg_places) {
+  const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
+  std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  for (const ChannelSettings& channel : survey.scanner.channels) {
+    const Receiver receiver = survey_receiver(channel);
+    receiver.validate();
+    const std::string odd = air_warning(channel.wavelength, receiver);
+    if (!odd.empty() && std::find(warnings.begin(), warnings.end(), odd) == warnings.end()) warnings.push_back(odd);
+    survey_waveform(channel).validate();
+    (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
+  }
+  return warnings;
+}
+
+}  // namespace PULSECAST_NAMESPACE::helios
+
 #endif
 
 #endif

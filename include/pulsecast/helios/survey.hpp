@@ -31,8 +31,7 @@ struct CompiledSurvey {
   };
   Legs<SurveyLeg> source;  ///< source of all pulses; each distinct receiver of the scanner's channels has an index
   std::vector<Leg> legs;   ///< legs, in order of the document
-  std::optional<double>
-      clock_start{};  ///< start time of the survey, that of its earliest leg, if a trajectory gives it [s]
+  std::optional<double> clock_start{};  ///< start of its earliest leg by the clock of a trajectory, if any [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
@@ -43,8 +42,150 @@ struct CompiledSurvey {
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/helios/detail/survey_compiler.hpp>
+#if PULSECAST_DEFINES(HELIOS_SURVEY)
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include <pulsecast/helios/detail/leg_paths.hpp>
+#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/xml/writer.hpp>
+#include <pulsecast/helios/instrument.hpp>
+#include <pulsecast/platform/platform.hpp>
+
+namespace PULSECAST_NAMESPACE::helios {
+
+namespace detail {
+
+/// Compiles settings to a plan of legs.
+class SurveyCompiler {
+ public:
+  SurveyCompiler(const SurveySettings& survey, const LegPaths& paths, const SurveyBuildOptions& options)
+      : survey_(survey), paths_(paths), options_(options) {}
+
+  [[nodiscard]] CompiledSurvey compile() const {
+    std::vector<Leg<SurveyLeg>> legs;
+    std::vector<CompiledSurvey::Leg> compiled;
+    std::vector<std::string> warnings = paths_.warnings();
+    PulseIndex first = 0;
+    Tick start{};
+    SurveyPath path;  // of the leg before, and then of the leg
+    double optic_time = 0;
+    std::unordered_set<std::string> noted;  // limits that an earlier leg reached
+    for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
+      const LegSettings& leg = survey_.legs[k];
+      const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
+      if (paths_[k].clock) start = Tick::of_seconds(*paths_[k].clock - *paths_.clock_start());
+      const double late = follow(k, path, compiled), way = std::max(0.0, paths_[k].duration - late);
+      const double duration = in_whole_slots(duration_of(k, way), rate, paths_[k].rounding);
+      if (way > 0 && duration > 1.1 * way && leg.scanner.active)
+        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + LegPaths::brief(way) +
+                           " s, and stays for " + LegPaths::brief(duration - way) +
+                           " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
+      require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
+      require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
+      const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
+      if (interval > 0)
+        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records,
+                       "");
+      for (std::size_t c = 0; c < survey_.scanner.channels.size() && leg.scanner.active && !only_ends(survey_, k); ++c)
+        for (const std::string& note : limit_notes(survey_.scanner, c, leg.scanner, rate))
+          if (noted.insert(note).second) warnings.push_back(paths_.leg_name(k) + ": " + note);
+      if (!leg.scanner.active || teleports(leg)) optic_time = 0;
+      const Mount mount{.lever_arm = survey_.platform.mount.position,
+                        .boresight = survey_.platform.mount.rotation.rotation()};
+      Instrument instrument = paths_.of_leg(k, [&] {
+        return Instrument(survey_.scanner, leg.scanner, duration, {mount.boresight, optic_time});
+      });
+      const Tick time = instrument.duration();
+      if (leg.scanner.active) optic_time += time.seconds();
+      SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
+      if (options_.platform_noise) {
+        noise.position = survey_.platform.position_noise;
+        noise.attitude = survey_.platform.attitude_noise;
+      }
+      const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
+      legs.push_back(
+          {SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), leg.scanner.active, start});
+      const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
+      compiled.push_back(
+          {k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
+      first += size;
+      start = start + time;
+    }
+    return {Legs<SurveyLeg>(std::move(legs)), std::move(compiled), paths_.clock_start(), std::move(warnings)};
+  }
+
+ private:
+  static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
+
+  [[nodiscard]] bool teleports(const LegSettings& leg) const {
+    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory &&
+           leg.platform.trajectory->teleports;
+  }
+
+  /// Sets the path of a leg. A plan continues where the whole slots of the leg before ended. Returns the delay by that
+  /// [s].
+  [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
+    const SurveyPath& planned = paths_[k].path;
+    const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
+    path = planned;
+    if (!paths_.continues(k)) return 0;
+    const double late =
+        static_cast<double>(ended.second - planned.start.second) + (ended.fraction - planned.start.fraction);
+    if (std::fabs(late) * before[k - 1].pulse_rate >= 1) return 0;  // cut by `duration_max`, or waiting for the head
+    path.start = ended;
+    return late;
+  }
+
+  /// A duration that is whole slots but for its rounding, without that [s].
+  [[nodiscard]] static double in_whole_slots(double duration, double rate, double rounding) noexcept {
+    const double slots = std::round(duration * rate);
+    return std::fabs(duration - slots / rate) <= rounding ? slots / rate : duration;
+  }
+
+  /// Duration of a leg of a path that takes `way` [s]: until the platform has arrived and the head has turned, but at
+  /// most `duration_max` [s].
+  [[nodiscard]] double duration_of(std::size_t k, double way) const {
+    const LegSettings& leg = survey_.legs[k];
+    const LegScannerSettings& s = leg.scanner;
+    const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
+    const bool stands = paths_[k].duration == 0;
+    double duration = way;
+    if (only_ends(survey_, k)) return 0;
+    if (speed != 0 && turn / speed > 0) duration = std::max(duration, turn / speed - s.warm_up);
+    if (leg.duration_max) {
+      const double most = *leg.duration_max;
+      return stands && duration == 0 ? most : std::min(duration, most);
+    }
+    if (paths_.is_stationary(k) && k + 1 < survey_.legs.size()) return duration;
+    if (stands && duration == 0 && speed == 0 && s.active)
+      throw SettingError(paths_.leg_name(k) + ": maxDuration_s", 0, "s",
+                         "given if neither platform nor head moves, as the leg would never end otherwise");
+    return std::max(0.0, duration);
+  }
+
+  const SurveySettings& survey_;
+  const LegPaths& paths_;
+  const SurveyBuildOptions& options_;
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
+                                               const SurveyBuildOptions& options) {
+  const std::vector<std::string> notes =
+      detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); }).notes();
+  const LegPaths paths(survey, ground, options);
+  CompiledSurvey compiled = detail::SurveyCompiler(survey, paths, options).compile();
+  if (options.leg_places.empty())
+    compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else reported by the reader
+  return compiled;
+}
+
+}  // namespace PULSECAST_NAMESPACE::helios
+
 #endif
 
 #endif

@@ -9,7 +9,7 @@
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/mesh_file.hpp>
 
 /// City models of CityGML 1 and 2 files, by libcitygml.

@@ -24,7 +24,6 @@
 #include <pulsecast/io/detail/copc/tree.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/laz.hpp>

@@ -17,7 +17,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -41,8 +41,7 @@ namespace detail {
 /// Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions. Exact if the products of
 /// differences are.
 [[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Vec2> hull;

@@ -12,7 +12,6 @@
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/output_file.hpp>

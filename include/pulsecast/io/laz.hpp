@@ -17,7 +17,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/detail/laz/chunk.hpp>

@@ -21,8 +21,90 @@ namespace PULSECAST_NAMESPACE::io {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/leaf_angle_reader.hpp>
+#if PULSECAST_DEFINES(IO_LEAF_ANGLES)
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+struct LeafRow {
+  LeafProjection projection;
+  std::size_t line = 0;
+};
+
+[[nodiscard]] inline LeafRow leaf_row(TextTable& table) {
+  const std::vector<std::string_view>& cells = table.cells();
+  if (cells.size() != 4) table.fail_here("has " + std::to_string(cells.size()) + " columns: expected x, y, z and G");
+  std::array<double, 4> values{};
+  for (std::size_t column = 0; column < 4; ++column) {
+    const std::optional<double> value = text::finite_number_in(cells[column]);
+    const bool is_g = column == 3;
+    if (!value || !(*value >= (is_g ? 0 : -1.001) && *value <= (is_g ? 1 : 1.001)))
+      table.fail_here(column, text::quoted(cells[column]) +
+                                  (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
+                                        : ": expected a component of a unit direction, from -1 to 1"));
+    values[column] = *value;
+  }
+  const Vec3 direction{values[0], values[1], values[2]};
+  if (!(std::fabs(length(direction) - 1) <= 1e-3))
+    table.fail_here("the direction has the length " + text::to_text(length(direction)) + ": expected 1, within 1e-3");
+  return {{std::atan2(std::hypot(direction.x, direction.y), std::fabs(direction.z)), values[3]}, table.line()};
+}
+
+}  // namespace detail
+
+PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) {
+  constexpr double same = 5e-6, widest = 10 * pi / 180 + same;  // six decimals resolve angles to some 2e-6
+  TextTable table(path, "a table of leaf projections, x,y,z,G");
+  std::vector<detail::LeafRow> rows;
+  while (table.next())
+    if (!table.text().starts_with('#')) rows.push_back(detail::leaf_row(table));
+  if (rows.empty()) table.fail("has no rows: expected a table of leaf projections, x,y,z,G");
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.projection.zenith < b.projection.zenith; });
+
+  // beyond the outermost rows, their values hold
+  rows.insert(rows.begin(), {{0, rows.front().projection.g}, rows.front().line});
+  rows.push_back({{pi / 2, rows.back().projection.g}, rows.back().line});
+
+  std::vector<LeafProjection> result;
+  std::size_t line = 0;  // line of the last row
+  for (const auto& [projection, row] : rows) {
+    const LeafProjection last = result.empty() ? projection : result.back();
+    const double step = projection.zenith - last.zenith;
+    if (step > widest)
+      table.fail("has no row between " + text::to_text(std::round(degrees(last.zenith) * 10) / 10) + " and " +
+                 text::to_text(std::round(degrees(projection.zenith) * 10) / 10) +
+                 " degrees from the vertical: expected one every 10 degrees at least");
+    if (step <= same && std::fabs(projection.g - last.g) > 1e-3)
+      throw FileError(table.path(), TextTable::place(std::max(row, line)),
+                      "differs in G from line " + std::to_string(std::min(row, line)) +
+                          ", at the same zenith angle: expected one G for each zenith angle");
+    if (step <= same && !result.empty()) continue;
+    // a midpoint by interpolation: rounded rows 10 degrees apart may exceed the gap that `LeafAngles` bridges
+    if (step > widest / 2) result.push_back({last.zenith + step / 2, (last.g + projection.g) / 2});
+    result.push_back(projection);
+    line = row;
+  }
+  return LeafAngles::table(std::move(result));
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

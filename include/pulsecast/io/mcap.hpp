@@ -200,7 +200,7 @@ class McapWriter {
   struct Channel {
     McapChannel settings;
     std::vector<std::pair<std::uint64_t, std::uint64_t>>
-        index;  // time and position of each of its messages in the open chunk
+        index;  // times and positions of its messages in the open chunk
     std::uint64_t messages;
     std::uint16_t schema;  // number of the schema; 0: none
   };

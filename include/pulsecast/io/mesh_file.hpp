@@ -40,8 +40,136 @@ namespace PULSECAST_NAMESPACE::io {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/mesh_file/reader.hpp>
+#if PULSECAST_DEFINES(IO_MESH_FILE)
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/mesh_file/file_maker.hpp>
+#include <pulsecast/io/detail/mesh_file/importer.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/detail/mesh_file/transfer.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/picture.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+/// Content of an OBJ file: one mesh.
+[[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings,
+                                      const Workers& workers) {
+  ObjModel model = read_obj(
+      path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
+  MeshFile file{.materials = std::move(model.materials),
+                .pictures = std::move(model.pictures),
+                .warnings = std::move(model.warnings),
+                .files = std::move(model.files)};
+  for (const MaterialPictures& pictures : file.pictures) pictures.append_to(file.files);
+  file.pictures.resize(file.materials.size());
+  if (model.mesh.triangles.empty()) return file;
+  FileMesh& one = file.meshes.emplace_back();
+  one.mesh = std::move(model.mesh);
+  for (std::uint32_t i = 0; i < file.materials.size(); ++i) one.materials.push_back(i);
+  file.placements.push_back({0, {.scale = settings.unit.value_or(1)}, path.stem().string()});
+  return file;
+}
+
+/// Reads the pictures of a file, each once, into its materials and the masks of its meshes.
+inline void read_pictures(MeshFile& file, bool isolated) {
+  MeshData table{.texture = {{}}};  // whose masks are those of the file's materials
+  add_pictures(table, file.materials, file.pictures, file.warnings, {.isolated = isolated});
+  for (FileMesh& one : file.meshes) {
+    if (one.mesh.texture.empty()) continue;
+    for (std::size_t i = 0; i < one.materials.size(); ++i) {
+      const std::uint32_t number = one.materials[i];
+      if (number >= table.masks.size() || table.masks[number].width == 0) continue;
+      one.mesh.masks.resize(i + 1);
+      one.mesh.masks[i] = table.masks[number];
+    }
+  }
+}
+
+/// Refuses a PLY file whose header has no end, with which assimp takes minutes, or that has strips, of which it reads
+/// half. Explains a file that is missing or empty. Source: Turk 1994, The PLY polygon file format (header of elements).
+inline void check_ply(const std::filesystem::path& path) {
+  constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
+  InputFile file(path, "a mesh file");
+  const std::string_view begin = file.take(longest);
+  if (!begin.starts_with("ply")) return;
+  const std::size_t end = begin.find("end_header");
+  if (end == begin.npos) file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
+  if (begin.substr(0, end).find("element tristrips") != begin.npos)
+    throw FileError(path.string(), "",
+                    "has triangle strips: expected faces, as most programs write them (element face)");
+}
+
+}  // namespace detail
+
+PULSECAST_INLINE bool is_mesh_file(const std::filesystem::path& path) {
+  const std::string ending = text::lower(path.extension().string());
+  return std::ranges::any_of(std::array{".obj", ".ply", ".gltf", ".glb", ".stl", ".dae", ".fbx"},
+                             [&](const char* one) { return ending == one; });
+}
+
+PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings,
+                                         const Workers& workers) {
+  settings.validate();
+  return reading(path, [&] {
+    MeshFile file;
+    if (text::lower(path.extension().string()) == ".obj") {
+      file = detail::file_of(path, settings, workers);
+    } else {
+      detail::check_ply(path);
+      const auto import = [&](const Workers& by, const auto& opened) {
+        return detail::MeshImport(path, settings, by, opened).read();
+      };
+      const detail::RawScene scene =
+          settings.isolated
+              ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
+              : import(workers, nullptr);
+      file = detail::MeshFileMaker(path, scene, settings, workers).make();
+    }
+    detail::replace_materials(file, settings);
+    if (settings.pictures) detail::read_pictures(file, settings.isolated);
+    return file;
+  });
+}
+
+PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object,
+                                                            const Workers& workers) {
+  struct Shared {
+    std::shared_ptr<const TriangleMesh<>> geometry;
+    MaterialTable materials;
+  };
+  std::vector<Shared> shared;
+  for (FileMesh& one : file.meshes) {
+    std::vector<Material> table;
+    for (const std::uint32_t number : one.materials) table.push_back(file.materials[number]);
+    shared.push_back({std::make_shared<const TriangleMesh<>>(std::exchange(one.mesh, {}), workers),
+                      material_table(std::move(table))});
+  }
+  std::vector<Part<TriangleMesh<>>> parts;
+  parts.reserve(file.placements.size());
+  for (MeshPlacement& one : file.placements)
+    parts.push_back({.geometry = shared[one.mesh].geometry,
+                     .materials = shared[one.mesh].materials,
+                     .placement = one.placement,
+                     .object = first_object++,
+                     .name = std::move(one.name)});
+  return parts;
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_MISSES_HPP
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -25,10 +24,9 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of points for pulses without echoes.
 struct MissSettings {
-  double range = 1000;  ///< distance of the points along the beam [m]
-  std::uint16_t classification =
-      64;               ///< class of the points. Source of the default: LAS 1.4 R15, table 17, first class of a user
-  ObjectId object = 0;  ///< object number of the points
+  double range = 1000;                ///< distance of the points along the beam [m]
+  std::uint16_t classification = 64;  ///< class of the points; default: LAS 1.4 R15, table 17, first of a user
+  ObjectId object = 0;                ///< object number of the points
 
   void validate() const { require_within("MissSettings::range", range, 0, 1e9, "m"); }
 };

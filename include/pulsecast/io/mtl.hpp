@@ -12,17 +12,17 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/normalized_phong.hpp>
+#include <pulsecast/material/phong.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 /// Content of MTL files.
 struct MaterialLibrary {
-  std::map<std::string, Material, std::less<>> materials;  ///< materials by name
-  std::map<std::string, MaterialPictures, std::less<>>
-      pictures{};                     ///< pictures of those that have some, not read: see `add_pictures`
-  std::vector<std::string> warnings;  ///< oddities that could still be read
+  std::map<std::string, Material, std::less<>> materials;           ///< materials by name
+  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< of those that have some: see `add_pictures`
+  std::vector<std::string> warnings;                                ///< oddities that could still be read
 };
 
 /// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is
@@ -40,8 +40,249 @@ struct MaterialLibrary {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/obj/mtl_reader.hpp>
+#if PULSECAST_DEFINES(IO_MTL)
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <istream>
+#include <string_view>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/obj/mtl_light.hpp>
+#include <pulsecast/io/detail/obj/statements.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+class MtlReader : private StatementBuffer {
+ public:
+  MtlReader(StatementFile file, const SpectralLibrary& spectra)
+      : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
+
+  [[nodiscard]] MaterialLibrary read() {
+    std::istream stream(this);
+    stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
+    std::map<std::string, int> ignored_numbers;
+    std::vector<tinyobj::material_t> found;
+    tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
+    MaterialLibrary library;
+    library.warnings = std::move(warnings_);
+    for (const tinyobj::material_t& m : found)
+      if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
+    library.pictures = std::move(pictures_);
+    return library;
+  }
+
+ private:
+  void check(std::string& ready) override {
+    // tinyobjloader drops keys before the first name, and its default exponent is 1
+    static const std::string exponent = "\nNs " + text::to_text(Phong{}.exponent) + "\n";
+    const bool is_first = !std::exchange(begun_, true);
+    if (keyword() == "newmtl") current_ = rest();
+    if (keyword() == "newmtl") repeated_ = lines_.contains({current_, "newmtl"});
+    note_picture();
+    lines_.try_emplace({current_, std::string(keyword())}, line());
+    if (keyword() == "newmtl") {
+      require(!rest().empty(), "the name of a material");
+      ready = statement() + exponent;
+      return;
+    }
+    const std::vector<std::string_view>& given = words();
+    const auto are_within = [&](double high) {
+      return std::all_of(given.begin(), given.end(), [high](std::string_view word) {
+        const double value = number_in<double>(word).value_or(-1);
+        return value >= 0 && value <= high;
+      });
+    };
+    const auto is_angle = [](std::string_view word) {
+      const double value = number_in<double>(word).value_or(0);
+      return value >= 1 && value <= 85;
+    };
+    const bool is_one = given.size() == 1;
+    if (keyword() == "helios_reflectance")
+      require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
+    if (keyword() == "helios_classification")
+      require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (keyword() == "pulsecast_retroreflection")
+      require(!given.empty() && given.size() <= 2 && are_within(1e6) && (is_one || is_angle(given[1])),
+              "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
+    if (keyword() == "pulsecast_normalizedPhong")
+      require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
+    if (const char* const expected = expected_of_light_key(keyword(), given)) require(false, expected);
+    if (is_first) ready = "newmtl default" + exponent;
+    if (keyword() == "Kd" || keyword() == "Ks")
+      ready += standard_numbers(given, 3);
+    else if (keyword() == "Ns")
+      ready += standard_numbers(given, 1);
+    // with textures, tinyobjloader would change the colour, depending on the order
+    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
+             keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
+      ready += statement();
+  }
+
+  /// Statement of a standard key with `count` numbers, limited to those from 0 to 1e12; empty if its words are others.
+  /// A single number is the value of red, green and blue. What differs from the format is noted. Source: MTL
+  /// specification, Wavefront 1995.
+  [[nodiscard]] std::string standard_numbers(const std::vector<std::string_view>& given, std::size_t count) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < std::min(given.size(), count); ++i) {
+      const auto number = number_in<double>(given[i]);
+      if (!number) break;
+      numbers.push_back(std::clamp(*number, 0.0, max_number));
+      if (numbers.back() != *number) note("takes " + text::to_text(numbers.back()) + " for " + std::string(given[i]));
+    }
+    const bool is_comment = given.size() > 1 && given[1].starts_with('/');
+    if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
+      note("is ignored: expected " + std::string(count == 1 ? "a number" : "one or three numbers"));
+      return {};
+    }
+    if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
+    std::string made(keyword());
+    for (std::size_t i = 0; i < count; ++i) made += ' ' + text::to_text(numbers[std::min(i, numbers.size() - 1)]);
+    return made;
+  }
+
+  /// Notes an oddity of the current statement.
+  void note(const std::string& oddity) {
+    warnings_.push_back(path() + ", line " + std::to_string(line()) + ": material '" + current_ +
+                        "': " + text::quoted(statement()) + " " + oddity);
+  }
+
+  /// Notes the picture that a statement names, for the first material of a name.
+  void note_picture() {
+    const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d",
+               reflectance = keyword() == "pulsecast_reflectanceMap";
+    if ((!colour && !opacity && !reflectance) || repeated_) return;
+    std::string_view named = rest();
+    const bool is_pattern = reflectance && named.starts_with("pattern ");
+    if (is_pattern) named = text::trimmed(named.substr(8));
+    std::string name;
+    tinyobj::texture_option_t unused;
+    tinyobj::ParseTextureNameAndOption(&name, &unused, std::string(named).c_str());
+    if (reflectance) require(!name.empty(), "the name of a picture");
+    if (name.empty()) return note("names no picture");
+    std::replace(name.begin(), name.end(), '\\', '/');
+    MaterialPictures& all = pictures_[current_];
+    all.reflectance_pattern = all.reflectance_pattern || is_pattern;
+    (colour    ? all.colour
+     : opacity ? all.opacity
+               : all.reflectance)
+        .file = std::filesystem::path(path()).parent_path() / name;
+  }
+
+  [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
+    const auto warn = [&](const char* key, const std::string& text) {
+      const auto known = lines_.find({m.name, key});
+      const std::string place = known == lines_.end() ? "" : ", line " + std::to_string(known->second);
+      warnings.push_back(path() + place + ": material '" + m.name + "' " + text);
+    };
+    const auto extra = [&](const char* key) {
+      const auto found = m.unknown_parameter.find(key);
+      return found == m.unknown_parameter.end() ? std::string() : found->second;
+    };
+    Material made = undescribed(m.name);
+    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2],
+                 specular = m.specular[0] + m.specular[1] + m.specular[2];
+    const double share = specular / (diffuse + specular);
+    if (specular > 0 && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
+      made.law = NormalizedPhong{share, m.shininess};
+    else if (specular > 0)
+      made.law = Phong{share, m.shininess};
+    else if (diffuse > 0)
+      made.law = Lambert{};
+    for (int k = 0; diffuse > 0 && k < 3; ++k) made.colour[k] = std::min(m.diffuse[k], 1.0);
+    const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
+    if (!reflectance.empty()) {
+      made.reflectance = *number_in<double>(reflectance);
+      if (made.reflectance > 1) {
+        warn("helios_reflectance", "has the reflectance " + reflectance + ", which is taken as percent");
+        made.reflectance /= 100;
+      }
+    } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
+      made.spectrum = found->second;
+      const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
+      for (const double wavelength : spectra_.wavelengths)
+        if (!(wavelength >= shortest && wavelength <= longest))
+          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " +
+                                     nanometres(longest) + " nm: for the laser of " + nanometres(wavelength) +
+                                     " nm the nearest sample is used");
+    } else if (!spectrum.empty()) {
+      warn("helios_spectra",
+           "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
+    }
+    set_light(made, m, extra, warn);
+    made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
+    const std::string ground = text::lower(extra("helios_isGround"));
+    made.ground = ground == "true" || ground == "1";
+    if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
+      warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
+    return made;
+  }
+
+  template <class Extra, class Warn>
+  void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra, const Warn& warn) const {
+    if (!set_standard_light(made, m))
+      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
+    std::deque<std::string> texts;
+    const auto words_of = [&](const char* key) {
+      texts.push_back(extra(key));
+      std::vector<std::string_view> words;
+      for (std::string_view left = text::trimmed(texts.back()); !left.empty();) words.push_back(text::take_word(left));
+      return words;
+    };
+    if (const auto words = words_of("pulsecast_water"); !words.empty())
+      made.smooth = water_for_lasers(m.name, words, warn);
+    set_own_light(made, m, words_of);
+  }
+
+  /// Water for the wavelength of all lasers; clear, with a warning, if there is none.
+  template <class Warn>
+  [[nodiscard]] SmoothInterface water_for_lasers(const std::string& name, const std::vector<std::string_view>& words,
+                                                 const Warn& warn) const {
+    const std::vector<double>& all = spectra_.wavelengths;
+    const auto wrong = [&](const std::string& what) {
+      return FileError(path(), "line " + std::to_string(lines_.at({name, "pulsecast_water"})), what);
+    };
+    if (all.empty()) {
+      warn("pulsecast_water", "has water by a type, and no wavelength of a laser is known: it is taken as clear");
+      return SmoothInterface::water();
+    }
+    for (const double wavelength : all)
+      if (wavelength != all.front())
+        throw wrong(
+            "water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the coefficients");
+    try {
+      return water_of(words, all.front());
+    } catch (const SettingError& refused) {
+      throw wrong(refused.what());
+    }
+  }
+
+  [[nodiscard]] static std::string nanometres(double metres) { return text::to_text(std::round(metres * 1e12) / 1e3); }
+
+  const SpectralLibrary& spectra_;
+  std::vector<std::string> warnings_;
+  bool begun_ = false, repeated_ = false;  // `repeated_`: the current material is not the first of its name
+  std::string current_ = "default";        // name of the current material
+  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
+  std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
+  return reading(path, [&] { return detail::MtlReader(detail::StatementFile(path), spectra).read(); });
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

@@ -29,11 +29,7 @@ struct NpzSettings {
   PointLayout layout = layouts::map();  ///< arrays: one a field, by its name
   PointSettings points{};  ///< values of the arrays; set the origin for large coordinates in single precision
 
-  void validate() const {
-    layout.validate();
-    points.validate();
-    detail::require_field_names(layout);
-  }
+  void validate() const { detail::require_packable(layout, points); }
 };
 
 namespace detail {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -27,9 +27,8 @@ struct ObjSettings {
 struct ObjModel {
   MeshData mesh;                    ///< in units of the file, which should be metres; without triangles of zero area
   std::vector<Material> materials;  ///< materials of triangles, in order of first use
-  std::vector<MaterialPictures>
-      pictures{};                     ///< of each material, not read: see `add_pictures`; empty if there are none
-  std::vector<std::string> warnings;  ///< oddities that could still be read
+  std::vector<MaterialPictures> pictures{};    ///< of each material, not read: see `add_pictures`; or empty
+  std::vector<std::string> warnings;           ///< oddities that could still be read
   std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, those that are missing, too
 };
 
@@ -43,7 +42,7 @@ struct ObjModel {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(IO_OBJ)
 #include <pulsecast/io/detail/obj/reader.hpp>
 #endif
 

@@ -211,8 +211,8 @@ class OutputFile {
     }
   };
 
-  static constexpr std::size_t capacity =
-      std::size_t{1} << 20;  // bytes forwarded at a time: enough to make the cost of calls negligible
+  static constexpr std::size_t capacity = std::size_t{1}
+                                          << 20;  // bytes forwarded at a time: the cost of calls is negligible
 
   [[nodiscard]] static std::error_code system_error(int number) {
     return {number != 0 ? number : EIO, std::generic_category()};

@@ -21,7 +21,7 @@
 #include <liblzf/lzf.h>
 
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -42,9 +42,7 @@ struct PcdSettings {
   void validate() const {
     require_within("PcdSettings::encoding", static_cast<double>(encoding), 0,
                    static_cast<double>(PcdEncoding::binary_compressed), "");
-    layout.validate();
-    points.validate();
-    detail::require_field_names(layout);
+    detail::require_packable(layout, points);
   }
 };
 

@@ -12,7 +12,7 @@
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/image.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Pictures of surfaces: PNG, JPEG, BMP, TGA, GIF, PSD and PNM, read by stb_image.
 namespace PULSECAST_NAMESPACE::io {
@@ -37,8 +37,143 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/picture_reader.hpp>
+#if PULSECAST_DEFINES(IO_PICTURE)
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <stb/stb_image.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/io/detail/child_process.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+/// Pictures by file, each read once.
+class PictureShelf {
+ public:
+  PictureShelf(std::vector<std::string>& warnings, const PictureSettings& settings)
+      : warnings_(warnings), settings_(settings) {}
+
+  /// Picture, or null with a warning.
+  [[nodiscard]] std::shared_ptr<const Image> get(const PictureSource& source) {
+    const auto key = std::pair(source.file, source.embedded.get());
+    if (const auto known = pictures_.find(key); known != pictures_.end()) return known->second;
+    std::shared_ptr<const Image> picture;
+    try {
+      picture = std::make_shared<const Image>(read_picture(source, settings_));
+    } catch (const FileError& e) {
+      warnings_.push_back(std::string(e.what()) + "; it is left out");
+    }
+    return pictures_[key] = picture;
+  }
+
+ private:
+  std::vector<std::string>& warnings_;
+  const PictureSettings& settings_;
+  std::map<std::pair<std::filesystem::path, const void*>, std::shared_ptr<const Image>> pictures_;
+};
+
+/// Outline of a material; empty if it is solid everywhere.
+[[nodiscard]] inline Mask outline(const MaterialPictures& of, PictureShelf& shelf) {
+  const bool by_colour = of.opacity.empty() && of.outlined_by_colour;
+  const PictureSource& source = by_colour ? of.colour : of.opacity;
+  if (source.empty()) return {};
+  const auto picture = shelf.get(source);
+  if (!picture || (by_colour && !picture->has_opacity())) return {};
+  Mask mask = Mask::of(*picture, picture->has_opacity() ? picture->channels - 1 : 0, of.cutoff);
+  return mask.solid_share() < 1 ? std::move(mask) : Mask{};
+}
+
+/// Picture by stb_image, in this process.
+[[nodiscard]] inline Image decoded(const PictureSource& source, std::size_t max_pixels) {
+  const std::string path = source.file.string();
+  std::optional<MappedFile> file;
+  if (!source.embedded) file.emplace(source.file);
+  const std::span<const std::byte> bytes = file ? file->bytes() : std::span<const std::byte>(*source.embedded);
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw FileError(path, "", "is a picture of more than 2^31 bytes");
+  const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const auto size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  const auto fail = [&]() -> FileError {
+    return {path, "",
+            std::string("is no picture that can be read: ") + stbi_failure_reason() +
+                "; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM"};
+  };
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw fail();
+  if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
+      static_cast<double>(width) * height > static_cast<double>(max_pixels))
+    throw FileError(path, "",
+                    text::joined({"has ", std::to_string(width), " x ", std::to_string(height),
+                                  " pixels, expected at most ", std::to_string(max_pixels), ", and 65536 a side"}));
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
+  if (!pixels) throw fail();
+  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+              static_cast<std::uint32_t>(channels)};
+  const SharedBuffer<std::uint8_t> samples(std::size_t{image.width} * image.height * image.channels);
+  std::copy_n(pixels.get(), samples.size(), samples.data());
+  image.samples = samples;
+  return image;
+}
+
+}  // namespace detail
+
+PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
+  if (!settings.isolated) return reading(source.file, [&] { return detail::decoded(source, settings.max_pixels); });
+  const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
+  detail::ChildResult found =
+      detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
+        const Image image = detail::decoded(source, settings.max_pixels);
+        for (const std::uint32_t number : {image.width, image.height, image.channels}) output.value(number);
+        output.array(std::span(image.samples.data(), image.samples.size()));
+      });
+  Image image{found.value<std::uint32_t>(), found.value<std::uint32_t>(), found.value<std::uint32_t>()};
+  image.samples = {found.array<std::uint8_t>(), found.owner()};
+  try {
+    image.validate();
+  } catch (const SettingError&) {
+    found.fail();
+  }
+  return image;
+}
+
+PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials,
+                                   std::span<const MaterialPictures> pictures, std::vector<std::string>& warnings,
+                                   const PictureSettings& settings) {
+  detail::PictureShelf shelf(warnings, settings);
+  for (std::size_t i = 0; i < std::min(materials.size(), pictures.size()); ++i) {
+    const MaterialPictures& of = pictures[i];
+    if (of.empty()) continue;
+    if (mesh.texture.empty()) {
+      warnings.push_back("material '" + materials[i].name +
+                         "' has pictures, which are left out, as the mesh has no texture coordinates");
+      continue;
+    }
+    if (!of.colour.empty()) materials[i].picture = shelf.get(of.colour);
+    if (!of.reflectance.empty())
+      if (const auto picture = shelf.get(of.reflectance))
+        materials[i].reflectance_map = std::make_shared<const ReflectanceMap>(
+            of.reflectance_pattern ? ReflectanceMap::pattern(*picture) : ReflectanceMap{.image = *picture});
+    if (Mask mask = detail::outline(of, shelf); mask.width > 0) {
+      mesh.masks.resize(std::max(mesh.masks.size(), i + 1));
+      mesh.masks[i] = std::move(mask);
+    }
+  }
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

@@ -22,11 +22,7 @@ struct PlySettings {
   PointLayout layout = layouts::map();  ///< properties of a vertex, written without gaps
   PointSettings points{};  ///< values of the properties; set the origin for large coordinates in single precision
 
-  void validate() const {
-    layout.validate();
-    points.validate();
-    detail::require_field_names(layout);
-  }
+  void validate() const { detail::require_packable(layout, points); }
 };
 
 /// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout. Source:

@@ -22,7 +22,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/detail/png/camera.hpp>
-#include <pulsecast/io/detail/png/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/raster.hpp>

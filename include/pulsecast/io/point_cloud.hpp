@@ -39,9 +39,8 @@ struct PointCloudSettings {
   VoxelNormals normals = VoxelNormals::none;          ///< source of the normals
   std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels without a normal, of any length but 0
   bool colours = false;                               ///< true to give voxels colours
-  std::optional<double> colour_max =
-      std::nullopt;           ///< maximum of a colour channel; by default 65535 in LAS and 255 in text
-  PointColumns columns = {};  ///< columns of text files
+  std::optional<double> colour_max = std::nullopt;    ///< maximum of a channel; by default 65535 in LAS, 255 in text
+  PointColumns columns = {};                          ///< columns of text files
 
   void validate() const {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
@@ -58,8 +57,8 @@ struct PointCloudSettings {
 struct PointCloud {
   VoxelData voxels;  ///< with normals, if requested and available
   std::vector<std::array<float, 3>>
-      colours{};             ///< red, green and blue from 0 to 1 for each voxel, as root mean square; or none
-  std::uint64_t points = 0;  ///< number of points read
+      colours{};                        ///< red, green, blue from 0 to 1 of each voxel, root mean square; or none
+  std::uint64_t points = 0;             ///< number of points read
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
@@ -81,7 +80,7 @@ struct PointCloud {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
+#if PULSECAST_DEFINES(IO_POINT_CLOUD)
 #include <pulsecast/io/detail/point_cloud_reader.hpp>
 #endif
 

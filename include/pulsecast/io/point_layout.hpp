@@ -3,11 +3,9 @@
 #ifndef PULSECAST_IO_POINT_LAYOUT_HPP
 #define PULSECAST_IO_POINT_LAYOUT_HPP
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -30,20 +28,7 @@ enum class FieldType : std::uint8_t {
 
 /// Size of a number [byte].
 [[nodiscard]] constexpr std::uint32_t size_of(FieldType type) noexcept {
-  switch (type) {
-    case FieldType::int8:
-    case FieldType::uint8:
-      return 1;
-    case FieldType::int16:
-    case FieldType::uint16:
-      return 2;
-    case FieldType::int32:
-    case FieldType::uint32:
-    case FieldType::float32:
-      return 4;
-    default:
-      return 8;
-  }
+  return type <= FieldType::uint8 ? 1 : type <= FieldType::uint16 ? 2 : type <= FieldType::float32 ? 4 : 8;
 }
 
 /// Quantity of a point, in SI units. Positions, normals and velocities are in the frame and axes of `PointSettings`.
@@ -104,14 +89,7 @@ struct PointLayout {
   std::uint32_t size = 0;            ///< size of a record, which may be padded [byte]
 
   /// Layout of fields one after another, without gaps.
-  [[nodiscard]] static PointLayout packed(std::vector<PointField> fields) {
-    PointLayout layout{std::move(fields), 0};
-    for (PointField& field : layout.fields) {
-      field.offset = layout.size;
-      layout.size += size_of(field.type);
-    }
-    return layout;
-  }
+  [[nodiscard]] static PointLayout packed(const std::vector<PointField>& fields) { return PointLayout{}.with(fields); }
 
   /// This layout with further fields at its end, without gaps.
   [[nodiscard]] PointLayout with(const std::vector<PointField>& more) const {

@@ -267,11 +267,12 @@ class PointEncoder {
   }
 
   void store(const detail::PointValues& values, std::byte* record) const noexcept {
-    for (const PointField& field : layout_.fields) {
-      const double number = values[static_cast<std::size_t>(field.quantity)] * field.scale;
-      detail::visit_field_type(field.type,
-                               [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
-    }
+    for (const PointField& field : layout_.fields)
+      store(field, values[static_cast<std::size_t>(field.quantity)], record);
+  }
+  static void store(const PointField& field, double value, std::byte* record) noexcept {
+    detail::visit_field_type(
+        field.type, [&]<class Number>() { detail::store_number<Number>(value * field.scale, record + field.offset); });
   }
 
   /// Finds the attributes of the layout's fields by their names.
@@ -289,19 +290,13 @@ class PointEncoder {
   }
 
   void store_attributes(std::span<const double> of_object, std::byte* record) const noexcept {
-    for (const auto& [index, attribute] : attributes_) {
-      const PointField& field = layout_.fields[index];
-      const double number = of_object[attribute] * field.scale;
-      detail::visit_field_type(field.type,
-                               [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
-    }
+    for (const auto& [index, attribute] : attributes_) store(layout_.fields[index], of_object[attribute], record);
   }
 
   PointLayout layout_;
   PointSettings settings_;
-  bool places_ = false, angles_ = false, surfaces_ = false,
-       colours_ = false;                                         // true if the layout holds such quantities
-  std::vector<std::pair<std::size_t, std::size_t>> attributes_;  // index of a field, and of its attribute
+  bool places_ = false, angles_ = false, surfaces_ = false, colours_ = false;  // true: in the layout
+  std::vector<std::pair<std::size_t, std::size_t>> attributes_;                // index of a field, and of its attribute
   Tick start_{};
   Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
 };

@@ -17,8 +17,48 @@ namespace PULSECAST_NAMESPACE::io {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/pulse_form_reader.hpp>
+#if PULSECAST_DEFINES(IO_PULSE_FORM)
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+PULSECAST_INLINE MeasuredPulse read_pulse_form(const std::filesystem::path& path) {
+  TextTable table(path, "a laser pulse, time [ns] and power");
+  std::vector<PulseSample> samples;
+  bool first = true;
+  while (table.next()) {
+    if (table.text().starts_with('#')) continue;
+    const std::vector<std::string_view>& cells = table.cells();
+    if (cells.size() != 2)
+      table.fail_here("has " + std::to_string(cells.size()) + " columns: expected time [ns] and power");
+    const std::optional<double> time = text::finite_number_in(cells[0]), power = text::finite_number_in(cells[1]);
+    if (std::exchange(first, false) && !time && !power) continue;  // a header
+    for (const std::size_t column : {std::size_t{0}, std::size_t{1}})
+      if (!(column == 0 ? time : power))
+        table.fail_here(column, text::quoted(cells[column]) + ": expected a finite number");
+    if (!(std::fabs(*time) <= 1e9)) table.fail_here(0, text::quoted(cells[0]) + ": expected a time within 1e9 ns");
+    if (!samples.empty() && !(*time * 1e-9 > samples.back().time))
+      table.fail_here(0, "is not later than the row before");
+    samples.push_back({*time * 1e-9, std::max(*power, 0.0)});
+  }
+  const bool dark = std::none_of(samples.begin(), samples.end(), [](const PulseSample& s) { return s.power > 0; });
+  if (samples.size() < 2 || dark)
+    table.fail("has no pulse: expected two rows at least, of time [ns] and power, and some power above 0");
+  return MeasuredPulse(std::move(samples));
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

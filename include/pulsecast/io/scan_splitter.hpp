@@ -4,7 +4,6 @@
 #define PULSECAST_IO_SCAN_SPLITTER_HPP
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <utility>
 

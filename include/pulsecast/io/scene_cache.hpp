@@ -4,7 +4,6 @@
 #define PULSECAST_IO_SCENE_CACHE_HPP
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -83,20 +82,9 @@ concept CacheableScene = requires(const S& scene) {
 
 /// Inputs of a scene.
 struct SceneSources {
-  std::vector<std::filesystem::path>
-      files{};             ///< all files that the build reads; a folder counts with all its files and their names
-  std::string settings{};  ///< all else that the scene depends on, as text
+  std::vector<std::filesystem::path> files{};  ///< all files that the build reads; a folder counts with all below it
+  std::string settings{};                      ///< all else that the scene depends on, as text
 };
-
-/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of
-/// each, so that files already read are not read again. Throws a `FileError` if one cannot be read.
-[[nodiscard]] Fingerprint scene_key(
-    const SceneSources& sources,
-    const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint);
-
-/// Writes a cache. Throws a `FileError`.
-template <CacheableScene S>
-void save_scene(const std::filesystem::path& path, const S& scene, const Fingerprint& key);
 
 /// Result of opening a cache.
 template <class S>
@@ -104,11 +92,6 @@ struct OpenedScene {
   std::optional<S> scene;  ///< empty if the cache is unusable
   std::string reason;      ///< reason without a scene, as in "is truncated"; else empty
 };
-
-/// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
-template <CacheableScene S, class... Further>
-[[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key,
-                                        const Further&... further);
 
 /// Scene and its origin.
 template <class S>
@@ -118,13 +101,6 @@ struct CachedScene {
   std::string reason;       ///< reason for building it; empty if it comes from the cache
   std::string warning;      ///< reason for not saving it; empty if saved or from the cache
 };
-
-/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build`
-/// returns the parts; its exceptions pass through. The scene is made from its parts and `further`, as needed by a
-/// `MovingScene`.
-template <CacheableScene S, class Build, class... Further>
-[[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
-                                          const Further&... further);
 
 /// Lists the rows of a measured law.
 template <class Archive>
@@ -249,14 +225,18 @@ template <class P>
 
 }  // namespace detail
 
-inline Fingerprint scene_key(const SceneSources& sources,
-                             const std::function<Fingerprint(const std::filesystem::path&)>& content) {
+/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of
+/// each, so that files already read are not read again. Throws a `FileError` if one cannot be read.
+[[nodiscard]] inline Fingerprint scene_key(
+    const SceneSources& sources,
+    const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint) {
   Digest digest;
   digest.add(std::string_view(sources.settings));
   for (const std::filesystem::path& path : sources.files) digest.add(content(path));
   return digest.value();
 }
 
+/// Writes a cache. Throws a `FileError`.
 template <CacheableScene S>
 void save_scene(const std::filesystem::path& path, const S& scene, const Fingerprint& key) {
   const std::span<const typename S::Part> parts = scene.parts();
@@ -283,8 +263,10 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   file.commit();
 }
 
+/// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
 template <CacheableScene S, class... Further>
-OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key, const Further&... further) {
+[[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key,
+                                        const Further&... further) {
   try {
     const auto file = std::make_shared<const MappedFile>(path);
     detail::require_cache(file->bytes(), detail::program_of<typename S::Part>(), key);
@@ -300,9 +282,12 @@ OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& 
   }
 }
 
+/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build`
+/// returns the parts; its exceptions pass through. The scene is made from its parts and `further`, as needed by a
+/// `MovingScene`.
 template <CacheableScene S, class Build, class... Further>
-CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
-                            const Further&... further) {
+[[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
+                                          const Further&... further) {
   std::optional<Fingerprint> key;
   std::string reason;
   try {

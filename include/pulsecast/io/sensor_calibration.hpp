@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>
@@ -38,8 +37,7 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
     const SensorLaser& laser = sensor.lasers[k];
     file.write(text::joined(
         {"- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0, focal_slope: "
-         "0.0,"
-         " horiz_offset_correction: 0.0, laser_id: ",
+         "0.0, horiz_offset_correction: 0.0, laser_id: ",
          std::to_string(k), ", rot_correction: ", text::to_text(0 - laser.azimuth), ", vert_correction: ",
          text::to_text(laser.elevation), ", vert_offset_correction: ", text::to_text(laser.height), "}\n"}));
   }

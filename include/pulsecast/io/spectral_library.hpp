@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -39,8 +39,249 @@ struct SpectrumFile {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/spectrum_reader.hpp>
+#if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+/// Unit of the first column.
+enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenumber };
+
+/// True if a text contains a word that is not part of a longer one.
+[[nodiscard]] inline bool has_word(std::string_view text, std::string_view word) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end]))) return true;
+  }
+  return false;
+}
+
+[[nodiscard]] inline std::optional<WavelengthUnit> wavelength_unit_in(std::string_view text) {
+  if (text.find("wavenumber") != text.npos || text.find("cm-1") != text.npos) return WavelengthUnit::wavenumber;
+  for (const std::string_view word : {"micromet", "micron"})
+    if (text.find(word) != text.npos) return WavelengthUnit::micrometre;
+  if (text.find("nanomet") != text.npos || has_word(text, "nm")) return WavelengthUnit::nanometre;
+  for (const std::string_view word : {"um", "\xC2\xB5m", "\xCE\xBCm", "\xB5m"})  // two micro signs, and that of Latin-1
+    if (has_word(text, word)) return WavelengthUnit::micrometre;
+  return std::nullopt;
+}
+
+[[nodiscard]] inline std::optional<ReflectanceScale> reflectance_scale_in(std::string_view text) {
+  if (text.find("percent") != text.npos || text.find('%') != text.npos) return ReflectanceScale::percent;
+  if (text.find("fraction") != text.npos || text.find("0-1") != text.npos) return ReflectanceScale::fraction;
+  return std::nullopt;
+}
+
+class SpectrumReader {
+ public:
+  explicit SpectrumReader(const std::filesystem::path& path) : table_(path, "a spectrum") {}
+
+  [[nodiscard]] SpectrumFile read() {
+    while (table_.next()) row();
+    if (samples_.empty()) table_.fail("holds no row of two numbers: expected wavelength and reflectance, side by side");
+    if (!unit_ || !scale_) titles();
+    SpectrumFile file;
+    file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
+    std::ranges::stable_sort(samples_, [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    file.spectrum = std::make_shared<const Spectrum>(united());
+    file.warnings = std::move(warnings_);
+    return file;
+  }
+
+ private:
+  /// Row of the file.
+  struct Row : SpectralSample {
+    std::size_t line = 0;
+  };
+
+  /// Number, or empty where marked as missing; `is_cell` is false for anything else.
+  struct Cell {
+    std::optional<double> number;
+    bool is_cell;
+  };
+
+  static Cell cell(std::string_view word) {
+    const std::optional<double> number = text::finite_number_in(word);
+    if (number && *number > -1e30) return {number, true};
+    return {std::nullopt, number || text::is_same_word(word, "nan") || text::is_same_word(word, "na")};
+  }
+
+  void row() {
+    static constexpr std::string_view separators = " \t,;";
+    const std::string_view text = table_.text();
+    std::string_view rest = text;
+    const std::optional<double> wavelength = text::finite_number_in(text::take_word(rest, separators));
+    const Cell reflectance = cell(text::take_word(rest, separators));
+    if (!wavelength || !reflectance.is_cell) {
+      if (begun_ && !text.starts_with('#') && !text.starts_with("//"))
+        table_.fail_here(text::quoted(text) + ": expected wavelength and reflectance, two numbers");
+      if (!begun_) header(text);
+      return;
+    }
+    begun_ = true;
+    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12))
+      table_.fail_here(text::quoted(text) + ": expected a wavelength greater than 0");
+    if (reflectance.number) samples_.push_back({{*wavelength, *reflectance.number}, table_.line()});
+  }
+
+  void header(std::string_view text) {
+    const std::string line = text::lower(text);
+    titles_ = line;
+    titles_line_ = table_.line();
+    const auto is_key = [&](std::string_view key) { return line.starts_with(key); };
+    if (is_key("x units:")) unit_ = wavelength_unit_in(line);
+    if (!is_key("y units:")) return;
+    scale_ = reflectance_scale_in(line);
+    scale_line_ = table_.line();
+    if (line.find("reflect") == line.npos)
+      table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
+  }
+
+  /// Takes units from the line above the numbers if no key named them.
+  void titles() {
+    if (!unit_) unit_ = wavelength_unit_in(titles_);
+    if (scale_ || titles_.find("reflect") == titles_.npos) return;
+    scale_ = reflectance_scale_in(titles_);
+    scale_line_ = titles_line_;
+  }
+
+  std::string take_wavelengths() {
+    static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
+    const auto [low, high] = std::minmax_element(
+        samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    const double shortest = low->wavelength;
+    const bool given = unit_.has_value();
+    if (!given)
+      unit_ = shortest >= 100   ? WavelengthUnit::nanometre
+              : shortest < 0.01 ? WavelengthUnit::metre
+                                : WavelengthUnit::micrometre;
+    const std::string range = text::to_text(shortest) + " to " + text::to_text(high->wavelength);
+    for (Row& sample : samples_) {
+      double& w = sample.wavelength;
+      w = *unit_ == WavelengthUnit::metre        ? w
+          : *unit_ == WavelengthUnit::micrometre ? w * 1e-6
+          : *unit_ == WavelengthUnit::nanometre  ? w * 1e-9
+                                                 : 0.01 / w;
+      if (odd_ == 0 && (w < 1e-7 || w > 1e-3)) odd_ = sample.line;
+    }
+    const std::string name = names[static_cast<std::size_t>(*unit_)];
+    if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all between 100 nm and 1 mm");
+    return "wavelengths in " + name + (given ? ", by the header" : ", by the values " + range);
+  }
+
+  std::string take_reflectances(ReflectanceScale& scale) {
+    const double largest = std::max_element(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) {
+                             return a.reflectance < b.reflectance;
+                           })->reflectance;
+    const std::string reach = "its values reach " + text::to_text(largest);
+    const bool many = largest > 1.5;
+    const bool given = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
+    scale = given ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;
+    const bool percent = scale == ReflectanceScale::percent;
+    if (scale_ && !given) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
+    if (percent && largest <= 1) warn(scale_line_, "its header says percent, but " + reach + " only");
+    Oddity clipped;
+    for (Row& sample : samples_) {
+      const double fraction = percent ? sample.reflectance / 100 : sample.reflectance;
+      sample.reflectance = std::clamp(fraction, 0.0, 1.0);
+      if (sample.reflectance != fraction) clipped.at(sample.line);
+    }
+    if (clipped.count > 0)
+      warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
+    return std::string("reflectance in ") + (percent ? "percent" : "fractions") +
+           (given ? ", by the header" : ", as " + reach);
+  }
+
+  /// Samples with those of equal wavelength averaged.
+  [[nodiscard]] std::vector<SpectralSample> united() {
+    std::vector<SpectralSample> all;
+    Oddity repeated;
+    for (std::size_t i = 0; i < samples_.size();) {
+      std::size_t end = i;
+      double sum = 0;
+      for (; end < samples_.size() && samples_[end].wavelength == samples_[i].wavelength; ++end)
+        sum += samples_[end].reflectance;
+      all.push_back({samples_[i].wavelength, std::min(sum / static_cast<double>(end - i), 1.0)});
+      if (end - i > 1) repeated.at(samples_[i + 1].line);
+      i = end;
+    }
+    if (repeated.count > 0)
+      warn(repeated.first,
+           "a wavelength is repeated, the first of " + std::to_string(repeated.count) + ": the mean is used");
+    return all;
+  }
+
+  void warn(std::size_t line, const std::string& text) {
+    warnings_.push_back(table_.path() + ", line " + std::to_string(line) + ": " + text);
+  }
+
+  TextTable table_;
+  std::vector<Row> samples_;
+  std::optional<WavelengthUnit> unit_;
+  std::optional<ReflectanceScale> scale_;
+  std::string titles_;  // last line of the header, in small letters
+  std::size_t titles_line_ = 0;
+  std::vector<std::string> warnings_;
+  std::size_t scale_line_ = 0, odd_ = 0;  // lines of the header's scale, and of the first odd wavelength
+  bool begun_ = false;
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE SpectrumFile read_spectrum(const std::filesystem::path& path) {
+  return reading(path, [&] { return detail::SpectrumReader(path).read(); });
+}
+
+PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+      std::error_code ignored;
+      if (entry->is_regular_file(ignored) && !entry->path().filename().string().starts_with('.'))
+        files.push_back(entry->path());
+    }
+    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
+    std::sort(files.begin(), files.end());
+  } else {
+    files.push_back(path);
+  }
+  SpectralLibrary library;
+  for (const std::filesystem::path& file : files) {
+    try {
+      SpectrumFile read = read_spectrum(file);
+      if (!library.spectra.try_emplace(file.stem().string(), read.spectrum).second) {
+        library.warnings.push_back(file.string() + ": is left out; another file has a spectrum of this name");
+        continue;
+      }
+      library.reports.push_back(std::move(read.report));
+      library.warnings.insert(library.warnings.end(), read.warnings.begin(), read.warnings.end());
+    } catch (const FileError& unreadable) {
+      if (files.size() == 1) throw;
+      library.warnings.push_back(std::string(unreadable.what()) + "; it is left out");
+    }
+  }
+  if (library.spectra.empty())
+    throw FileError(path.string(), "", "holds no spectrum: expected files of wavelength and reflectance");
+  return library;
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

@@ -14,7 +14,7 @@
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/columns.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
@@ -91,12 +91,6 @@ class TrajectoryWriter {
   std::uint64_t records_ = 0;
 };
 
-/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of
-/// time, with a jump's time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for
-/// unordered, too large or non-unit poses.
-void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
-                      const TrajectoryFormat& format = csv_format(), double start_time = 0);
-
 namespace detail {
 
 /// Header lines with the names of the columns.
@@ -143,8 +137,11 @@ namespace detail {
 
 }  // namespace detail
 
+/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of
+/// time, with a jump's time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for
+/// unordered, too large or non-unit poses.
 inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
-                             const TrajectoryFormat& format, double start_time) {
+                             const TrajectoryFormat& format = csv_format(), double start_time = 0) {
   format.validate();
   require_finite("write_trajectory start_time", start_time, "s");
   const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);

@@ -27,10 +27,8 @@ enum class VoxelUse : std::uint8_t {
 struct VoxelFileSettings {
   VoxelUse use = VoxelUse::transmissive;  ///< use of the voxels
   double exponent = 0.5;  ///< of scaled cubes: their edge is (PAD / PADmax)^exponent times that of the cell
-  std::optional<double> density_max =
-      std::nullopt;  ///< PADmax; by default from the file, or else its maximum [m^2/m^3]
-  std::optional<std::uint64_t> shift =
-      std::nullopt;  ///< seed of random shifts of scaled cubes inside their cells; none if empty
+  std::optional<double> density_max = std::nullopt;   ///< PADmax; by default from the file, or its maximum [m^2/m^3]
+  std::optional<std::uint64_t> shift = std::nullopt;  ///< seed of random shifts of scaled cubes in their cells; or none
 
   void validate() const {
     require_not_negative("VoxelFileSettings::exponent", exponent, "");
@@ -61,8 +59,278 @@ struct VoxelFile {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/voxel_file_reader.hpp>
+#if PULSECAST_DEFINES(IO_VOX)
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/cell_numbers.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+class VoxelFileReader {
+ public:
+  VoxelFileReader(const std::filesystem::path& path, const VoxelFileSettings& settings)
+      : settings_(validated(settings)), table_(path, "a voxel file, which begins with 'VOXEL SPACE'") {}
+
+  [[nodiscard]] VoxelFile read() && {
+    if (!table_.next() || table_.text() != "VOXEL SPACE")
+      table_.fail_here(text::quoted(table_.text()) + ": expected a voxel file, which begins with 'VOXEL SPACE'");
+    for (;;) {
+      if (!table_.next()) table_.fail("has no row of column names: expected 'i j k PadBVTotal ...'");
+      if (!table_.text().starts_with('#')) break;
+      keys();
+    }
+    name_columns();
+    check_keys();
+    while (table_.next())
+      if (table_.text().starts_with('#')) {
+        keys();
+      } else {
+        row();
+      }
+    finish();
+    return std::move(file_);
+  }
+
+ private:
+  static constexpr double max_number = 1e12;  ///< upper limit of numbers in a file
+
+  /// Reads a line of `#key: value #key: value ...`.
+  void keys() {
+    for (std::string_view left = table_.text(); !left.empty();) {
+      left.remove_prefix(1);
+      const std::string_view entry = left.substr(0, left.find('#'));
+      left.remove_prefix(entry.size());
+      const std::size_t colon = entry.find_first_of(":=");
+      if (colon == entry.npos) continue;
+      std::string key = text::lower(entry.substr(0, colon));
+      key.erase(std::remove(key.begin(), key.end(), ' '), key.end());
+      const std::string_view value = entry.substr(colon + 1);
+      if (key == "min_corner") {
+        min_corner_ = vector(key, value);
+      } else if (key == "max_corner") {
+        max_corner_ = vector(key, value);
+      } else if (key == "split") {
+        split_ = vector(key, value);
+        for (int axis = 0; axis < 3; ++axis)
+          if (!((*split_)[axis] >= 1 && (*split_)[axis] <= 0x1p32 && std::floor((*split_)[axis]) == (*split_)[axis]))
+            table_.fail_here("'split' is " + text::quoted(value) + ": expected three whole numbers from 1 to 2^32");
+      } else if (key == "res") {
+        resolution(value);
+      } else if (key == "max_pad") {
+        const std::vector<double> given = numbers(value);
+        if (given.size() != 1 || !(given[0] > 0))
+          table_.fail_here("'max_pad' is " + text::quoted(value) + ": expected a number above 0");
+        max_pad_ = given[0];
+      }
+    }
+  }
+
+  void resolution(std::string_view value) {
+    const std::vector<double> given = numbers(value);
+    if ((given.size() != 1 && given.size() != 3) || !(*std::min_element(given.begin(), given.end()) > 0))
+      table_.fail_here("'res' is " + text::quoted(value) + ": expected the edge of a voxel [m], above 0");
+    if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
+      table_.fail_here("'res' is " + text::quoted(value) + ": expected voxels that are cubes");
+    edge_ = given[0];
+    edge_line_ = table_.line();
+  }
+
+  [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
+    const std::vector<double> given = numbers(value);
+    if (given.size() != 3)
+      table_.fail_here("'" + key + "' is " + text::quoted(value) + ": expected three numbers within 1e12");
+    return {given[0], given[1], given[2]};
+  }
+
+  /// Numbers of a value, with or without brackets and commas; empty if it has anything else.
+  [[nodiscard]] static std::vector<double> numbers(std::string_view value) {
+    constexpr std::string_view between = " \t,()[]";
+    std::vector<double> result;
+    value.remove_prefix(std::min(value.find_first_not_of(between), value.size()));
+    while (!value.empty()) {
+      const std::optional<double> number = text::finite_number_in(text::take_word(value, between));
+      if (!number || std::fabs(*number) > max_number) return {};
+      result.push_back(*number);
+    }
+    return result;
+  }
+
+  void name_columns() {
+    const std::vector<std::string_view>& names = table_.cells();
+    const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
+      const auto found = std::find(names.begin(), names.end(), name);
+      return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
+    };
+    const auto need = [&](std::string_view name) {
+      const std::optional<std::size_t> column = find(name);
+      if (!column)
+        table_.fail_here("no column is named '" + std::string(name) +
+                         "': expected a row of names, as 'i j k PadBVTotal ...'");
+      return *column;
+    };
+    index_ = {need("i"), need("j"), need("k")};
+    density_ = need("PadBVTotal");
+    transmittance_ =
+        settings_.use == VoxelUse::transmissive ? find("transmittance") : std::optional(need("transmittance"));
+    columns_ = names.size();
+  }
+
+  void check_keys() {
+    if (!min_corner_) table_.fail("has no key 'min_corner': expected '#min_corner: x y z' above the rows");
+    if (!edge_) table_.fail("has no key 'res': expected '#res: edge' above the rows");
+    file_.voxels.corner = *min_corner_;
+    file_.voxels.edge = *edge_;
+    if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
+      throw FileError(table_.path(), TextTable::place(edge_line_),
+                      "'res' is " + text::to_text(*edge_) + ": expected at least " + text::to_text(least) +
+                          " at the distance of 'min_corner' from the origin");
+    if (!max_corner_ || !split_) return;
+    const Vec3 should = *min_corner_ + *split_ * *edge_;
+    if (max_norm(should - *max_corner_) > *edge_ / 2)
+      file_.warnings.push_back(table_.path() +
+                               ": 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
+  }
+
+  void row() {
+    const std::vector<std::string_view>& cells = table_.cells();
+    if (cells.size() < columns_)
+      table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(columns_));
+    const CellNumbers::Cell cell{index(0), index(1), index(2)};
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= max_number))
+        table_.fail_here("the voxel " + to_text(cell) + " is beyond 1e12 m: expected coordinates up to 1e12 m");
+    const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
+    if (density < 0 || density > max_number)
+      table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
+    if (table_.line_is_open())
+      file_.warnings.push_back(table_.path() + ": the last line has no line end: the file may be truncated");
+    if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
+    const std::size_t before = cells_.size();
+    if (cells_.number(cell) != before)
+      table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");
+    density_max_ = std::fmax(density_max_, density);
+    if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance))
+      return;
+    if (std::isnan(density) && settings_.use != VoxelUse::opaque) return no_density_.at(table_.line());
+    kept_.push_back(cell);
+    densities_.push_back(static_cast<float>(density));
+    if (transmittance_) file_.transmittances.push_back(static_cast<float>(transmittance));
+  }
+
+  [[nodiscard]] std::uint32_t index(int axis) {
+    const std::size_t column = index_[static_cast<std::size_t>(axis)];
+    const std::string_view text = table_.cells()[column];
+    const auto value = text::number_in<std::uint32_t>(text);
+    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
+    if (split_ && !(*value < (*split_)[axis]))
+      table_.fail_here(column, text::quoted(text) + ": expected less than the " + text::to_text((*split_)[axis]) +
+                                   " voxels that 'split' gives");
+    return *value;
+  }
+
+  [[nodiscard]] double number(std::size_t column) {
+    const std::string_view text = table_.cells()[column];
+    if (text::is_same_word(text, "nan") || text::is_same_word(text, "-nan"))
+      return std::numeric_limits<double>::quiet_NaN();
+    const std::optional<double> value = text::finite_number_in(text);
+    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a number, with a decimal point, or NaN");
+    return *value;
+  }
+
+  void finish() {
+    file_.density_max = settings_.density_max.value_or(max_pad_.value_or(density_max_));
+    if (settings_.use == VoxelUse::scaled && !settings_.density_max && !max_pad_)
+      file_.warnings.push_back(table_.path() + ": has no key 'max_pad': the largest density of its rows, " +
+                               text::to_text(density_max_) + " m^2/m^3, is that of whole cubes");
+    if (settings_.use == VoxelUse::scaled) scale();
+    if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
+    file_.voxels.cells = std::move(kept_);
+    warn(no_density_, "has no density (NaN)", "they are left out");
+    warn(too_dense_, "is denser than the maximum, " + text::to_text(file_.density_max) + " m^2/m^3",
+         "they fill their cells");
+    if (file_.voxels.cells.empty())
+      table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"
+                                     : "has no occupied voxel: expected at least one");
+  }
+
+  /// Sets the size of each cube, and its shift if requested; removes those of size 0.
+  void scale() {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      const double share = densities_[i] > 0 ? densities_[i] / file_.density_max : 0;
+      if (share > 1 + 1e-6) ++too_dense_.count;
+      // source: Weiser et al. 2021, eq. 2, with the cell's edge as base size
+      const auto size = static_cast<float>(std::pow(std::min(share, 1.0), settings_.exponent));
+      if (!(size > 0)) continue;
+      kept_[n] = kept_[i];
+      if (!file_.transmittances.empty()) file_.transmittances[n] = file_.transmittances[i];
+      file_.voxels.scales.push_back(size);
+      if (settings_.shift) file_.voxels.shifts.push_back(shift(kept_[i], size));
+      ++n;
+    }
+    kept_.resize(n);
+    if (!file_.transmittances.empty()) file_.transmittances.resize(n);
+  }
+
+  /// Uniform shift that keeps the cube inside its cell, in edges of the cell.
+  [[nodiscard]] std::array<float, 3> shift(const CellNumbers::Cell& cell, float size) const {
+    const auto words =
+        random_words({*settings_.shift, std::uint64_t{cell[1]} << 32 | cell[0], cell[2], Purpose::scene});
+    std::array<float, 3> result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double within = (words[axis] + 0.5) * 0x1p-31 - 1;  // (-1, 1)
+      result[axis] = static_cast<float>(within * (1 - double{size}) / 2);
+    }
+    return result;
+  }
+
+  void warn(const Oddity& oddity, const std::string& what, const std::string& consequence) {
+    if (oddity.count == 0) return;
+    const std::string place = oddity.first > 0 ? ", " + TextTable::place(oddity.first) : "";
+    file_.warnings.push_back(table_.path() + place + ": a voxel " + what + ", one of " + std::to_string(oddity.count) +
+                             ": " + consequence);
+  }
+
+  [[nodiscard]] static std::string to_text(const CellNumbers::Cell& cell) {
+    return std::to_string(cell[0]) + " " + std::to_string(cell[1]) + " " + std::to_string(cell[2]);
+  }
+
+  VoxelFileSettings settings_;
+  TextTable table_;
+  VoxelFile file_;
+  std::optional<Vec3> min_corner_, max_corner_, split_;
+  std::optional<double> edge_, max_pad_;
+  std::size_t edge_line_ = 0;
+  std::array<std::size_t, 3> index_{};  // column numbers
+  std::size_t density_ = 0, columns_ = 0;
+  std::optional<std::size_t> transmittance_;
+  double density_max_ = 0;  // over all rows
+  Oddity no_density_, too_dense_;
+  CellNumbers cells_;                    // of all rows
+  std::vector<CellNumbers::Cell> kept_;  // of rows that become voxels
+  std::vector<float> densities_;         // of these
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings) {
+  return reading(path, [&] { return detail::VoxelFileReader(path, settings).read(); });
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

@@ -34,8 +34,61 @@ struct WorldFile {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
-#include <pulsecast/io/detail/world_file_reader.hpp>
+#if PULSECAST_DEFINES(IO_WORLD_FILE)
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+PULSECAST_INLINE WorldFile read_world_file(const std::filesystem::path& path) {
+  TextTable table(path, "a world file of six lines");
+  std::array<double, 6> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!table.next()) table.fail("ends after " + std::to_string(i) + " numbers: expected six, a line each");
+    const std::optional<double> value = text::finite_number_in(table.text());
+    if (!value) table.fail_here(text::quoted(table.text()) + ": expected a number, with a decimal point");
+    const bool is_place = i >= 4, is_size = i == 0 || i == 3;
+    if (is_place && !(std::fabs(*value) <= 1e15))
+      table.fail_here(text::quoted(table.text()) + ": expected a place within 1e15 m");
+    if (is_size && !(std::fabs(*value) >= 1e-9 && std::fabs(*value) <= 1e6))
+      table.fail_here(text::quoted(table.text()) + ": expected the size of a pixel, from 1e-9 m to 1e6 m");
+    if (i == 0 && *value < 0) table.fail_here("has columns that go west: expected a positive width of the pixels");
+    if (!is_place && !is_size && *value != 0)
+      table.fail_here("is rotated or sheared: expected 0; resampling to north up makes it so");
+    values[i] = *value;
+  }
+  if (table.next()) table.fail_here("is a line too many: expected six");
+  return {.first = {values[4], values[5]}, .step = {values[0], values[3]}};
+}
+
+PULSECAST_INLINE std::vector<std::filesystem::path> world_files_of(const std::filesystem::path& picture) {
+  const std::string extension = picture.extension().string();
+  std::vector<std::filesystem::path> all;
+  if (extension.size() < 3) return all;
+  for (const char* const w : {"w", "W"})
+    for (const std::string& name :
+         {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(*w == 'w' ? ".wld" : ".WLD")})
+      all.push_back(std::filesystem::path(picture).replace_extension(name));
+  return all;
+}
+
+PULSECAST_INLINE std::filesystem::path world_file_of(const std::filesystem::path& picture) {
+  std::error_code ignored;
+  for (std::filesystem::path& beside : world_files_of(picture))
+    if (std::filesystem::exists(beside, ignored)) return std::move(beside);
+  return {};
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
 #endif
 
 #endif

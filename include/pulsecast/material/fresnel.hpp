@@ -52,10 +52,6 @@ struct PaneSplit {
   double shift = 0;        ///< distance along the normal by which the ray seems to begin nearer to the pane [m]
   double delay = 0;        ///< optical path from face to face, less the path of the shifted ray between them [m]
   double cos_inside = 1;   ///< cosine between the ray inside and the normal
-  /// Distance between the ray and its continuation without the pane, `d sin(a - b) / cos b` [m].
-  [[nodiscard]] double lateral(double cos_incidence) const noexcept {
-    return shift * std::sqrt(1 - cos_incidence * cos_incidence);
-  }
 };
 
 /// Splits light at a pane in a medium, by default air. Source: sum of the geometric series of reflections, for each

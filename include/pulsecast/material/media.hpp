@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -86,8 +85,7 @@ class Media {
 
   /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium,
   /// in their order.
-  template <class Visitor>
-  void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
+  void along(const Vec3& origin, const Vec3& direction, double near, double far, const auto& visit) const noexcept {
     if (empty()) return;
     if (uniform_) return near < far ? visit(near, far, regions_->front(), 1.0) : void();
     for (double from = near; from < far;) {
@@ -137,39 +135,35 @@ class Media {
   }
 
   /// Visits the cells of a region between two ranges inside it.
-  template <class Visitor>
   static void along_cells(const Vec3& origin, const Vec3& direction, double from, double to, const MediumRegion& region,
-                          const Visitor& visit) noexcept {
-    std::array<std::size_t, 3> cell{};
-    std::array<double, 3> edge{};
+                          const auto& visit) noexcept {
+    std::size_t cell[3];
+    double edge[3];
     const Vec3 start = origin + from * direction;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      edge[k] = (region.bounds.max[axis] - region.bounds.min[axis]) / static_cast<double>(region.cells[k]);
-      const double at = std::floor((start[axis] - region.bounds.min[axis]) / edge[k]);
-      cell[k] = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(region.cells[k] - 1)));
+    const std::size_t* const cells = region.cells.data();
+    for (int k = 0; k < 3; ++k) {
+      edge[k] = (region.bounds.max[k] - region.bounds.min[k]) / static_cast<double>(cells[k]);
+      const double at = std::floor((start[k] - region.bounds.min[k]) / edge[k]);
+      cell[k] = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(cells[k] - 1)));
     }
     while (from < to) {
       double end = to;
-      std::size_t through = 3;  // axis of the face
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int axis = static_cast<int>(k);
-        if (direction[axis] == 0) continue;
-        const double plane =
-            region.bounds.min[axis] + edge[k] * static_cast<double>(cell[k] + (direction[axis] > 0 ? 1 : 0));
-        const double range = std::max(from, (plane - origin[axis]) / direction[axis]);
+      int through = 3;  // axis of the face
+      for (int k = 0; k < 3; ++k) {
+        if (direction[k] == 0) continue;
+        const double plane = region.bounds.min[k] + edge[k] * static_cast<double>(cell[k] + (direction[k] > 0 ? 1 : 0));
+        const double range = std::max(from, (plane - origin[k]) / direction[k]);
         if (range < end) {
           end = range;
           through = k;
         }
       }
-      const double density =
-          static_cast<double>(region.densities[cell[0] + region.cells[0] * (cell[1] + region.cells[1] * cell[2])]);
+      const double density = static_cast<double>(region.densities[cell[0] + cells[0] * (cell[1] + cells[1] * cell[2])]);
       if (end > from && density > 0) visit(from, end, region, density);
       from = end;
       if (through == 3) return;
-      const bool up = direction[static_cast<int>(through)] > 0;
-      if (up ? cell[through] + 1 == region.cells[through] : cell[through] == 0) return;
+      const bool up = direction[through] > 0;
+      if (up ? cell[through] + 1 == cells[through] : cell[through] == 0) return;
       up ? ++cell[through] : --cell[through];
     }
   }

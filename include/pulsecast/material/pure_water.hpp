@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_PURE_WATER_HPP
 
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include <pulsecast/base/require.hpp>
@@ -15,8 +14,7 @@ namespace PULSECAST_NAMESPACE {
 /// Temperature and salinity of water at atmospheric pressure.
 struct WaterState {
   double temperature_celsius = 20;  ///< temperature, from 0 to 30 [degrees Celsius]
-  double salinity_permille =
-      35;  ///< grams of salt per kilogram, from 0 to 35; 0 for fresh water, 35 for the mean of the oceans
+  double salinity_permille = 35;    ///< salt, from 0 (fresh water) to 35 (mean of the oceans) [g/kg]
 
   void validate() const {
     require_within("WaterState::temperature_celsius", temperature_celsius, 0, 30, "degrees Celsius");
@@ -46,7 +44,6 @@ inline void require_water(double wavelength, const WaterState& state) {
   state.validate();
 }
 
-/// Row of a table of absorption.
 struct AbsorptiveIndex {
   double micrometres;  ///< wavelength [um]
   double kappa;        ///< imaginary part of the index of refraction
@@ -81,8 +78,8 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
 }  // namespace detail
 
 /// Index of refraction of water relative to air, for a wavelength in vacuum, from 0.35 to 1.1 um [m]. Source: Quan &
-/// Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated by Huibers 1997. Relative to air: Zhang, Hu & He
-/// 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by 1e-3 at 1.06 um.
+/// Fry 1995, fitted to measurements from 0.4 to 0.7 um; extrapolated as by Huibers 1997. Relative to air: Zhang, Hu &
+/// He 2009. Differs from the fresh water of Daimon & Masumura 2007 by at most 3e-5 in the visible, by 1e-3 at 1.06 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);

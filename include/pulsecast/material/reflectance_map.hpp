@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <utility>
 
 #include <pulsecast/base/require.hpp>
@@ -55,7 +53,6 @@ struct ReflectanceMap {
     return map;
   }
 
-  /// @throws SettingError for values out of range
   void validate() const {
     image.validate();
     for (const double wavelength : wavelengths)
@@ -86,7 +83,6 @@ struct ReflectanceMap {
   }
 
  private:
-  /// Channel of red, green or blue.
   [[nodiscard]] std::size_t channel(std::size_t k) const noexcept { return image.channels < 3 ? 0 : k; }
 };
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 #define PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 
-#include <cstdint>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>
 
@@ -12,10 +10,9 @@ namespace PULSECAST_NAMESPACE {
 
 /// Kinds of specular reflection and transmission.
 enum class InterfaceKind : std::uint8_t {
-  none,    ///< not at all
-  mirror,  ///< reflects a share of it, at any incidence
-  pane,    ///< plate with two parallel faces, drawn as one surface: reflects light, and lets it through with a lateral
-           ///< shift
+  none,        ///< not at all
+  mirror,      ///< reflects a share of it, at any incidence
+  pane,        ///< plate with two parallel faces, drawn as one surface: reflects light, and lets it through, shifted
   dielectric,  ///< face of a body of glass or another clear medium: reflects and refracts
   water,       ///< the same, of water
 };
@@ -42,7 +39,7 @@ struct SmoothInterface {
   }
 
   /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. For foam and the glint of waves that are not
-  /// modelled, see `Scattering::microfacet` and `Material::reflectance`.
+  /// modelled, see `Microfacet` and `Material::reflectance`.
   [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
     return {.kind = InterfaceKind::water, .inside = inside};
   }

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SPECTRUM_HPP
 #define PULSECAST_MATERIAL_SPECTRUM_HPP
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,16 +35,11 @@ class Spectrum {
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
                            "greater than that of the previous sample, " + text::to_text(samples[i - 1].wavelength));
     }
-    const SharedBuffer<SpectralSample> copy(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) copy[i] = samples[i];
-    samples_ = copy;
+    samples_ = samples;
   }
 
   explicit Spectrum(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(samples_);
-  }
+  void archive(auto& a) { a(samples_); }
   [[nodiscard]] bool is_consistent() const noexcept { return !samples_.empty(); }
 
   /// Samples in ascending order of wavelength.

@@ -4,8 +4,6 @@
 #define PULSECAST_MATERIAL_VARIATION_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>

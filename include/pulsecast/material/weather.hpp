@@ -27,6 +27,29 @@ namespace detail {
           .backscatter = extinction / lidar_ratio};
 }
 
+/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive terms for small y, else
+/// its closed form.
+template <int order>
+[[nodiscard]] double lower_gamma(double y) noexcept {
+  if constexpr (order == 1) return -std::expm1(-y);
+  if (y > 1) return order == 2 ? 1 - std::exp(-y) * (1 + y) : 2 - std::exp(-y) * (2 + y * (2 + y));
+  double term = std::pow(y, order) * std::exp(-y) / order;
+  double sum = 0;
+  for (int k = order + 1; term > sum * 1e-17; ++k) {
+    sum += term;
+    term *= y / k;
+  }
+  return sum;
+}
+
+/// Integral of D^2 exp(-slope D) over diameters D from `least` to `most` [m^3]; `slope` is positive [1/m].
+[[nodiscard]] inline double second_moment(double slope, double least, double most) noexcept {
+  const double y = slope * (most - least);
+  const double shifted =
+      least * least * lower_gamma<1>(y) + 2 * least / slope * lower_gamma<2>(y) + lower_gamma<3>(y) / (slope * slope);
+  return std::exp(-slope * least) / slope * shifted;
+}
+
 }  // namespace detail
 
 /// Fog of a visibility, from 1 m to 1 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
@@ -72,33 +95,6 @@ namespace detail {
   return detail::hazy_air(extinction(wavelength, visibility), 0.92, 70);
 }
 
-namespace detail {
-
-/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive terms for small y, else
-/// its closed form.
-template <int order>
-[[nodiscard]] double lower_gamma(double y) noexcept {
-  if constexpr (order == 1) return -std::expm1(-y);
-  if (y > 1) return order == 2 ? 1 - std::exp(-y) * (1 + y) : 2 - std::exp(-y) * (2 + y * (2 + y));
-  double term = std::pow(y, order) * std::exp(-y) / order;
-  double sum = 0;
-  for (int k = order + 1; term > sum * 1e-17; ++k) {
-    sum += term;
-    term *= y / k;
-  }
-  return sum;
-}
-
-/// Integral of D^2 exp(-slope D) over diameters D from `least` to `most` [m^3]; `slope` is positive [1/m].
-[[nodiscard]] inline double second_moment(double slope, double least, double most) noexcept {
-  const double y = slope * (most - least);
-  const double shifted =
-      least * least * lower_gamma<1>(y) + 2 * least / slope * lower_gamma<2>(y) + lower_gamma<3>(y) / (slope * slope);
-  return std::exp(-slope * least) / slope * shifted;
-}
-
-}  // namespace detail
-
 /// Falling particles, in number per volume and diameter D: N(D) = density exp(-slope D) between two diameters, none
 /// beyond. Much larger than the wavelength: each takes twice its shadow pi/4 D^2 out of the beam, half of it by
 /// diffraction into a cone of about wavelength / D, which wide receivers take for light that was not lost (van de Hulst
@@ -109,9 +105,8 @@ struct Precipitation {
   double diameter_min = 0.1e-3;  ///< minimum diameter [m]
   double diameter_max = 6e-3;    ///< maximum diameter [m]
   double lidar_ratio = 20;       ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
-  double absorption = 0;  ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
-  double reflectance =
-      0;  ///< share of the light reflected by the front of a particle at normal incidence, at most 8 pi / lidar_ratio
+  double absorption = 0;   ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
+  double reflectance = 0;  ///< share reflected by a particle's front at normal incidence, at most 8 pi / lidar_ratio
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
@@ -128,22 +123,13 @@ struct Precipitation {
     return density / slope * std::exp(-slope * diameter_min) *
            detail::lower_gamma<1>(slope * (diameter_max - diameter_min));
   }
-  /// Share of the particles up to a diameter between `diameter_min` and `diameter_max` [m].
-  [[nodiscard]] double cumulative(double diameter) const noexcept {
-    return detail::lower_gamma<1>(slope * (diameter - diameter_min)) /
-           detail::lower_gamma<1>(slope * (diameter_max - diameter_min));
-  }
-  /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of `cumulative`.
+  /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of the cumulative distribution.
   [[nodiscard]] double diameter(double uniform) const noexcept {
     return std::clamp(
         diameter_min - std::log1p(-uniform * detail::lower_gamma<1>(slope * (diameter_max - diameter_min))) / slope,
         diameter_min, diameter_max);
   }
 
-  /// Area that a particle of a diameter [m] takes out of a beam [m^2].
-  [[nodiscard]] static double extinction_cross_section(double diameter) noexcept {
-    return std::numbers::pi / 2 * diameter * diameter;
-  }
   /// Differential cross section for scattering straight back of a particle of a diameter [m] [m^2/sr]: by the shadow,
   /// of its front, reflectance / (4 pi), that of a mirror sphere; of its inside, the rest to `lidar_ratio`, weakened by
   /// absorption.
@@ -161,12 +147,6 @@ struct Precipitation {
            (front() * detail::second_moment(slope, diameter_min, diameter_max) +
             inside() * detail::second_moment(slope + absorption, diameter_min, diameter_max));
   }
-  /// Mean of `backscatter_cross_section` over the particles [m^2/sr].
-  [[nodiscard]] double mean_backscatter_cross_section() const noexcept {
-    Precipitation unit = *this;
-    unit.density = 1;
-    return unit.backscatter() / unit.number();
-  }
 
   /// Air with the mean of the particles, without their grain.
   [[nodiscard]] Medium medium() const noexcept {
@@ -174,12 +154,10 @@ struct Precipitation {
   }
 
  private:
-  [[nodiscard]] double front() const noexcept {
-    return reflectance / (4 * std::numbers::pi);
-  }  ///< by the shadow [1/sr]
-  [[nodiscard]] double inside() const noexcept {
-    return 2 / lidar_ratio - front();
-  }  ///< by the shadow, if nothing is absorbed [1/sr]
+  /// By the shadow [1/sr].
+  [[nodiscard]] double front() const noexcept { return reflectance / (4 * std::numbers::pi); }
+  /// By the shadow, if nothing is absorbed [1/sr].
+  [[nodiscard]] double inside() const noexcept { return 2 / lidar_ratio - front(); }
 };
 
 /// Rain of a rate from 0.1 to 300 mm/h, for a wavelength from 0.4 to 1.6 um [m]: drops from 0.1 to 6 mm by Marshall &

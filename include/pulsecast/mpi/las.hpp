@@ -17,7 +17,6 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

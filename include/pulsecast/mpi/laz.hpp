@@ -18,7 +18,6 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
-#include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/las.hpp>
 
@@ -208,10 +207,9 @@ class MpiLaz final : public MpiOutput {
   std::optional<io::LazWriter> whole_;
   std::uint64_t points_ = 0, end_ = 0;  // points placed; end of the chunks placed [byte]
   Vec3 first_{};
-  int chunk_owner_ = 0;  // owner of the chunk begun last
-  std::map<std::uint64_t, std::pair<std::size_t, int>>
-      sizes_;                                 // sizes and owners of chunks without a position, by number
-  std::vector<std::size_t> sizes_of_placed_;  // [byte]
+  int chunk_owner_ = 0;                                         // owner of the chunk begun last
+  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // size and owner of chunks without a position
+  std::vector<std::size_t> sizes_of_placed_;                    // [byte]
   bool all_told_ = false;
 };
 

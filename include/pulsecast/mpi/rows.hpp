@@ -3,17 +3,14 @@
 #ifndef PULSECAST_MPI_ROWS_HPP
 #define PULSECAST_MPI_ROWS_HPP
 
-#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
-#include <pulsecast/run.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
 
@@ -24,11 +21,13 @@ class MpiRows final : public MpiOutput {
  public:
   /// Throws a `FileError` if the file cannot be made.
   MpiRows(MpiGroup& group, std::filesystem::path path, Settings settings)
-      : MpiOutput(group), settings_(std::move(settings)), file_(std::move(path)) {
+      : MpiOutput(group),
+        make_([settings = std::move(settings)](io::OutputFile rows) { return Writer(std::move(rows), settings); }),
+        file_(std::move(path)) {
     if (group.first()) whole_.emplace(file_.path());
   }
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(file_.path(), settings_); }
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(file_.path(), make_); }
   void put(MpiPiece& piece, const MpiPlace& place) override {
     file_.write(place.starts[0], static_cast<Piece&>(piece).bytes);
   }
@@ -48,31 +47,9 @@ class MpiRows final : public MpiOutput {
   }
 
  private:
-  struct Piece final : MpiPiece {
-    Piece(const std::filesystem::path& file, const Settings& how) : path(file), settings(how) { clear(); }
-    void clear() override {
-      bytes.clear();
-      writer.emplace(io::OutputFile(path, bytes), settings);
-    }
-    void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept override {
-      return pulsecast::detail::reads_empty_shots(*writer);
-    }
-    [[nodiscard]] MpiExtent extent() override {
-      writer->close();
-      MpiExtent extent;
-      extent.amounts[0] = bytes.size();
-      return extent;
-    }
-    [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
+  using Piece = MpiWrittenPiece<Writer>;
 
-    const std::filesystem::path& path;
-    const Settings& settings;
-    std::vector<std::byte> bytes;
-    std::optional<Writer> writer;
-  };
-
-  Settings settings_;
+  typename Piece::Make make_;
   MpiFile file_;
   std::optional<io::OutputFile> whole_;  // on the first process
   std::uint64_t size_ = 0;               // end of the rows placed [byte]

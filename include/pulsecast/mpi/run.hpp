@@ -46,9 +46,8 @@ class MpiPartSink {
       : take_(std::move(take)), empty_shots_(empty_shots) {}
 
   void operator()(const EchoBatch& batch) const { take_(batch); }
-  [[nodiscard]] bool reads_empty_shots() const noexcept {
-    return empty_shots_;
-  }  ///< as the concept ChoosesShots describes
+  /// As the concept ChoosesShots describes.
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
 
  private:
   std::function<void(const EchoBatch&)> take_;

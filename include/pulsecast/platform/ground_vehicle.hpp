@@ -4,10 +4,7 @@
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <concepts>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,24 +17,22 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
+#include <pulsecast/platform/detail/rolling_wheel.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
-  double speed = 10;  ///< maximum [m/s]
-  double acceleration =
-      2;            ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
-  double jerk = 2;  ///< maximum change of acceleration along the path [m/s^3]
+  double speed = 10;            ///< maximum [m/s]
+  double acceleration = 2;      ///< maximum along and across the path combined, as on level ground [m/s^2]
+  double jerk = 2;              ///< maximum change of acceleration along the path [m/s^3]
   double turn_radius = 5.5;     ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
   double wheelbase = 2.7;       ///< distance from the rear to the front axle [m]
   double track = 1.6;           ///< distance from the left to the right wheels [m]
   double wheel_radius = 0.316;  ///< [m]; source: tyre 205/55 R16 by ISO 4000-1, half of 16 inches and 55 % of 205 mm
   double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
-  double start_height =
-      std::numeric_limits<double>::infinity();    ///< the drive begins on the ground nearest to it: on the highest [m]
+  double start_height = std::numeric_limits<double>::infinity();  ///< the drive begins on the ground nearest to it [m]
   std::optional<double> height_without_ground{};  ///< height where there is no ground, which is an error if empty [m]
 
   void validate() const {
@@ -133,12 +128,11 @@ namespace detail {
     require_within(name + "x", waypoints[k].x, -1e9, 1e9, "m");
     require_within(name + "y", waypoints[k].y, -1e9, 1e9, "m");
     const auto near = [&](const Vec2& p) { return length(waypoints[k] - p) < 0.01; };
-    if (k + 1 == waypoints.size()) {
+    if (k + 1 == waypoints.size())
       while (points.size() > 1 && near(points.back())) {
         points.pop_back();
         numbers.pop_back();
       }
-    }
     if (points.empty() || !near(points.back())) {
       points.push_back(waypoints[k]);
       numbers.push_back(k);
@@ -182,8 +176,7 @@ class FootingFinder {
       footing.height += rear;
       footing.ahead = std::clamp(footing.ahead + pitch / s_.wheelbase, -tilt_max, tilt_max);
       footing.aside = std::clamp(footing.aside + roll / s_.track, -tilt_max, tilt_max);
-      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height)))
-        break;  // rounding errors
+      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height))) break;
     }
     gaps_ += gap ? 1 : 0;
     return before_ = footing;
@@ -227,6 +220,7 @@ class FootingFinder {
   /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this
   /// tangent.
   static constexpr double tilt_max = 1.7;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Lengths for messages, rounded to the centimetre.
   [[nodiscard]] static std::string brief(double x) { return text::to_text(std::round(x * 100) / 100); }
@@ -246,42 +240,13 @@ class FootingFinder {
     const std::optional<double> below = height(place, near);
     any_ground_ = any_ground_ || below;
     if (!below && !std::exchange(gap, true) && gaps_ == 0) first_gap_ = place;
-    const std::optional<double> rolled = roll(place, {std::sin(heading), std::cos(heading)}, near, below);
+    const Vec2 ahead{std::sin(heading), std::cos(heading)};
+    const auto at = [&](double way) { return height(place + way * ahead, near).value_or(-infinity); };
+    const std::optional<double> rolled = lowest_of_wheel(s_.wheel_radius, at, below);
     if (!rolled && !s_.height_without_ground)
       throw SettingError("plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], x", place.x, "m",
                          "over ground; there is none at y = " + text::to_text(place.y) + " m");
     return rolled ? *rolled : *s_.height_without_ground;
-  }
-
-  /// Lowest point that a wheel rolling ahead reaches at a place: the closing of the ground's profile with the wheel's
-  /// disc, which is the ground itself wherever that bends less than the wheel. Source: ISO 16610-41:2015, closing with
-  /// a disk.
-  [[nodiscard]] std::optional<double> roll(const Vec2& place, const Vec2& ahead, double near,
-                                           const std::optional<double>& below) const {
-    const double r = s_.wheel_radius, nothing = -std::numeric_limits<double>::infinity();
-    const auto at = [&](double u) { return height(place + u * ahead, near).value_or(nothing); };
-    if (below) {
-      const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
-          heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
-      const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
-      bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
-      for (std::size_t k = 0; k < 4; ++k)
-        touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
-      if (touched) return below;
-    }
-    constexpr int n = 12;  // samples of a radius
-    std::array<double, 4 * n + 1> profile{};
-    for (int k = -2 * n; k <= 2 * n; ++k)
-      profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
-    const auto disc = [&](int k) { return r * std::sqrt(1 - static_cast<double>(k * k) / (n * n)); };
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int axle = -n; axle <= n; ++axle) {
-      double centre = nothing;
-      for (int k = -n; k <= n; ++k)
-        centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
-      lowest = std::fmin(lowest, centre - disc(axle));
-    }
-    return lowest > nothing ? std::optional(lowest) : below;
   }
 
   const G& ground_;
@@ -295,8 +260,7 @@ class FootingFinder {
 /// Speed limits on a piece of the path. In a curve, acceleration along and across have equal shares of the maximum.
 [[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
   const double bend = std::fabs(path.curvature), share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
-  const double speed =
-      bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
+  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal: v^2 / r
   return {speed, share, share, s.jerk};
 }
 

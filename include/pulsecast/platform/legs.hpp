@@ -4,8 +4,6 @@
 #define PULSECAST_PLATFORM_LEGS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,9 +28,8 @@ struct Leg {
 /// overlap. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
-  static_assert(detail::DrawsByLegCheck<P>::passed);
-
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
   /// `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {
@@ -68,7 +65,6 @@ class Legs {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const std::size_t k = leg_of(i);
     const PulseIndex slot = i - starts_[k].pulse, left = legs_[k].size() - slot;
@@ -79,7 +75,6 @@ class Legs {
     return p;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<P> {
     const std::size_t k = leg_of(i);
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);

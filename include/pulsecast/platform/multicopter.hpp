@@ -5,19 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -81,9 +79,8 @@ class MulticopterFlight {
   [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
 
   [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position over time [m]
-  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept {
-    return heading_;
-  }  ///< clockwise from north over time [rad]
+  /// Clockwise from north over time [rad].
+  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
 
  private:
   PiecewiseCubic<Vec3> motion_;

@@ -3,7 +3,7 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <cstddef>
+#include <concepts>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -34,9 +34,8 @@ struct Mount {
 /// Pulse source of an instrument carried through the world. The lever arm turns with the body.
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
-  static_assert(detail::MeasuresBeamCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
-
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
       : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}
@@ -47,7 +46,6 @@ class Platform {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(source_, i, count);
     auto out = placed(inner);
@@ -59,7 +57,6 @@ class Platform {
     return out;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return source_.next_pulse(i);
   }
@@ -104,9 +101,10 @@ class Platform {
 template <class Path, class Source>
 Platform(Path, Source) -> Platform<typename detail::PlatformArguments<Path, Source, false>::First, Source>;
 /// As above.
-template <class Path, class Source>
-requires(!Trajectory<Path> || !InstrumentSource<Source>) Platform(Path, Mount, Source)
-->Platform<typename detail::PlatformArguments<Path, Source, true>::First, Source>;
+template <class Path, class Source, class Second = Mount>
+requires(!Trajectory<Path> || !std::convertible_to<Second, Mount> || !InstrumentSource<Source>)
+    Platform(Path, Second, Source)
+->Platform<typename detail::PlatformArguments<Path, Source, std::convertible_to<Second, Mount>>::First, Source>;
 
 }  // namespace PULSECAST_NAMESPACE
 

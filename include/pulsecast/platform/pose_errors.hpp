@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,10 +24,8 @@ struct PoseErrors {
   double attitude_noise = 0;  ///< white noise of the attitude [rad]
   double position_drift = 0;  ///< slow drift of the position: Gauss-Markov process of this deviation [m]
   double attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
-  double drift_time =
-      60;  ///< correlation time of the drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey's length [s]
-  double angular_jitter =
-      0;  ///< unreported white deviation of each beam from the optic's direction, to the right and up [rad]
+  double drift_time = 60;  ///< correlation time of drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey [s]
+  double angular_jitter = 0;               ///< unreported white deviation of each beam, to the right and up [rad]
   Vec3 lever_arm_error{};                  ///< reported minus true lever arm [m]
   Rotation boresight_error = no_rotation;  ///< rotation from the instrument's true frame to the reported one
   std::uint64_t seed = 0;                  ///< seed of all random draws; each of several `Legs` draws its own
@@ -52,6 +48,7 @@ struct PoseErrors {
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
+  using refinements = refines<tag::MakesLanes, tag::DrawsByLeg>;
   /// Plans the drifts. @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
       : truth_(std::move(truth)), errors_(validated(errors)) {
@@ -70,7 +67,6 @@ class WithPoseErrors {
   /// Platform without errors.
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);
   }
@@ -86,7 +82,6 @@ class WithPoseErrors {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(truth_.source(), i, count);
     auto out = truth_.placed(jittered(inner, i));

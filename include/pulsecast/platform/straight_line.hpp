@@ -5,13 +5,13 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if
 /// vertical or empty.
 struct StraightLine {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
   Vec3 to{0, 1000, 0};  ///< end, in the world [m]
   double speed = 60;    ///< speed along the path, slopes included [m/s]
@@ -26,9 +26,7 @@ struct StraightLine {
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Body, frame::World>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in
   /// different ways.

@@ -5,12 +5,12 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Static trajectory, level.
 struct Tripod {
+  using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 position{};     ///< foot of the tripod, in the world [m]
   double heading = 0;  ///< compass heading, clockwise from north [rad]
 
@@ -23,7 +23,6 @@ struct Tripod {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     poses = PoseLanes(at(t[0]));
     return all_lanes();

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -17,7 +15,6 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/heading.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -36,6 +33,7 @@ enum class Interpolation : std::uint8_t {
 /// on, the last counts. Cubic positions are interpolated on either side of a jump alone.
 class Waypoints {
  public:
+  using refinements = refines<tag::MovesInLanes>;
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
       : points_(std::move(points)) {
@@ -60,11 +58,8 @@ class Waypoints {
   /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Body, frame::World>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const simd::Doubles t = ticks.seconds();
     const auto about = neighbours_of(t[0]);

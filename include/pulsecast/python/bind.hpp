@@ -8,7 +8,7 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
-#include <cstddef>
+#include <future>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -17,7 +17,6 @@
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
-#include <pulsecast/python/detail/interrupt_watch.hpp>
 #include <pulsecast/python/detail/point_columns.hpp>
 #include <pulsecast/python/detail/point_rows.hpp>
 #include <pulsecast/run.hpp>
@@ -35,6 +34,46 @@ namespace PULSECAST_NAMESPACE::python {}
 // hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
+
+/// Lets Python handle its signals during work without the GIL, which it does on the main thread alone. A handler that
+/// raises, as that of Ctrl-C, stops the work; one that does not, as that of `asyncio` at the first Ctrl-C, is called
+/// meanwhile.
+class InterruptWatch {
+ public:
+  explicit InterruptWatch(std::stop_source stopping) : stopping_(std::move(stopping)) {
+    const pybind11::module_ threading = pybind11::module_::import("threading");
+    on_main_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
+  }
+
+  /// Calls `work()` on a thread of its own and handles signals on this one; on any but the main thread, simply calls
+  /// it. Needs the GIL.
+  template <class Work>
+  void during(const Work& work) {
+    const pybind11::gil_scoped_release free;
+    if (!on_main_) return work();
+    std::future<void> done = std::async(std::launch::async, work);
+    const auto handle = [this] {
+      const pybind11::gil_scoped_acquire gil;
+      if (PyErr_CheckSignals() == 0) return;
+      raised_.emplace();
+      stopping_.request_stop();
+    };
+    while (done.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) handle();
+    handle();  // an interrupt too late to stop the work is still reported
+    done.get();
+  }
+
+  /// True after Ctrl-C. Throws what another handler raised.
+  [[nodiscard]] bool interrupted() const {
+    if (raised_ && !raised_->matches(PyExc_KeyboardInterrupt)) throw pybind11::error_already_set(*raised_);
+    return raised_.has_value();
+  }
+
+ private:
+  std::stop_source stopping_;
+  std::optional<pybind11::error_already_set> raised_{};  // by a handler
+  bool on_main_ = false;
+};
 
 /// Arguments of a survey's `run`, as in Python.
 struct RunRequest {
@@ -139,17 +178,11 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
       py::arg("progress") = py::none(), py::arg("pulses") = true, py::arg("columns") = false,
       py::arg("colours") = false,
       "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
-      "and returns a Batch. "
-      "With a callback, "
-      "batches go to callback(batch) every `every_pulses` pulses or `every_seconds` seconds, and at the end, and are "
-      "not kept. "
-      "progress(done, total, echoes, "
-      "seconds) is called some ten times a second. pulses=False keeps points only, without rows of pulses and "
-      "waveforms. columns=True "
-      "keeps points "
-      "by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more ray each. "
-      "Raises "
-      "Interrupted on Ctrl-C; its `result` is complete up to there.");
+      "and returns a Batch. With a callback, batches go to callback(batch) every `every_pulses` pulses or "
+      "`every_seconds` seconds, and at the end, and are not kept. progress(done, total, echoes, seconds) is called "
+      "some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. columns=True "
+      "keeps points by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more "
+      "ray each. Raises Interrupted on Ctrl-C; its `result` is complete up to there.");
 }
 
 }  // namespace gnu::visibility("hidden")]]python

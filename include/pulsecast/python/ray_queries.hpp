@@ -273,8 +273,7 @@ Class& bind_ray_queries(Class&& bound) {
         returned +
         " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
         "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with "
-        "the "
-        "number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
+        "the number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
         "miss.";
     bound.def(
         name,
@@ -289,8 +288,7 @@ Class& bind_ray_queries(Class&& bound) {
   };
   const std::string row =
       "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
-      "(3) [m/s], ray, "
-      "primitive, part, object, classification, front.";
+      "(3) [m/s], ray, primitive, part, object, classification, front.";
   add(
       "closest_hits", [](const World& s, const RayTable& r, unsigned t) { return python::closest_hits(s, r, t); },
       "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive.");
@@ -311,14 +309,12 @@ Class& bind_ray_queries(Class&& bound) {
       py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
       py::arg("threads") = 0,
       "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a "
-      "hit. poses: shape "
-      "(n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in the sensor's "
-      "frame; else as "
-      "`closest_hits`. seed: with the index in the array, the key of leaves met at random.");
+      "hit. poses: shape (n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in "
+      "the sensor's frame; else as `closest_hits`. seed: with the index in the array, the key of leaves met at "
+      "random.");
   bound.def("attributes_of", &python::attributes_of<World>, py::arg("objects"),
             "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
-            "objects: whole "
-            "numbers, as the column `object` of hits.");
+            "objects: whole numbers, as the column `object` of hits.");
   return bound;
 }
 

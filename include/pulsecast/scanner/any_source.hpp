@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -22,6 +20,7 @@ namespace PULSECAST_NAMESPACE {
 template <class First, class... Others>
 class AnySource {
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
@@ -39,11 +38,9 @@ class AnySource {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
   }
-  /// As the concept MakesLanes requires.
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count); }, source_);
   }
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
       (SkipsBlocked<Others> || ...) {
     const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {
@@ -54,7 +51,6 @@ class AnySource {
     };
     return std::visit(skip, source_);
   }
-  /// As the concept MeasuresBeam requires.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(
       PulseIndex i, Tick t) const noexcept requires MeasuresBeam<First> ||(MeasuresBeam<Others> || ...) {
     const auto beam =
@@ -66,7 +62,6 @@ class AnySource {
     };
     return std::visit(beam, source_);
   }
-  /// As the concept DrawsByLeg requires.
   void draw_for_leg(std::uint32_t leg) requires DrawsByLeg<First> ||(DrawsByLeg<Others> || ...) {
     const auto tell = [leg]<class Source>(Source& s) {
       if constexpr (DrawsByLeg<Source>) s.draw_for_leg(leg);

@@ -28,8 +28,7 @@ namespace PULSECAST_NAMESPACE {
 /// Round beam described by its exit optics, for `gaussian_beam`.
 struct BeamExit {
   double diameter = 5e-3;                                  ///< beam diameter at 1/e^2 at the exit [m]
-  double focus = std::numeric_limits<double>::infinity();  ///< radius of the wavefront at the exit: infinite if flat,
-                                                           ///< negative if divergent [m]
+  double focus = std::numeric_limits<double>::infinity();  ///< radius of the wavefront there; negative if divergent [m]
   double quality = 1;                                      ///< M^2, at least 1
 
   void validate() const {

@@ -4,8 +4,6 @@
 #define PULSECAST_SCANNER_CHANNELS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,18 +15,15 @@
 
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
-template <class S>
-concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<S>;
-}  // namespace detail
-
 /// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one
 /// type. Of n channels, slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in
 /// `Scanner::delay`, which must not decrease from channel to channel; emitters that fire together share it. The
 /// emitters of channel k have the channel number k.
-template <detail::SourceInSomeFrame Source>
+template <class Source>
+requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
+  using refinements = refines<tag::MakesLanes>;
   /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a
   /// `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
@@ -64,7 +59,6 @@ class Channels {
     return pulse_lanes(i, 1)[0];
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const std::size_t n = channels_.size();
     if (n == 1) return find_pulses(channels_[0], i, count);
@@ -76,7 +70,6 @@ class Channels {
     return all;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     const PulseIndex n = channels_.size(), most = size();
     PulseIndex next = most;
@@ -85,7 +78,6 @@ class Channels {
     return std::min(next, most);
   }
 
-  /// As the concept MeasuresBeam requires.
   [[nodiscard]] auto measured(PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }

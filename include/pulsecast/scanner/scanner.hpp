@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCANNER_SCANNER_HPP
 #define PULSECAST_SCANNER_SCANNER_HPP
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,6 +13,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
+  using refinements = refines<tag::FindsSlots, tag::MakesLanes, tag::Validated>;
   double pulse_rate = 100e3;      ///< pulse repetition rate, from 1e-3 to 1e12 [Hz]
   PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
   double delay = 0;               ///< delay of every pulse after the begin of its slot; less than one slot [s]
@@ -38,7 +38,6 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     PulseLanes<frame::Beam> p;
     p.size = count;

@@ -23,7 +23,7 @@ namespace detail {
 /// True only if a target that `MissesCones` says so of a cone of rays.
 template <Target Target>
 [[nodiscard]] bool misses_cone(const Target& target, const RayCone& cone) noexcept {
-  static_assert(MissesConesCheck<Target>::passed);
+  static_assert(members_checked<Target, tag::MissesCones>);
   if constexpr (MissesCones<Target>) return target.misses_cone(cone);
   return false;
 }

@@ -33,9 +33,9 @@ namespace PULSECAST_NAMESPACE {
 /// between repetitions of a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::UniformConstantCheck<Shapes>::passed && ...) &&
-                (detail::DeterministicConstantCheck<Shapes>::passed && ...) &&
-                (detail::TimeDependentConstantCheck<Shapes>::passed && ...));
+  static_assert((detail::members_checked<Shapes, tag::UniformGeometry, tag::DeterministicGeometry,
+                                         tag::TimeDependentGeometry, tag::MissesCones> &&
+                 ...));
 
  public:
   static constexpr bool time_dependent =
@@ -135,7 +135,6 @@ class Scene {
     if (!single_part_) return index_.misses_cone(cone);
     if (cone.passes(bounds())) return true;
     const auto upper_levels = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept {
-      static_assert(detail::MissesConesCheck<Shape>::passed);
       if constexpr (MissesCones<Shape>) return parts_[0].placement.identity() && shape->misses_cone(cone);
       return false;
     };

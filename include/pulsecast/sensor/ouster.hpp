@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SENSOR_OUSTER_HPP
 #define PULSECAST_SENSOR_OUSTER_HPP
 
-#include <cstddef>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>

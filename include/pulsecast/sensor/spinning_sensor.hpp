@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -48,7 +46,6 @@ struct SpinningSensor {
   double range_max = 100;      ///< maximum measured range [m]
   double range_deviation = 0;  ///< standard deviation of measured ranges [m]
 
-  /// @throws SettingError for settings out of range
   void validate() const {
     require_within("SpinningSensor::lasers (number)", static_cast<double>(lasers.size()), 1, max_emitters, "");
     require_within("SpinningSensor::sequence_rate", sequence_rate, 1, 1e9, "Hz");

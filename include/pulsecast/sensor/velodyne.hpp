@@ -4,7 +4,6 @@
 #define PULSECAST_SENSOR_VELODYNE_HPP
 
 #include <array>
-#include <cstddef>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>

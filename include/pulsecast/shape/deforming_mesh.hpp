@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -140,7 +138,6 @@ class DeformingMesh {
     frames_[now_] = {std::move(mesh), corners, {}};
   }
 
-  /// Data of the mesh with other vertices.
   [[nodiscard]] MeshData data(std::span<const Vec3> vertices) const {
     const Mesh& mesh = *frames_[now_].mesh;
     MeshData data{

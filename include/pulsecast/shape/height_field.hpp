@@ -7,8 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -35,6 +33,7 @@ namespace PULSECAST_NAMESPACE {
 /// (bundles by interval arithmetic).
 class HeightField {
  public:
+  using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
@@ -59,10 +58,7 @@ class HeightField {
   }
 
   explicit HeightField(DeserializeTag) {}
-  template <class Archive>
-  void archive(Archive& a) {
-    a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_, materials_);
-  }
+  void archive(auto& a) { a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_, materials_); }
 
   /// True if the array sizes match the grid.
   [[nodiscard]] bool is_consistent() const noexcept {
@@ -90,7 +86,6 @@ class HeightField {
     return corners(cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;
@@ -122,8 +117,7 @@ class HeightField {
               walk.northward ? nodes.south - i : nodes.north + i);
   }
 
-  template <class Rays>
-  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const auto&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, materials_[grid_.owner(i)]};
   }
@@ -186,7 +180,6 @@ class HeightField {
       if (taken + 2 > triangles.size()) test();
     }
 
-    /// Tests the batch.
     void test() noexcept {
       if (taken == 0) return;
       const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
@@ -216,7 +209,6 @@ class HeightField {
     return heights_.read([&](const auto& all) { return detail::RasterCell(grid_, all, column, row); });
   }
 
-  /// Slab between two heights.
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
   /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be
@@ -248,8 +240,7 @@ class HeightField {
     return all;
   }
 
-  template <class Pixels>
-  [[nodiscard]] Heights heights(const Cells& cells, const Pixels& pixels) const noexcept {
+  [[nodiscard]] Heights heights(const Cells& cells, const auto& pixels) const noexcept {
     Heights all;
     for (std::uint32_t row = cells.north; row <= cells.south + 1; ++row)
       for (std::uint32_t column = cells.west; column <= cells.east + 1; ++column) {
@@ -259,8 +250,7 @@ class HeightField {
     return all;
   }
 
-  template <class Walk>
-  void visit(Walk& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
+  void visit(auto& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level& own = levels_[level];
     Box8<float> boxes;
     put_walls(boxes, walk, own, column, row);
@@ -287,9 +277,7 @@ class HeightField {
     return bits;
   }
 
-  /// Sets the walls of a node's children.
-  template <class Walk>
-  void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column,
+  void put_walls(Box8<float>& boxes, const auto& walk, const Level& own, std::uint32_t column,
                  std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0],
                 north = north_of(row << own.shift[1]) + walk.pad[1];

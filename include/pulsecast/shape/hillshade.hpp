@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -30,41 +28,22 @@ struct HillshadeSettings {
 };
 
 namespace detail {
+/// Height of a pixel [m]; NaN beyond the edge.
+[[nodiscard]] double height_at(const auto& heights, const RasterGrid& grid, std::int64_t column,
+                               std::int64_t row) noexcept {
+  if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows)
+    return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(heights[grid.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
+}
 
-/// Heights about a pixel [m]. What is missing, or beyond the edge, is as on a plane through the pixel and its opposite
-/// neighbour, or its neighbours to the sides; level without these.
-template <class Heights>
-class PixelSurroundings {
- public:
-  PixelSurroundings(const Heights& heights, const RasterGrid& grid, std::uint32_t column, std::uint32_t row) noexcept
-      : heights_(heights), grid_(grid), column_(column), row_(row), own_(at(0, 0)) {}
-
-  [[nodiscard]] double own() const noexcept { return own_; }
-
-  /// Height of the pixel `east` columns and `south` rows away.
-  [[nodiscard]] double operator()(int east, int south) const noexcept {
-    const double height = at(east, south);
-    if (!std::isnan(height)) return height;
-    const double opposite = at(-east, -south);
-    if (!std::isnan(opposite)) return 2 * own_ - opposite;
-    return east == 0 || south == 0 ? own_ : (*this)(east, 0) + (*this)(0, south) - own_;
-  }
-
- private:
-  [[nodiscard]] double at(int east, int south) const noexcept {
-    const std::int64_t column = std::int64_t{column_} + east, row = std::int64_t{row_} + south;
-    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows)
-      return std::numeric_limits<double>::quiet_NaN();
-    return static_cast<double>(
-        heights_[grid_.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
-  }
-
-  const Heights& heights_;
-  const RasterGrid& grid_;
-  std::uint32_t column_, row_;
-  double own_;
-};
-
+/// Height of the pixel `east` columns and `south` rows from one of a height `own` [m]. What is missing, or beyond the
+/// edge, is as on a plane through `own` and its opposite neighbour, or its neighbours to the sides; level without
+/// these.
+[[nodiscard]] double height_beside(const auto& at, double own, int east, int south) noexcept {
+  if (const double height = at(east, south); !std::isnan(height)) return height;
+  if (const double opposite = at(-east, -south); !std::isnan(opposite)) return 2 * own - opposite;
+  return east == 0 || south == 0 ? own : height_beside(at, own, east, 0) + height_beside(at, own, 0, south) - own;
+}
 }  // namespace detail
 
 /// Brightness of the pixels of a raster in the light of a sun, row by row: from 1 in its own shade to 255 where the sun
@@ -82,8 +61,12 @@ class PixelSurroundings {
   raster.read([&](const auto& heights) {
     for (std::uint32_t row = 0; row < grid.rows; ++row)
       for (std::uint32_t column = 0; column < grid.columns; ++column) {
-        const detail::PixelSurroundings z(heights, grid, column, row);
-        if (std::isnan(z.own())) continue;
+        const auto at = [&](int east, int south) noexcept {
+          return detail::height_at(heights, grid, std::int64_t{column} + east, std::int64_t{row} + south);
+        };
+        const double own = at(0, 0);
+        if (std::isnan(own)) continue;
+        const auto z = [&](int east, int south) noexcept { return detail::height_beside(at, own, east, south); };
         const double east = (z(1, -1) + 2 * z(1, 0) + z(1, 1)) - (z(-1, -1) + 2 * z(-1, 0) + z(-1, 1));
         const double north = (z(-1, -1) + 2 * z(0, -1) + z(1, -1)) - (z(-1, 1) + 2 * z(0, 1) + z(1, 1));
         const double per_pixel = settings.vertical_scale / 8;

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>
@@ -36,16 +34,14 @@ struct Crossing {
 class LatticeRay {
  public:
   /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
-  template <class Rays>
-  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept
+  LatticeRay(const Vec3& corner, double edge, const auto& rays, std::size_t j) noexcept
       : edge_(edge), per_edge_(1 / edge) {
     const Vec3 direction = rays.direction(j);
     for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::size_t>(k);
-      start_[axis] = corner[k] - rays.origin[k];
-      speed_[axis] = direction[k];
-      per_speed_[axis] = 1 / direction[k];
-      sense_[axis] = !std::isfinite(per_speed_[axis]) ? 0 : direction[k] > 0 ? 1 : -1;
+      start_[k] = corner[k] - rays.origin[k];
+      speed_[k] = direction[k];
+      per_speed_[k] = 1 / direction[k];
+      sense_[k] = !std::isfinite(per_speed_[k]) ? 0 : direction[k] > 0 ? 1 : -1;
     }
     valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);
   }
@@ -54,23 +50,19 @@ class LatticeRay {
   [[nodiscard]] bool valid() const noexcept { return valid_; }
 
   /// Sign of the direction, +1 or -1; 0 if the ray stays between two planes.
-  [[nodiscard]] int sense(int k) const noexcept { return sense_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] int sense(int k) const noexcept { return sense_[k]; }
 
   /// Crossing with a plane by its number, whole or not. Requires sense(k) != 0.
   [[nodiscard]] Crossing crossing(int k, double plane) const noexcept {
-    const auto axis = static_cast<std::size_t>(k);
-    return {(start_[axis] + edge_ * plane) * per_speed_[axis], k};
+    return {(start_[k] + edge_ * plane) * per_speed_[k], k};
   }
 
   /// True if a ray with sense(k) = 0 is at or above a plane.
-  [[nodiscard]] bool above(int k, double plane) const noexcept {
-    return start_[static_cast<std::size_t>(k)] + edge_ * plane <= 0;
-  }
+  [[nodiscard]] bool above(int k, double plane) const noexcept { return start_[k] + edge_ * plane <= 0; }
 
   /// Position along an axis at a range [m], up to rounding [edges].
   [[nodiscard]] double position(int k, double range) const noexcept {
-    const auto axis = static_cast<std::size_t>(k);
-    return (range * speed_[axis] - start_[axis]) * per_edge_;
+    return (range * speed_[k] - start_[k]) * per_edge_;
   }
 
   /// Entry into and exit from a box [edges]. The ray misses the box unless `in` is before `out`.
@@ -106,8 +98,8 @@ class LatticeRay {
 
  private:
   double edge_, per_edge_;
-  std::array<double, 3> start_, speed_, per_speed_;
-  std::array<int, 3> sense_;
+  double start_[3], speed_[3], per_speed_[3];
+  int sense_[3];
   bool valid_;
 };
 

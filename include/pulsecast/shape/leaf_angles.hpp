@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -100,13 +98,9 @@ class LeafAngles {
     return mean > 0 ? std::min(mean_square / mean, 1.0) : 1;
   }
 
-  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return table_.memory(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(chi_, half_surface_, upright_, table_);
-  }
+  void archive(auto& a) { a(chi_, half_surface_, upright_, table_); }
 
  private:
   /// Zenith intervals of the table of G: linear interpolation is within 2e-7 of the integral.
@@ -189,8 +183,7 @@ class LeafAngles {
       const double lying = one_sided * u;
       sum += nodes.weight[i] * one_sided * density(lying) * c * std::cos(lying);
       if (s == 0) continue;
-      const double standing =
-          one_sided + zenith * u * u;  // the integrand grows with the root of the distance from `one_sided`
+      const double standing = one_sided + zenith * u * u;  // the integrand grows as the root of the rest
       const double cos_t = std::cos(standing), sin_t = std::sin(standing);
       const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth of the leaf seen edge-on
       const double facing = c * cos_t * (1 - 2 / pi * turn) + 2 / pi * s * sin_t * std::sin(turn);

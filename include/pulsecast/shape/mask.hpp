@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_MASK_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,8 +19,7 @@ namespace PULSECAST_NAMESPACE {
 /// the two: a mask and its complement may both be hit.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
-  std::vector<std::uint64_t>
-      bits{};  ///< of the pixels, row by row from the top left; the first is the lowest bit of the first word
+  std::vector<std::uint64_t> bits{};  ///< of the pixels, row by row from the top left, from the lowest bit of a word up
 
   /// Pixels of a picture whose channel, by number, is at least a share of its full value, in [0, 1].
   [[nodiscard]] static Mask of(const Image& image, std::uint32_t channel, double cutoff = 0.5) {
@@ -76,10 +73,7 @@ class MaskTable {
     bits_ = bits;
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(frames_, bits_);
-  }
+  void archive(auto& a) { a(frames_, bits_); }
   [[nodiscard]] bool is_consistent() const {
     return std::all_of(frames_.begin(), frames_.end(), [&](const Frame& frame) {
       const std::size_t words = (std::size_t{frame.width} * frame.height + 63) / 64;

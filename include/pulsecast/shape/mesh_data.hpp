@@ -5,10 +5,7 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -32,17 +29,15 @@ struct MeshData {
   void validate() const {
     if (triangles.empty()) throw_setting_error("MeshData::triangles", 0, "", "at least one in number");
     validate_counts(vertices.size(), triangles.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
       for (int k = 0; k < 3; ++k)
         if (!std::isfinite(vertices[i][k]))
           reject_at("MeshData::vertices", vertices[i][k], "m", "finite; see vertex ", i, "");
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::size_t i = 0; i < triangles.size(); ++i)
       for (const std::uint32_t corner : triangles[i])
         if (corner >= vertices.size())
           reject_at("MeshData::triangles", corner, "", "less than the number of vertices, ", vertices.size(),
                     "; see triangle " + std::to_string(i));
-    }
     if (!materials.empty() && materials.size() != triangles.size())
       reject_at("MeshData::materials", static_cast<double>(materials.size()), "", "as many as triangles, ",
                 triangles.size(), ", or none");

@@ -4,10 +4,7 @@
 #define PULSECAST_SHAPE_PACKED_HEIGHTS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -21,11 +18,10 @@ namespace PULSECAST_NAMESPACE {
 /// Heights as whole numbers of 16 bits, which take half of the memory of `float`: the height of number n is
 /// `offset` + `scale` (n - `zero`), rounded to `float`.
 struct PackedHeights {
-  std::vector<std::uint16_t>
-      numbers{};           ///< one a pixel, row by row from the north; empty if the heights are not packed
-  double scale = 1;        ///< height of one step [m]
-  double offset = 0;       ///< height of the number `zero` [m]
-  std::uint16_t zero = 0;  ///< 32768 where the numbers are signed ones with 32768 added
+  std::vector<std::uint16_t> numbers{};    ///< one a pixel, row by row from the north; empty if heights are not packed
+  double scale = 1;                        ///< height of one step [m]
+  double offset = 0;                       ///< height of the number `zero` [m]
+  std::uint16_t zero = 0;                  ///< 32768 where the numbers are signed ones with 32768 added
   std::optional<std::uint16_t> missing{};  ///< number of missing heights
 
   void validate() const {
@@ -96,10 +92,7 @@ class PixelHeights {
     numbers_ = std::move(packed.numbers);
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(heights_, numbers_);
-  }
+  void archive(auto& a) { a(heights_, numbers_); }
   /// True if there are `size` pixels, each with a height or a place in the table.
   [[nodiscard]] bool is_consistent(std::size_t size) const noexcept {
     if (!is_packed()) return heights_.size() == size;
@@ -115,10 +108,7 @@ class PixelHeights {
   [[nodiscard]] PackedPixels packed() const noexcept { return {numbers_.data(), heights_.data()}; }
 
   /// Calls `work` with what gives the height of a pixel by its index: `const float*` or `PackedPixels`.
-  template <class Work>
-  decltype(auto) read(const Work& work) const {
-    return is_packed() ? work(packed()) : work(floats());
-  }
+  decltype(auto) read(const auto& work) const { return is_packed() ? work(packed()) : work(floats()); }
 
  private:
   SharedArray<float> heights_;          ///< of the pixels, or the table

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,8 +15,8 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 #include <pulsecast/shape/packed_heights.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -61,9 +59,7 @@ struct RasterCell {
   float heights[4];
 
   /// `all`: heights by pixel, `const float*` or `PackedPixels`.
-  template <class Heights>
-  RasterCell(const RasterGrid& grid, const Heights& all, std::uint32_t c, std::uint32_t r) noexcept
-      : column(c), row(r) {
+  RasterCell(const RasterGrid& grid, const auto& all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
     const std::size_t north = grid.index(c, r), south = north + grid.columns;
     heights[0] = all[north];
     heights[1] = all[south];
@@ -130,8 +126,7 @@ struct Raster {
 
   /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a `std::vector<float>`
   /// or a value that is indexed like it.
-  template <class Work>
-  decltype(auto) read(const Work& work) const {
+  decltype(auto) read(const auto& work) const {
     if (!is_packed()) return work(heights);
     const std::vector<float> table = detail::height_table(packed);
     return work(detail::PackedPixels{packed.numbers.data(), table.data()});

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -15,15 +13,68 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/shape/detail/leaf_columns.hpp>
-#include <pulsecast/shape/detail/voxel_columns.hpp>
 #include <pulsecast/shape/leaf_angles.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 #include <pulsecast/shape/voxel_index.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Turbid medium of randomly placed leaves: light passes until it hits one. Requires densities.
+namespace detail {
+
+/// Name of a column of leaves.
+struct LeafColumn {
+  std::uint64_t layer = 0;  ///< number of its layer
+  std::uint32_t place = 0;  ///< place in the layer, mixed
+};
+
+/// Columns of space of a leaf's area across the ray, along the axis that a ray is nearest to, in layers of a few
+/// leaves' width that are shifted against each other. Rays in the same column of a layer meet the same leaf.
+class LeafColumns {
+ public:
+  struct Layer {
+    double end = std::numeric_limits<double>::infinity();  ///< range at which the ray leaves it [m]
+    LeafColumn column{};                                   ///< the ray's column in it
+  };
+
+  LeafColumns() = default;
+  /// Columns of a ray, for leaves of an area [m^2].
+  LeafColumns(const Vec3& origin, const Vec3& direction, double area) noexcept
+      : origin_(origin), direction_(direction) {
+    const Vec3 size{std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)};
+    along_ = size.z >= size.x && size.z >= size.y ? 2 : size.y >= size.x ? 1 : 0;
+    thickness_ = 4 * std::sqrt(area);
+    width_ = std::sqrt(area * length(direction) / size[along_]);
+  }
+
+  /// Layer at a range [m].
+  [[nodiscard]] Layer at(double range) const noexcept {
+    const double start = origin_[along_], slope = direction_[along_], step = slope > 0 ? 1 : -1;
+    double layer = std::floor((start + range * slope) / thickness_);
+    const auto end_of_layer = [&] { return ((slope > 0 ? layer + 1 : layer) * thickness_ - start) / slope; };
+    if (!(end_of_layer() > range)) layer += step;  // rounding left it in the layer before
+    const double end = end_of_layer(), middle = ((layer + 0.5) * thickness_ - start) / slope;
+    // shifts of layers are even in the plane. Source: Roberts 2018, powers of the plastic number
+    const auto place = [&](int axis, double shift) {
+      const double shifted =
+          (origin_[axis] + middle * direction_[axis]) / width_ + layer * shift - std::floor(layer * shift);
+      return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(shifted)));
+    };
+    std::uint32_t mixed =
+        place((along_ + 1) % 3, 0.7548776662466927) * 0x9E3779B1U + place((along_ + 2) % 3, 0.5698402909980532);
+    mixed = (mixed ^ (mixed >> 15)) * 0x85EBCA77U + static_cast<std::uint32_t>(along_);
+    return {end > range ? end : std::nextafter(range, std::numeric_limits<double>::infinity()),
+            {static_cast<std::uint64_t>(static_cast<std::int64_t>(layer)), mixed}};
+  }
+
+ private:
+  Vec3 origin_{}, direction_{};
+  int along_ = 2;                     // axis of the columns
+  double thickness_ = 1, width_ = 1;  // of a layer, of a column [m]
+};
+
+}  // namespace detail
+
+/// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
 ///
 /// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and
 /// consumes it from voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws
@@ -40,21 +91,18 @@ struct TransmissiveVoxels {
   LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
   bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
   double leaf_area = 0;  ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
-  double clumping =
-      1;  ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; from 0.01 to 10
+  double clumping = 1;   ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; 0.01 to 10
 
   void validate() const {
     require_within("TransmissiveVoxels::leaf_area", leaf_area, 0, 100, "m^2");
     require_within("TransmissiveVoxels::clumping", clumping, 0.01, 10, "");
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     leaf_angles.archive(a);
     a(tilted_leaves, leaf_area, clumping);
   }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
@@ -140,9 +188,8 @@ struct TransmissiveVoxels {
       return {*this, settings, rays, j, nearest};
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (!settings.tilted_leaves) return {};
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
@@ -158,10 +205,7 @@ struct TransmissiveVoxels {
       return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(densities_);
-    }
+    void archive(auto& a) { a(densities_); }
 
    private:
     SharedArray<float> densities_;

@@ -5,19 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
@@ -48,6 +43,7 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
+  using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
@@ -65,8 +61,7 @@ class TriangleMesh {
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(corners_, first_corners_, triangles_, places_, materials8_, materials_, texture_, masks_, index_,
       material_count_);
   }
@@ -87,7 +82,7 @@ class TriangleMesh {
     if (!texture_.empty() && texture_.size() != size()) return false;
     if (!masks_.empty() && texture_.empty()) return false;
     if (material_count_ == 0 || !in_table(materials8_) || !in_table(materials_)) return false;
-    static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
+    static_assert(detail::members_checked<Index, tag::SelfCheckingAccelerator, tag::MissesCones>);
     if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
     return true;
   }
@@ -142,8 +137,7 @@ class TriangleMesh {
     return at;
   }
 
-  template <class Rays>
-  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const auto&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, material(i)};
   }
@@ -154,9 +148,8 @@ class TriangleMesh {
   [[nodiscard]] std::uint32_t material(PrimitiveIndex i) const noexcept {
     return !materials8_.empty() ? materials8_[i] : !materials_.empty() ? materials_[i] : 0;
   }
-  /// True if ray j hits a triangle outside the holes of its material.
-  template <class Rays>
-  [[nodiscard]] bool solid(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  /// True if ray j meets a triangle outside the holes of its material.
+  [[nodiscard]] bool solid(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     const std::uint32_t masked = material(i);
     return !masks_.covers(masked) ||
            masks_.solid(masked, *texture(i, triangle(i).weights(rays.origin, rays.direction(j))));
@@ -165,7 +158,6 @@ class TriangleMesh {
   using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
   static_assert(3 * detail::chunk_size < 0xFFFF);
 
-  /// Corners of the block of a triangle.
   [[nodiscard]] const Vec3* block_corners(std::size_t place) const noexcept {
     return corners_.data() + first_corners_[place / detail::chunk_size];
   }
@@ -204,9 +196,8 @@ class TriangleMesh {
       test(primitives, triangle_of, SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
-    template <class TriangleOf, class Solid>
-    [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of,
-                                     const Solid& solid) const noexcept {
+    [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
+                                     const auto& solid) const noexcept {
       if (!alone()) return intersect(primitives, triangle_of, rays, nearest, solid);
       const TrianglePacket packet(primitives.size(), triangle_of);
       if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
@@ -279,8 +270,7 @@ class TriangleMesh {
   /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, const Workers& workers) {
     const auto order = index_.order();
-    const bool once =
-        order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last one wins
+    const bool once = order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (!once) {
       std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit

@@ -3,19 +3,56 @@
 #ifndef PULSECAST_SHAPE_VOXEL_DATA_HPP
 #define PULSECAST_SHAPE_VOXEL_DATA_HPP
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+namespace detail {
+
+/// Three numbers from -1 to 1, each within 5e-7; -1, 0 and 1 are exact.
+class PackedVector {
+ public:
+  PackedVector() = default;
+  explicit PackedVector(const std::array<float, 3>& v) noexcept {
+    for (const float x : v)
+      bits_ = bits_ << 21 | static_cast<std::uint64_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * steps) + middle);
+  }
+
+  [[nodiscard]] Vec3 unpacked() const noexcept { return {part(42), part(21), part(0)}; }
+
+ private:
+  static constexpr double steps = 1048575;
+  static constexpr std::int64_t middle = 1048576;
+
+  double part(int shift) const noexcept {
+    return static_cast<double>(static_cast<std::int64_t>(bits_ >> shift & 0x1FFFFF) - middle) / steps;
+  }
+
+  std::uint64_t bits_ = 0;
+};
+
+/// Reorders and converts a column of the data; empty for an empty column.
+template <class To, class From>
+[[nodiscard]] SharedArray<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
+  std::vector<To> kept;
+  if (column.empty()) return kept;
+  kept.reserve(order.size());
+  for (const std::uint32_t i : order) kept.push_back(To(column[i]));
+  return kept;
+}
+
+}  // namespace detail
 
 /// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below
 /// `cells` have one entry per cell, or none.
@@ -74,18 +111,14 @@ struct VoxelData {
   }
 
  private:
-  template <class Column>
-  static double count(const Column& column) noexcept {
-    return static_cast<double>(column.size());
-  }
+  static double count(const auto& column) noexcept { return static_cast<double>(column.size()); }
 
   [[noreturn]] static void reject(const char* field, double value, std::string allowed, std::size_t cell) {
     throw SettingError(std::string("VoxelData::") + field, value, "",
                        std::move(allowed) + "; see entry " + std::to_string(cell));
   }
 
-  template <class Column>
-  void require_entries(const char* field, const Column& column) const {
+  void require_entries(const char* field, const auto& column) const {
     if (column.empty() || column.size() == cells.size()) return;
     throw SettingError(std::string("VoxelData::") + field, count(column), "",
                        "as many as cells, " + std::to_string(cells.size()) + ", or none");

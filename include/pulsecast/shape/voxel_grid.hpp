@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,14 +14,64 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
-#include <pulsecast/shape/detail/solid_meeting.hpp>
-#include <pulsecast/shape/detail/voxel_columns.hpp>
 #include <pulsecast/shape/detail/voxel_index_builder.hpp>
 #include <pulsecast/shape/transmissive_voxels.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 #include <pulsecast/shape/voxel_index.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+namespace detail {
+
+/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray
+/// that begins inside a cube meets its far side, or the cube that touches it there.
+template <class Columns, class Hits>
+class SolidMeeting {
+ public:
+  SolidMeeting(const Columns& columns, const LatticeRay& ray, double near, std::size_t j, Hits& nearest) noexcept
+      : columns_(columns), ray_(ray), begin_{near, Crossing::begin}, j_(j), nearest_(nearest) {}
+
+  double operator()(std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) noexcept {
+    const LatticeRay::Passage cube = columns_.passage(ray_, number, cell, in, out);
+    if (!cube.in.before(cube.out) || !begin_.before(cube.out)) return far_side_;
+    if (cube.in.before(begin_) || cube.in.axis == Crossing::begin) {
+      far_side_ = cube.out.range;
+      around_ = number;
+      return far_side_;
+    }
+    if (cube.in.range <= far_side_) {
+      far_side_ = infinity;
+      nearest_.offer(j_, cube.in.range, number);
+    }
+    return -infinity;
+  }
+
+  void finish() noexcept {
+    if (far_side_ < infinity) nearest_.offer(j_, far_side_, around_);
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  const Columns& columns_;
+  const LatticeRay& ray_;
+  Crossing begin_;
+  std::size_t j_;
+  Hits& nearest_;
+  double far_side_ = infinity;  ///< far side of the cube around the ray's start [m]
+  std::uint32_t around_ = 0;    ///< number of that cube
+};
+
+/// Normal of the face at which a ray meets a cube; that of the far side if the ray begins inside.
+[[nodiscard]] inline Vec3 face_normal(const LatticeRay& ray, const LatticeRay::Passage& cube, double near) noexcept {
+  const bool from_inside = cube.in.before({near, Crossing::begin});
+  const int axis = from_inside ? cube.out.axis : cube.in.axis;
+  Vec3 normal{};
+  normal[axis] = ray.sense(axis) > 0 ? -1 : 1;
+  return normal;
+}
+
+}  // namespace detail
 
 /// Surface direction of a voxel.
 enum class Incidence : std::uint8_t {
@@ -40,12 +85,8 @@ enum class Incidence : std::uint8_t {
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(incidence);
-  }
+  void archive(auto& a) { a(incidence); }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
@@ -60,15 +101,13 @@ struct OpaqueVoxels {
       return {in, out};
     }
 
-    template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
-                               Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const auto& rays, std::size_t j,
+                               auto& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       if (settings.incidence == Incidence::normal && !normals_.empty()) {
         const Vec3 kept = normals_[number].unpacked();
@@ -78,10 +117,7 @@ struct OpaqueVoxels {
       return detail::face_normal(ray, ray.through(index.cell(number)), rays.near);
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(normals_);
-    }
+    void archive(auto& a) { a(normals_); }
 
    private:
     SharedArray<detail::PackedVector> normals_;
@@ -93,12 +129,8 @@ struct OpaqueVoxels {
 struct ScaledVoxels {
   Incidence incidence = Incidence::face;  ///< surface direction of all voxels
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(incidence);
-  }
+  void archive(auto& a) { a(incidence); }
 
-  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
@@ -126,24 +158,19 @@ struct ScaledVoxels {
       return ray.through(low, high);
     }
 
-    template <class Rays, class Hits>
-    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j,
-                               Hits& nearest) const noexcept {
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const auto& rays, std::size_t j,
+                               auto& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    template <class Rays>
     [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index,
-                              const Rays& rays, std::size_t j) const noexcept {
+                              const auto& rays, std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       const LatticeRay ray = index.ray(rays, j);
       return detail::face_normal(ray, passage(ray, number, index.cell(number), {}, {}), rays.near);
     }
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a(scales_, shifts_);
-    }
+    void archive(auto& a) { a(scales_, shifts_); }
 
    private:
     SharedArray<float> scales_;
@@ -181,7 +208,6 @@ class VoxelGrid {
     return {low, low + Vec3(index_.edge())};
   }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
@@ -205,13 +231,11 @@ class VoxelGrid {
       hits.offer_chain(ray, [this](const SingleRayPacket& from, ClosestHit& next) noexcept { closest(from, next); });
   }
 
-  template <class Rays>
-  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     index_.archive(a);
     filling_.archive(a);
     columns_.archive(a);

@@ -6,24 +6,172 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
-#include <pulsecast/shape/detail/lattice_walker.hpp>
-#include <pulsecast/shape/detail/voxel_keys.hpp>
 #include <pulsecast/shape/lattice_ray.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 struct VoxelData;
 namespace detail {
+
 class VoxelIndexBuilder;
+
+/// Greatest extent of a lattice along an axis [cells].
+inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
+
+/// Position of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
+[[nodiscard]] inline unsigned cell_bit(const LatticeCell& c, int shift) noexcept {
+  return static_cast<unsigned>((c[0] >> shift & 3) | (c[1] >> shift & 3) << 2 | (c[2] >> shift & 3) << 4);
 }
+
+/// Child at such a position, of a fourth of the edge.
+[[nodiscard]] inline LatticeCell child_cell(const LatticeCell& c, unsigned place) noexcept {
+  const auto p = static_cast<std::int32_t>(place);
+  return {c[0] << 2 | (p & 3), c[1] << 2 | (p >> 2 & 3), c[2] << 2 | p >> 4};
+}
+
+/// Coordinates of a cell without `shift` bits each, in one number.
+[[nodiscard]] inline std::uint64_t packed_cell(const LatticeCell& c, int shift) noexcept {
+  return static_cast<std::uint64_t>(c[0] >> shift) | static_cast<std::uint64_t>(c[1] >> shift) << 21 |
+         static_cast<std::uint64_t>(c[2] >> shift) << 42;
+}
+
+/// Inverse of `packed_cell`, of no shift.
+[[nodiscard]] inline LatticeCell unpacked_cell(std::uint64_t key) noexcept {
+  return {static_cast<std::int32_t>(key & (max_lattice_extent - 1)),
+          static_cast<std::int32_t>(key >> 21 & (max_lattice_extent - 1)), static_cast<std::int32_t>(key >> 42)};
+}
+
+/// Slot of a key in a hash table. Source: multiplicative hashing by the golden ratio, Knuth 1973.
+[[nodiscard]] inline std::size_t hash_slot(std::uint64_t key, std::size_t slots) noexcept {
+  const std::uint64_t mixed = (key * 0x9E3779B97F4A7C15) >> 32;
+  return static_cast<std::size_t>(mixed * slots >> 32);
+}
+
+/// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a
+/// hash; an unset bit still proves its cube empty.
+struct VoxelLevel {
+  std::uint64_t first = 0;                ///< first word
+  std::uint64_t words = 0;                ///< words of a hashed level; 0 if indexed directly
+  std::array<std::uint32_t, 2> extent{};  ///< words along x and y
+  std::int32_t shift = 0;                 ///< log2 of the edge of a bit's cube [cells]
+  std::int32_t unused = 0;                ///< makes all bytes of an archive definite
+
+  [[nodiscard]] std::size_t word(const LatticeCell& c) const noexcept {
+    const int word_shift = shift + 2;
+    if (words > 0)
+      return static_cast<std::size_t>(first) + hash_slot(packed_cell(c, word_shift), static_cast<std::size_t>(words));
+    const auto x = static_cast<std::size_t>(c[0] >> word_shift), y = static_cast<std::size_t>(c[1] >> word_shift),
+               z = static_cast<std::size_t>(c[2] >> word_shift);
+    return static_cast<std::size_t>(first) + (z * extent[1] + y) * extent[0] + x;
+  }
+};
+
+/// State of a ray's traversal of a lattice, cell by cell or in leaps over empty cubes.
+struct LatticeWalker {
+  const LatticeRay& ray;
+  LatticeCell cell{};
+  Crossing in;                 ///< crossing into the cell
+  std::array<double, 3> next;  ///< range of the exit plane along each axis
+  bool inside = false;
+
+  LatticeWalker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept
+      : ray(r), in{near, Crossing::begin} {
+    if (!ray.valid()) return;
+    for (int k = 0; k < 3; ++k) {
+      if (ray.sense(k) == 0) continue;
+      const Crossing wall = ray.crossing(k, ray.sense(k) > 0 ? 0 : extent[static_cast<std::size_t>(k)]);
+      if (wall.range > in.range || (wall.range == in.range && in.axis != Crossing::begin)) in = wall;
+    }
+    if (!(in.range < std::numeric_limits<double>::infinity())) return;
+    for (int k = 0; k < 3; ++k)
+      if (!find(k, 0, extent[static_cast<std::size_t>(k)] - 1)) return;
+    inside = true;
+  }
+
+  /// Sets the cell along an axis to that of the ray at `in`; false if it is not between `low` and `high`.
+  bool find(int k, std::int32_t low, std::int32_t high) noexcept {
+    const auto axis = static_cast<std::size_t>(k);
+    const int sense = ray.sense(k);
+    const double guess = ray.position(k, in.range);  // `low` is not negative, so truncation gives the cell
+    std::int32_t c = guess > low ? guess < high ? static_cast<std::int32_t>(guess) : high : low;
+    if (sense == 0) {
+      while (c < high && ray.above(k, c + 1)) ++c;
+      while (c > low && !ray.above(k, c)) --c;
+      cell[axis] = c;
+      next[axis] = std::numeric_limits<double>::infinity();
+      return ray.above(k, c) && !ray.above(k, c + 1);
+    }
+    const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0,
+                       back = 1 - front;
+    while (c != last && !in.before(ray.crossing(k, c + front))) c += sense;
+    while (c != first && in.before(ray.crossing(k, c + back))) c -= sense;
+    cell[axis] = c;
+    next[axis] = ray.crossing(k, c + front).range;
+    return in.before({next[axis], k});
+  }
+
+  /// Axis of the first crossing.
+  static int first_of(const std::array<double, 3>& ranges) noexcept {
+    const int xy = ranges[0] <= ranges[1] ? 0 : 1;
+    return ranges[static_cast<std::size_t>(xy)] <= ranges[2] ? xy : 2;
+  }
+
+  /// True if two coordinates along an axis are in the same group of four.
+  static bool neighbours(std::int32_t a, std::int32_t b) noexcept { return a >> 2 == b >> 2; }
+
+  /// Steps to the next cell; false if it is in another brick.
+  bool step(int k) noexcept {
+    const auto axis = static_cast<std::size_t>(k);
+    const int sense = ray.sense(k);
+    in = {next[axis], k};
+    const std::int32_t from = cell[axis];
+    cell[axis] = from + sense;
+    next[axis] = ray.crossing(k, cell[axis] + (sense > 0 ? 1 : 0)).range;
+    return neighbours(from, cell[axis]);
+  }
+
+  /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by
+  /// the mask `occupied`, or outside of its 4 x 4 x 4. False if the ray never leaves.
+  bool leap(int shift, std::uint64_t occupied) noexcept {
+    LatticeCell at;
+    std::array<double, 3> exit;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      at[axis] = cell[axis] >> shift;
+      exit[axis] = ray.sense(k) == 0 ? std::numeric_limits<double>::infinity()
+                                     : ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
+    }
+    for (;;) {
+      const int k = first_of(exit);
+      const auto axis = static_cast<std::size_t>(k);
+      if (!(exit[axis] < std::numeric_limits<double>::infinity())) return false;
+      in = {exit[axis], k};
+      const std::int32_t from = at[axis];
+      at[axis] += ray.sense(k);
+      if (!neighbours(from, at[axis]) || (occupied >> cell_bit(at, 0) & 1)) break;
+      exit[axis] = ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const std::int32_t low = at[axis] << shift, high = low | ((1 << shift) - 1);
+      if (k == in.axis) {
+        cell[axis] = ray.sense(k) > 0 ? low : high;
+        next[axis] = ray.crossing(k, cell[axis] + (ray.sense(k) > 0 ? 1 : 0)).range;
+      } else if (ray.sense(k) != 0) {
+        find(k, low, high);
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace detail
 
 /// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks
 /// are bits of blocks of as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the
@@ -61,15 +209,11 @@ class VoxelIndex {
   }
 
   /// Ray j in the lattice, relative to the lower corner of the bounds.
-  template <class Rays>
-  [[nodiscard]] LatticeRay ray(const Rays& rays, std::size_t j) const noexcept {
-    return {corner_, edge_, rays, j};
-  }
+  [[nodiscard]] LatticeRay ray(const auto& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
 
   /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order.
   /// Stops at a cell beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
-  template <class Visit>
-  void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
+  void walk(const LatticeRay& ray, double near, double limit, auto visit) const noexcept {
     detail::LatticeWalker at(ray, near, extent_);
     if (!at.inside) return;
     Place place;
@@ -96,8 +240,7 @@ class VoxelIndex {
     }
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(bounds_, corner_, edge_, extent_, size_, height_, levels_, level_count_);
     a(keys_, slots_, block_masks_, block_first_, brick_masks_, brick_first_, pyramid_);
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -42,6 +41,7 @@ struct WaterArea {
 /// first derivative).
 class WaterSurface {
  public:
+  using refinements = refines<tag::DeterministicGeometry, tag::TimeDependentGeometry>;
   static constexpr bool deterministic = true;   ///< as the concept DeterministicGeometry describes
   static constexpr bool time_dependent = true;  ///< as the concept TimeDependentGeometry describes
 
@@ -57,7 +57,6 @@ class WaterSurface {
   [[nodiscard]] std::size_t memory() const noexcept { return waves_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
 
-  /// For a bundle or a `SingleRayPacket`.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     bool prepared = false;
@@ -76,7 +75,7 @@ class WaterSurface {
         offer(span.begin);
         continue;
       }
-      if (!prepared) detail::WaveProfile::set_phases(waves_, {rays.origin.x, rays.origin.y}, rays.tick, phases);
+      if (!prepared) waves_.set_phases({rays.origin.x, rays.origin.y}, rays.tick, phases);
       prepared = true;
       const detail::WaveProfile profile(waves_, phases, {direction.x, direction.y});
       const Line line{rays.origin.z - level_, direction.z};
@@ -90,8 +89,7 @@ class WaterSurface {
   }
 
   /// The normal is upwards. `i` is the primitive that the ray's hit was offered with.
-  template <class Rays>
-  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+  [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
     if (waves_.empty()) return {axis::up, 0};
     const Vec3 direction = rays.direction(j);
     const double at = span_of(rays.origin, direction).at_share(i);
@@ -161,9 +159,8 @@ class WaterSurface {
   }
 
   /// Offers each place where a ray passes the surface, in order, up to the end of its span and to a limit [m].
-  template <class Offer>
   void find_roots(const detail::WaveProfile& profile, const Line& line, const Span& span, double limit,
-                  const Offer& offer) const noexcept {
+                  const auto& offer) const noexcept {
     double t = span.begin, side = 0;
     while (true) {
       const double z = line.at(t);

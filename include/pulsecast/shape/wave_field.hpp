@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -33,8 +32,7 @@ struct SineWave {
   double amplitude = 0;   ///< half of the height from trough to crest [m], from 0 to 100
   double wavelength = 1;  ///< distance between crests [m], from 1 mm to 1000 km
   double toward = 0;      ///< direction that the wave travels to, from east towards north [rad]
-  double phase =
-      0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter of a wavelength ahead
+  double phase = 0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter wavelength ahead
 
   void validate() const {
     require_within("SineWave::amplitude", amplitude, 0, 100, "m");
@@ -43,6 +41,8 @@ struct SineWave {
     require_angle("SineWave::phase", phase);
   }
 };
+
+class WaterSurface;
 
 namespace detail {
 
@@ -67,8 +67,7 @@ class WaveSum {
 
 /// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it
 /// belongs to.
-template <class Add>
-[[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const Add& add) noexcept {
+[[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const auto& add) noexcept {
   // unrolled, so that the sums stay in registers
   const auto each_part = [&]<std::size_t... part>(std::size_t i, std::index_sequence<part...>) noexcept {
     (add(i + part * simd::lane_count, part), ...);
@@ -155,9 +154,7 @@ class WaveField {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if the surface is flat
   [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of the magnitude of heights [m]
   [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of the magnitude of slopes
-  [[nodiscard]] std::size_t memory() const noexcept {
-    return columns_.memory() + rest_.memory();
-  }  ///< memory held [byte]
+  [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }
 
   /// Height above the mean level at a place [m east, m north] [m].
   [[nodiscard]] double height(const Vec2& place, const Tick& t) const noexcept {
@@ -185,6 +182,7 @@ class WaveField {
 
  private:
   friend class detail::WaveProfile;
+  friend class WaterSurface;
 
   /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half turns/s], phase
   /// [half turns].
@@ -226,11 +224,6 @@ class WaveProfile {
     std::size_t groups;   ///< groups that were summed
   };
 
-  /// Sets the phases of a field at the place and time where lines begin.
-  static void set_phases(const WaveField& field, const Vec2& place, const Tick& t, WavePhases& phases) noexcept {
-    field.set_phases(place, t, phases);
-  }
-
   /// Field and phases must outlive the profile.
   WaveProfile(const WaveField& field, const WavePhases& phases, const Vec2& direction) noexcept
       : field_(field), phases_(phases), groups_(field.size_ / wave_group) {
@@ -253,9 +246,8 @@ class WaveProfile {
 
   [[nodiscard]] std::size_t groups() const noexcept { return groups_; }                           ///< number of groups
   [[nodiscard]] double steepest(std::size_t groups) const noexcept { return steepest_[groups]; }  ///< bound of |rate|
-  [[nodiscard]] double curviest(std::size_t groups) const noexcept {
-    return curviest_[groups];
-  }  ///< bound of |second derivative|
+  /// Bound of |second derivative|.
+  [[nodiscard]] double curviest(std::size_t groups) const noexcept { return curviest_[groups]; }
 
   /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of the distance of the
   /// sum from `z` [m].

@@ -4,10 +4,7 @@
 #define PULSECAST_SHAPE_WIND_WAVES_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 

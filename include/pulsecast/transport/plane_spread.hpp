@@ -13,7 +13,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/beam.hpp>
-#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {

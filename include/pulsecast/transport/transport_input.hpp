@@ -13,7 +13,7 @@
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
-#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

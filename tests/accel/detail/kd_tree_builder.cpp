@@ -47,7 +47,7 @@ struct Walk {
   const SharedArray<PrimitiveIndex> order;
   std::size_t next_node = 1, next_reference = 0, depth = 0, wrong = 0;
 
-  explicit Walk(const Builder<Real>& tree) : nodes(tree.nodes()), order(tree.order()) {}
+  explicit Walk(const Builder<Real>& tree) : nodes(tree.nodes), order(tree.order) {}
 
   void follow(std::size_t i, std::size_t level, const std::vector<Boxed<Real>>& part) {
     const Node<Real>& node = nodes[i];
@@ -73,7 +73,7 @@ struct Walk {
 
 template <class Real>
 bool same(const Builder<Real>& a, const Builder<Real>& b) {
-  return std::ranges::equal(a.nodes(), b.nodes()) && std::ranges::equal(a.order(), b.order()) && a.depth() == b.depth();
+  return std::ranges::equal(a.nodes, b.nodes) && std::ranges::equal(a.order, b.order) && a.depth == b.depth;
 }
 
 }  // namespace
@@ -94,10 +94,10 @@ TEST_CASE_TEMPLATE("leaves hold what reaches them, in depth-first order, the sam
       Walk<Real> walk(alone);
       walk.follow(0, 0, {input.primitives.begin(), input.primitives.end()});
       CHECK(walk.wrong == 0);
-      CHECK(walk.next_node == alone.nodes().size());
-      CHECK(walk.next_reference == alone.order().size());
-      CHECK(walk.depth == alone.depth());
-      CHECK(alone.order().size() <= 4 * count);
+      CHECK(walk.next_node == alone.nodes.size());
+      CHECK(walk.next_reference == alone.order.size());
+      CHECK(walk.depth == alone.depth);
+      CHECK(alone.order.size() <= 4 * count);
       for (const unsigned threads : {2U, 5U}) CHECK(same(Builder<Real>(input.primitives, threads), alone));
     }
 }
@@ -113,11 +113,11 @@ TEST_CASE_TEMPLATE("equal boxes in a row are split in the middle, however many c
   const Builder<Real> tree(input.primitives, 2);
   const auto check = [&](const auto& self, std::size_t node, double low, double high) -> void {
     if (high - low < 1024) return;
-    REQUIRE(tree.nodes()[node].axis() == 0);
-    const double split = static_cast<double>(tree.nodes()[node].split);
+    REQUIRE(tree.nodes[node].axis() == 0);
+    const double split = static_cast<double>(tree.nodes[node].split);
     CHECK(split == doctest::Approx((low + high) / 2).epsilon(1e-3));
-    self(self, tree.nodes()[node].first(), low, split);
-    self(self, tree.nodes()[node].first() + 1, split, high);
+    self(self, tree.nodes[node].first(), low, split);
+    self(self, tree.nodes[node].first() + 1, split, high);
   };
   check(check, 0, -0.5 * count, 0.5 * count);
 }
@@ -131,7 +131,7 @@ TEST_CASE_TEMPLATE("many boxes at one point are a leaf beside the others", Real,
   Walk<Real> walk(tree);
   walk.follow(0, 0, {input.primitives.begin(), input.primitives.end()});
   CHECK(walk.wrong == 0);
-  const auto nodes = tree.nodes();
+  const auto nodes = tree.nodes;
   CHECK(std::count_if(nodes.begin(), nodes.end(),
                       [](const Node<Real>& n) { return n.axis() == 3 && n.count == 20'000; }) == 1);
 }

@@ -124,14 +124,3 @@ TEST_CASE("boxes too far away and too many primitives are refused") {
   CHECK_THROWS_AS(Input(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})),
                   SettingError);  // refused before it is looked at
 }
-
-TEST_CASE("halving a number of parts takes as many levels as its binary logarithm, rounded up") {
-  using pulsecast::detail::levels_of_halving;
-  CHECK(levels_of_halving(0) == 0);
-  CHECK(levels_of_halving(1) == 0);
-  CHECK(levels_of_halving(2) == 1);
-  CHECK(levels_of_halving(3) == 2);
-  CHECK(levels_of_halving(1024) == 10);
-  CHECK(levels_of_halving(1025) == 11);
-  CHECK(levels_of_halving(std::size_t{1} << 32) == 32);
-}

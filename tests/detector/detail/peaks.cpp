@@ -13,6 +13,12 @@ using namespace pulsecast;
 
 namespace {
 
+/// A waveform of reflections alone.
+struct NoContinuous {
+  static bool needs_sum() { return false; }
+  const ContinuousReturn* operator()(const Peak&, double, bool) const { return nullptr; }
+};
+
 /// Peaks at times, as high as said, with valleys a half before and after.
 std::vector<Peak> kept(const WaveformSettings& s, const std::vector<Peak>& all) {
   std::vector<Peak> peaks;
@@ -139,17 +145,17 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
                   .end = 20.9 * metre,
                   .mark = 20.15 * metre,
                   .width = 7};
-  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range);
+  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range, NoContinuous{});
   CHECK(e.range == support::relative(20.075, 1e-12));
   CHECK(e.amplitude == 3.5);
   CHECK(e.width == 7);
   CHECK(e.object == 3);
   CHECK(e.classification == 3);
   CHECK(e.cos_incidence == 0.3);
-  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak).range == support::relative(20.15, 1e-12));
+  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak, NoContinuous{}).range == support::relative(20.15, 1e-12));
   // a peak of noise alone is nobody's
   const Echo nobody = echo_of({.time = 15 * metre, .begin = 14.9 * metre, .end = 15.1 * metre, .mark = 15 * metre},
-                              std::span(reflections).subspan(1), shape, EchoTiming::true_range);
+                              std::span(reflections).subspan(1), shape, EchoTiming::true_range, NoContinuous{});
   CHECK(nobody.range == support::relative(15, 1e-12));
   CHECK(nobody.object == 0);
 }

@@ -3,7 +3,6 @@
 #include <pulsecast/helios/detail/optics.hpp>
 
 #include <cmath>
-#include <stdexcept>
 #include <variant>
 
 #include <doctest/doctest.h>
@@ -250,34 +249,6 @@ TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   CHECK(std::fabs(aside.z) < 1e-12);
 }
 
-TEST_CASE("noise of the range may depend on it by any formula that is finite where the scanner measures") {
-  ChannelSettings c;
-  c.accuracy = 0.01;
-  CHECK(survey_receiver(c).range_errors.deviation_at(70) == relative(0.01, 1e-15));
-  struct Case {
-    const char* formula;
-    double (*value)(double);
-  };
-  for (const Case& k : {Case{"1 + 0.002*t", [](double t) { return 1 + 0.002 * t; }},
-                        {"t^2", [](double t) { return t * t; }},
-                        {"sqrt(t)/10", [](double t) { return std::sqrt(t) / 10; }},
-                        {"-3/t", [](double t) { return 3 / t; }}})
-    for (const double range : {0.5, 1.0, 7.3, 120.0, 3333.0, 9.9e5}) {
-      CAPTURE(k.formula);
-      c.errors.range_noise = k.formula;
-      const Receiver receiver = survey_receiver(c);
-      CHECK_NOTHROW(receiver.validate());
-      CHECK(receiver.range_errors.at(Echo{.range = range}, 1) == relative(0.01 * k.value(range), 1e-4));
-    }
-  c.errors.range_noise = "sqrt(t-5)";
-  CHECK_THROWS_AS((void)survey_receiver(c), SettingError);
-  c.range_min = 6;
-  c.range_max = 10;
-  CHECK(survey_receiver(c).range_errors.deviation_at(9) == relative(0.02, 1e-6));
-  c.errors.range_noise = "1/(t-";
-  CHECK_THROWS_AS((void)survey_receiver(c), std::invalid_argument);
-}
-
 TEST_CASE("a beam of known quality has its waist where it leaves; one of unknown quality comes from a point") {
   ChannelSettings c;
   CHECK(survey_laser(c, {}).from_a_point());
@@ -286,24 +257,6 @@ TEST_CASE("a beam of known quality has its waist where it leaves; one of unknown
   CHECK(beam_quality(laser) == relative(2.5, 1e-12));
   CHECK(laser.waist_range == 0);
   CHECK(2 * beam_radius(laser, 0).x == relative(4 * 2.5 * 1064e-9 / (pi * 0.5e-3), 1e-12));
-}
-
-TEST_CASE("echoes are sought in both ways of light, as documents count one") {
-  ChannelSettings c;
-  c.pulse_length = 4e-9;
-  c.returns_max = 0;
-  CHECK(survey_waveform(c).window == relative(2e-9, 1e-9));
-  CHECK(survey_waveform(c).returns_max == 255);
-  c.waveform.window = 3e-9;
-  c.waveform.duration_max = 10e-9;
-  c.returns_max = 4;
-  CHECK(survey_waveform(c, 1e-6).window == relative(6e-9, 1e-9));
-  CHECK(survey_waveform(c, 1e-6).record_length == relative(20e-9, 1e-9));
-  CHECK(survey_waveform(c, 0).record_length == 0);
-  CHECK(survey_waveform(c).returns_max == 4);
-  CHECK(survey_waveform(c).returns_kept == KeptReturns::first);
-  c.returns_kept = KeptReturns::strongest;
-  CHECK(survey_waveform(c).returns_kept == KeptReturns::strongest);
 }
 
 }  // namespace

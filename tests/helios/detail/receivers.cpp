@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -204,6 +205,52 @@ TEST_CASE("air beyond what its extinction was measured for is told of") {
   CHECK(warning(true).empty());
   channel.wavelength = 10.6e-6;
   CHECK(warning(true).find("10600 nm") != std::string::npos);
+}
+
+TEST_CASE("noise of the range may depend on it by any formula that is finite where the scanner measures") {
+  ChannelSettings c;
+  c.accuracy = 0.01;
+  CHECK(survey_receiver(c).range_errors.deviation_at(70) == relative(0.01, 1e-15));
+  struct Case {
+    const char* formula;
+    double (*value)(double);
+  };
+  for (const Case& k : {Case{"1 + 0.002*t", [](double t) { return 1 + 0.002 * t; }},
+                        {"t^2", [](double t) { return t * t; }},
+                        {"sqrt(t)/10", [](double t) { return std::sqrt(t) / 10; }},
+                        {"-3/t", [](double t) { return 3 / t; }}})
+    for (const double range : {0.5, 1.0, 7.3, 120.0, 3333.0, 9.9e5}) {
+      CAPTURE(k.formula);
+      c.errors.range_noise = k.formula;
+      const Receiver receiver = survey_receiver(c);
+      CHECK_NOTHROW(receiver.validate());
+      CHECK(receiver.range_errors.at(Echo{.range = range}, 1) == relative(0.01 * k.value(range), 1e-4));
+    }
+  c.errors.range_noise = "sqrt(t-5)";
+  CHECK_THROWS_AS((void)survey_receiver(c), SettingError);
+  c.range_min = 6;
+  c.range_max = 10;
+  CHECK(survey_receiver(c).range_errors.deviation_at(9) == relative(0.02, 1e-6));
+  c.errors.range_noise = "1/(t-";
+  CHECK_THROWS_AS((void)survey_receiver(c), std::invalid_argument);
+}
+
+TEST_CASE("echoes are sought in both ways of light, as documents count one") {
+  ChannelSettings c;
+  c.pulse_length = 4e-9;
+  c.returns_max = 0;
+  CHECK(survey_waveform(c).window == relative(2e-9, 1e-9));
+  CHECK(survey_waveform(c).returns_max == 255);
+  c.waveform.window = 3e-9;
+  c.waveform.duration_max = 10e-9;
+  c.returns_max = 4;
+  CHECK(survey_waveform(c, 1e-6).window == relative(6e-9, 1e-9));
+  CHECK(survey_waveform(c, 1e-6).record_length == relative(20e-9, 1e-9));
+  CHECK(survey_waveform(c, 0).record_length == 0);
+  CHECK(survey_waveform(c).returns_max == 4);
+  CHECK(survey_waveform(c).returns_kept == KeptReturns::first);
+  c.returns_kept = KeptReturns::strongest;
+  CHECK(survey_waveform(c).returns_kept == KeptReturns::strongest);
 }
 
 }  // namespace pulsecast::helios

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -55,9 +54,9 @@ class BinarySahTree {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         subtrees.push_back(i);
-        for (std::size_t k = subtrees.size() - 1; k > 0 && steps[subtrees[k - 1]].task.size() < steps[i].task.size();
-             --k)
-          std::swap(subtrees[k - 1], subtrees[k]);  // largest first
+        const auto size = [&](std::size_t k) { return steps[subtrees[k]].task.size(); };
+        for (std::size_t k = subtrees.size() - 1; k > 0 && size(k - 1) < size(k); --k)  // largest first
+          std::swap(subtrees[k - 1], subtrees[k]);
         continue;
       }
       const auto halves = split(steps[i].task, space, workers);
@@ -71,8 +70,8 @@ class BinarySahTree {
     for (std::size_t i = steps.size(); i-- > 0;)
       if (const std::size_t halves = steps[i].halves; halves > 0) {
         const Step &first = steps[halves], &second = steps[halves + 1];
-        steps[i].sums =
-            plan(nodes_[*steps[i].task.number], first.sums, first.task.size(), second.sums, second.task.size());
+        Node& node = nodes_[*steps[i].task.number];
+        steps[i].sums = plan(node, first.sums, first.task.size(), second.sums, second.task.size());
       }
     spare_ = {};
   }
@@ -83,10 +82,8 @@ class BinarySahTree {
     return range.middle == 0 ? primitives_[range.begin].box : nodes_[range.middle].box;
   }
 
-  /// True if the collapsed tree has a leaf here.
   [[nodiscard]] bool leaf(const Range& range) const noexcept { return range.middle == 0 || nodes_[range.middle].leaf; }
 
-  /// Children of a node of the collapsed tree.
   struct Children {
     std::array<Range, places> ranges;
     std::size_t count = 0;
@@ -104,8 +101,7 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at
-                                            ///< once, and their primitives may be shapes with trees of their own
+  static constexpr std::size_t few = 4096;  ///< primitives: smaller trees, perhaps of shapes, take all slices
   static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
@@ -171,10 +167,8 @@ class BinarySahTree {
     return bounds;
   }
 
-  /// Array that holds the primitives of a task.
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
-  /// Builds and plans a subtree.
   Sums build(const Task& task, const SharedBuffer<ChunkBins>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
@@ -228,7 +222,7 @@ class BinarySahTree {
       (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
       if (i < split.slice) left += all->counts[split.axis][i];
     }
-    if (task.depth + 1 + levels_of_halving(std::max(left, task.size() - left)) > max_depth) return halve(task);
+    if (task.depth + 1 + std::bit_width(std::max(left, task.size() - left) - 1) > max_depth) return halve(task);
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {
@@ -315,7 +309,6 @@ class BinarySahTree {
   [[nodiscard]] Range first(const Range& r) const noexcept { return {r.begin, r.middle, nodes_[r.middle].first}; }
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
-  /// Plans a node from the costs and sizes of its halves.
   Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second,
             std::size_t in_second) const noexcept {
     Sums sums;

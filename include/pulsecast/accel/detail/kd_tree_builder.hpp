@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,8 +30,8 @@ class KdTreeBuilder {
       : deepest_(std::min(max_depth,
                           static_cast<std::size_t>(8 + 1.3 * std::log2(static_cast<double>(primitives.size()))))) {
     const Box whole = box_of(primitives);
-    cell_ = whole.box();
-    steps_.push_back({{whole, cell_, leaves_per_primitive * static_cast<double>(primitives.size()), 0}, primitives});
+    cell = whole.box();
+    steps_.push_back({{whole, cell, leaves_per_primitive * static_cast<double>(primitives.size()), 0}, primitives});
     split_large(workers);
     for_each_index(steps_.size(), workers, [&](std::size_t i) {
       if (steps_[i].lower == 0) steps_[i].subtree = build(steps_[i].task, std::exchange(steps_[i].primitives, {}));
@@ -41,11 +39,10 @@ class KdTreeBuilder {
     join(workers);
   }
 
-  /// Bounds of the primitives, relative to their centre [m].
-  [[nodiscard]] const BoundingBox<Real>& cell() const noexcept { return cell_; }
-  [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
-  [[nodiscard]] SharedArray<Node> nodes() const noexcept { return nodes_; }
-  [[nodiscard]] SharedArray<PrimitiveIndex> order() const noexcept { return order_; }
+  BoundingBox<Real> cell;  ///< bounds of the primitives, relative to their centre [m]
+  std::size_t depth = 0;   ///< steps to the deepest leaf
+  SharedArray<Node> nodes;
+  SharedArray<PrimitiveIndex> order;
 
  private:
   using Box = GrowingBox<Real>;
@@ -54,10 +51,8 @@ class KdTreeBuilder {
   static constexpr std::size_t grain = 4096;  ///< primitives of a subtree at most: what is pending then fits a cache
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
-  static constexpr double empty_bonus =
-      0.8;  ///< cost factor for a split with an empty side. Source: Wald & Havran 2006, sec. 3.2
+  static constexpr double empty_bonus = 0.8;  ///< factor of splits with an empty side. Source: Wald & Havran 2006, 3.2
 
-  /// Node to be made.
   struct Task {
     Box filled;  ///< bounds of its primitives
     BoundingBox<Real> cell;
@@ -151,7 +146,6 @@ class KdTreeBuilder {
     return {below, above};
   }
 
-  /// Cheapest split of a node between slices.
   static Split best_split(const Task& task, const Counts& counts, std::size_t size) noexcept {
     const Slices<Real> slices = slices_of(task);
     Split best;
@@ -222,9 +216,7 @@ class KdTreeBuilder {
     }
   }
 
-  /// Calls act(pieces, step) for the pieces of each node.
-  template <class Act>
-  void for_each_step(std::vector<Piece>& pieces, const Act& act) {
+  void for_each_step(std::vector<Piece>& pieces, const auto& act) {
     for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
       while (end < pieces.size() && pieces[end].step == pieces[begin].step) ++end;
       act(std::span(pieces).subspan(begin, end - begin), steps_[pieces[begin].step]);
@@ -323,38 +315,33 @@ class KdTreeBuilder {
       place(steps_[step.lower + half], step.first_node + half, node, reference);
   }
 
-  /// Joins the subtrees.
   void join(const Workers& workers) {
     std::size_t node_count = 1, reference_count = 0;
     place(steps_[0], 0, node_count, reference_count);
-    const SharedBuffer<Node> nodes(node_count);
-    const SharedBuffer<PrimitiveIndex> order(reference_count);
+    const SharedBuffer<Node> all(node_count);
+    const SharedBuffer<PrimitiveIndex> references(reference_count);
     for_each_index(steps_.size(), workers, [&](std::size_t i) {
       const Step& step = steps_[i];
       if (step.lower > 0) {
-        nodes[step.own] = Node::inner(step.first_node, step.split.axis, step.split.at);
+        all[step.own] = Node::inner(step.first_node, step.split.axis, step.split.at);
         return;
       }
-      const auto& [own, references, depth] = step.subtree;
-      std::copy(references.begin(), references.end(), order.data() + step.first_reference);
+      const Subtree& own = step.subtree;
+      std::copy(own.order.begin(), own.order.end(), references.data() + step.first_reference);
       const auto placed = [&](Node node) {
         node.place(node.first() + (node.axis() == 3 ? step.first_reference : step.first_node - 1), node.axis());
         return node;
       };
-      nodes[step.own] = placed(own[0]);
-      std::transform(own.begin() + 1, own.end(), nodes.data() + step.first_node, placed);
+      all[step.own] = placed(own.nodes[0]);
+      std::transform(own.nodes.begin() + 1, own.nodes.end(), all.data() + step.first_node, placed);
     });
-    for (const Step& step : steps_) depth_ = std::max(depth_, step.subtree.depth);
-    nodes_ = nodes;
-    order_ = order;
+    for (const Step& step : steps_) depth = std::max(depth, step.subtree.depth);
+    nodes = all;
+    order = references;
   }
 
   std::size_t deepest_;  ///< depth limit of the leaves
   std::vector<Step> steps_;
-  BoundingBox<Real> cell_;
-  std::size_t depth_ = 0;
-  SharedArray<Node> nodes_;
-  SharedArray<PrimitiveIndex> order_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::detail

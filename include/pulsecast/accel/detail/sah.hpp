@@ -5,13 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <vector>
+#include <span>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
@@ -91,7 +88,6 @@ class Slices {
     per_width_ = simd::Vec4<Real>::from(per_width[0]);
   }
 
-  /// Slices per axis.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
   /// True if the box is long enough along axis k to be sliced.
@@ -173,11 +169,14 @@ inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
 [[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept {
   return (count + chunk_size - 1) / chunk_size;
 }
-template <class Act>
-void for_each_chunk(std::size_t count, const Workers& workers, const Act& act) {
+void for_each_chunk(std::size_t count, const Workers& workers, const auto& act) {
   for_each_index(chunk_count(count), workers,
                  [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
+
+/// Test of the primitives of a leaf.
+template <class T>
+concept LeafTest = std::invocable<const T&, std::span<const PrimitiveIndex>>;
 
 /// Indexable range of boxes: an array, or a generator.
 template <class B>
@@ -198,8 +197,7 @@ class BoxRangeRef {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// Calls act(i, box) for the non-empty boxes of a chunk.
-  template <class Act>
-  void for_each(std::size_t begin, std::size_t end, const Act& act) const {
+  void for_each(std::size_t begin, std::size_t end, const auto& act) const {
     constexpr std::size_t at_once = 64;
     std::array<Box, at_once> some;
     for (; begin < end; begin += at_once) {
@@ -224,8 +222,7 @@ struct BuildInput {
   SharedBuffer<Boxed<Real>> primitives;
 
   explicit BuildInput(const BoxRangeRef& boxes, const Workers& workers = 1) {
-    constexpr std::size_t most =
-        std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
+    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // the next is `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
     struct ChunkBounds {
@@ -261,11 +258,6 @@ struct BuildInput {
     });
   }
 };
-
-/// Levels of halving down to single parts.
-[[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept {
-  return parts < 2 ? 0 : std::bit_width(parts - 1);
-}
 
 }  // namespace PULSECAST_NAMESPACE::detail
 

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -44,7 +42,6 @@ struct ReceivedPulses {
 /// section of at most 1e7 samples: the range gate, up to the last reflection if the gate has no end.
 class BandLimitedSamples {
  public:
-  /// Scratch memory.
   struct Workspace {
     std::vector<double> sums;    ///< sums of pulses in the next samples, in a ring
     std::vector<double> phases;  ///< powers by phase, of reflections between two samples [W]
@@ -90,12 +87,10 @@ class BandLimitedSamples {
   [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }   ///< shape of the pulses of these samples
   [[nodiscard]] double start() const noexcept { return start_; }           ///< number of the first sample
   [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }  ///< of a pulse's maximum in the samples [s]
-  [[nodiscard]] double background() const noexcept {
-    return chain_.background;
-  }                                                                        ///< mean that is not in the samples [W]
+  /// Mean that is not in the samples [W].
+  [[nodiscard]] double background() const noexcept { return chain_.background; }
   [[nodiscard]] bool independent_noise() const noexcept { return false; }  ///< noise is filtered
 
-  /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
     if (noisy_ ? begun_ || !(number_ <= end_ || !reflections_.empty()) : !std::isfinite(first_of_section()))
       return false;
@@ -111,7 +106,6 @@ class BandLimitedSamples {
     return true;
   }
 
-  /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return number_; }
 
   /// Next sample [W]; sets `more` if the section continues after it.
@@ -131,7 +125,6 @@ class BandLimitedSamples {
     return power;
   }
 
-  /// Continuous returns in a peak, as `echo_of` takes them.
   [[nodiscard]] auto continuous() const noexcept { return continuous_.sources(pulses_.pulse.peak()); }
 
  private:
@@ -165,7 +158,6 @@ class BandLimitedSamples {
     const double late = before(std::floor(continuous_.first_peak() / interval_));
     return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }
-  /// True if continuous returns may rise in the next samples.
   [[nodiscard]] bool may_rise() noexcept {
     continuous_.pass((number_ + margin) * interval_);
     const double settled = continuous_.until() / interval_ + margin - static_cast<double>(pulses_.first_tap);
@@ -190,8 +182,8 @@ class BandLimitedSamples {
     }
     const std::size_t size = w_.sums.size();
     std::size_t at = static_cast<std::size_t>(static_cast<std::int64_t>(first)) & (size - 1);
-    auto k = static_cast<std::size_t>(
-        std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples that are gone
+    auto k =
+        static_cast<std::size_t>(std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples gone
     at = (at + k) & (size - 1);
     for (std::size_t end; k < pulse.stride(); k = end, at = 0) {
       end = std::min(pulse.stride(), k + (size - at));

@@ -24,9 +24,7 @@ class ByPulseLength {
   /// Keeps what was prepared for a laser, for which there was nothing.
   void add(const Laser& laser, Prepared prepared) { known_.emplace_back(laser.pulse_length, std::move(prepared)); }
 
-  /// Calls a function with all that was prepared.
-  template <class Visit>
-  void each(const Visit& visit) const {
+  void each(const auto& visit) const {
     for (const auto& [length, prepared] : known_) visit(prepared);
   }
 

@@ -4,8 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_CONTINUOUS_WAVEFORM_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 
@@ -95,12 +93,10 @@ class GammaIntegrals {
  public:
   explicit GammaIntegrals(const PulseShape& shape) noexcept : shape_(shape) {}
 
-  [[nodiscard]] double begin() const noexcept {
-    return shape_.begin();
-  }  ///< time of the leading edge since the arrival [s]
-  [[nodiscard]] double end() const noexcept {
-    return 36 * shape_.tau;
-  }  ///< time since the arrival when 1e-13 of a pulse is left [s]
+  /// Time of the leading edge since the arrival [s].
+  [[nodiscard]] double begin() const noexcept { return shape_.begin(); }
+  /// Time since the arrival when 1e-13 of a pulse is left [s].
+  [[nodiscard]] double end() const noexcept { return 36 * shape_.tau; }
   [[nodiscard]] double peak() const noexcept { return 0; }  ///< time of the maximum since the arrival [s]
   /// Integrals up to a time since the arrival [s].
   [[nodiscard]] PulseIntegrals until(double t) const noexcept {
@@ -157,8 +153,7 @@ class ContinuousRises {
   void pass(double time) noexcept {
     while (next() <= time) {
       const ContinuousReturn& r = returns_[next_];
-      const double late =
-          next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as their light may fall faster
+      const double late = next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as those may fall faster
       until_ = std::max(until_, time_of(r.at_end > r.at_begin ? r.end : r.begin) + late);
       const ContinuousReturn *last = &r, *const end = returns_.data() + returns_.size();
       while (last + 1 != end && goes_on(last[0], last[1])) ++last;

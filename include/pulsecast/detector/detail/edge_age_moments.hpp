@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
@@ -36,12 +35,10 @@ class EdgeAgeMoments {
 
   /// True if the slope of the sum has zeros, passed or to come.
   [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
-  [[nodiscard]] double until_valley() const noexcept {
-    return 1 - std::sqrt(1 - variance_) - mean_;
-  }  ///< negative if passed [tau]
-  [[nodiscard]] double until_peak() const noexcept {
-    return 1 + std::sqrt(1 - variance_) - mean_;
-  }  ///< negative if passed [tau]
+  /// Negative if passed [tau].
+  [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }
+  /// Negative if passed [tau].
+  [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }
 
   /// Sum of pulses now [W].
   [[nodiscard]] double power() const noexcept {

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <numbers>
 
 #include <pulsecast/base/exponential.hpp>

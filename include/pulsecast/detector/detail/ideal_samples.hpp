@@ -4,8 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -53,7 +51,8 @@ class IdealSamples {
 
   [[nodiscard]] double delay() const noexcept { return 0; }                 ///< of a pulse's maximum in the samples [s]
   [[nodiscard]] double background() const noexcept { return background_; }  ///< mean that is not in the samples [W]
-  [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }  ///< true if samples have independent noise
+  /// True if samples have noise of their own each.
+  [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_KEPT_RETURNS_HPP
 #define PULSECAST_DETECTOR_DETAIL_KEPT_RETURNS_HPP
 
-#include <cstdint>
-
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE {

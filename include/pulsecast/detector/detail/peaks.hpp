@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -113,19 +111,11 @@ struct OnlyPeak {
   const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
 };
 
-/// No continuous returns, for `echo_of`.
-struct NoContinuous {
-  /// False: nothing is to be added up.
-  [[nodiscard]] static bool needs_sum() noexcept { return false; }
-  [[nodiscard]] const ContinuousReturn* operator()(const Peak&, double, bool) const noexcept { return nullptr; }
-};
-
 /// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its
 /// peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the
 /// peak is of, if it is of one, for the power of reflections in it [W]; `met` is true if there are any.
-template <class Shape, class Continuous = NoContinuous>
-[[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape,
-                           EchoTiming timing, const Continuous& continuous = NoContinuous{}) noexcept {
+[[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const auto& shape,
+                           EchoTiming timing, const auto& continuous) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
   const auto from = [&](double time) noexcept {
     return reflections.data() +

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 
@@ -78,9 +77,8 @@ class SampledSum {
   [[nodiscard]] std::size_t next() const noexcept { return next_; }  ///< index of the first reflection still to arrive
   /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
-  [[nodiscard]] double last_peak() const noexcept {
-    return arrival(reflections_[next_ - 1]);
-  }  ///< arrival of the last reflection so far [s]
+  /// Arrival of the last reflection so far [s].
+  [[nodiscard]] double last_peak() const noexcept { return arrival(reflections_[next_ - 1]); }
 
   /// Returns the sum at the next sample [W] and advances.
   double power() noexcept {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
 #include <pulsecast/base/exponential.hpp>
@@ -22,8 +21,8 @@ namespace PULSECAST_NAMESPACE {
 class ReceivedPulse {
  public:
   /// For pulses of a full width at half maximum of `length` [s], and samples every `interval` [s].
-  template <PulseForm Form>
-  ReceivedPulse(const Form& form, double length, const LowPass& filter, double interval) : interval_(interval) {
+  ReceivedPulse(const PulseForm auto& form, double length, const LowPass& filter, double interval)
+      : interval_(interval) {
     const double margin = 6 * filter.deviation, start = form.begin(length) - margin, end = form.end(length) + margin;
     phases_ = static_cast<std::size_t>(std::ceil(16 * interval / filter.deviation));
     step_ = interval / static_cast<double>(phases_);
@@ -130,8 +129,7 @@ class ReceivedPulse {
   }
 
   /// Convolution at a time, by Simpson's rule over the part of the pulse that the filter reaches.
-  template <PulseForm Form>
-  static double filtered(const Form& form, double length, const LowPass& filter, double time) {
+  static double filtered(const PulseForm auto& form, double length, const LowPass& filter, double time) {
     const double reach = 6 * filter.deviation;
     const double from = std::max(form.begin(length), time - reach), to = std::min(form.end(length), time + reach);
     if (!(from < to)) return 0;
@@ -156,8 +154,7 @@ class ReceivedPulse {
     double value = 0;
   };
   std::vector<Point> points_;
-  std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases,
-                              ///< and of later rows
+  std::vector<double> rows_;  ///< value i, from -1 on, is number (i + 1) / phases of row (i + 1) % phases and later
 };
 
 }  // namespace PULSECAST_NAMESPACE

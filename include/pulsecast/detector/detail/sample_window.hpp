@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -28,17 +27,14 @@ class SampleWindow {
     const Width& width;                ///< measure of widths
     double min_separation = 0;         ///< closer peaks merge [s]
     double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
-    bool by_sample =
-        false;         ///< true if the highest sample must reach the threshold, rather than the maximum between samples
-    double reach = 0;  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
+    bool by_sample = false;  ///< true if the highest sample must reach the threshold, not the maximum between samples
+    double reach = 0;        ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
   };
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
 
-  /// Allocates the memory.
   SampleWindow() { samples_.reserve(capacity); }
 
-  /// Forgets all samples.
   void clear() noexcept { samples_.clear(); }
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
@@ -64,7 +60,6 @@ class SampleWindow {
     return y.size() - 2;
   }
 
-  /// Last of equal samples from index i on.
   [[nodiscard]] std::size_t last_of_plateau(std::size_t i) const noexcept {
     while (i + 1 < samples_.size() && samples_[i + 1] == samples_[i]) ++i;
     return i;
@@ -104,9 +99,9 @@ class SampleWindow {
       Peak peak{.time = time(i) + top.offset * s.sample_interval,
                 .height = top.height,
                 .begin = valley(from),
-                .end = valley(to)};
-      peak.before = y[from];
-      peak.after = y[to];
+                .end = valley(to),
+                .before = y[from],
+                .after = y[to]};
       peak.mark = peak.time;
       if (s.timing > EchoTiming::peak)
         peak.mark =

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
@@ -15,9 +14,9 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -91,12 +90,10 @@ class SinglePeakGroup {
 
   /// True if the reflections form such a group.
   [[nodiscard]] bool one() const noexcept { return one_; }
-  [[nodiscard]] double last_edge() const noexcept {
-    return last_edge_;
-  }  ///< two-way travel time, origin of the times below [s]
-  [[nodiscard]] double mean_range() const noexcept {
-    return mean_range_;
-  }  ///< power-weighted mean of the reflections [m]
+  /// Two-way travel time, origin of the times below [s].
+  [[nodiscard]] double last_edge() const noexcept { return last_edge_; }
+  /// Power-weighted mean of the reflections [m].
+  [[nodiscard]] double mean_range() const noexcept { return mean_range_; }
 
   /// Time of the sum's peak since the last edge [tau].
   [[nodiscard]] double peak() const noexcept {

@@ -6,16 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/namespace.hpp>
 
-namespace PULSECAST_NAMESPACE {
-
-namespace detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian about it, as tables:
 /// one for each of some variances, interpolated by cubics in time and in the variance. As the convolution with a
@@ -46,10 +42,9 @@ class SystemWaveform {
   [[nodiscard]] double variance() const noexcept { return variance_; }            ///< of a flat target [s^2]
   [[nodiscard]] double rise() const noexcept { return rise_; }                    ///< time of the first thousandth [s]
   [[nodiscard]] double fall() const noexcept { return fall_; }                    ///< time of the last thousandth [s]
-  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< minimum variance in use [s^2]
-  [[nodiscard]] double most_added() const noexcept {
-    return 0.999 * added(levels_.size() - 1);
-  }  ///< greatest variance in use [s^2]
+  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< least variance in use [s^2]
+  /// Greatest variance in use [s^2].
+  [[nodiscard]] double most_added() const noexcept { return 0.999 * added(levels_.size() - 1); }
 
   /// Place between two tables.
   struct Blend {
@@ -139,7 +134,6 @@ class WaveformSum {
  public:
   static constexpr std::size_t most = 6;  ///< parts
 
-  /// One of the waveforms.
   struct Part {
     double power = 0, arrival = 0;  ///< power of a flat target [W], and arrival [s]
     double added = 0;               ///< variance beyond that of a flat target [s^2]
@@ -181,7 +175,6 @@ class WaveformSum {
     });
   }
 
-  /// The same sum of flat parts.
   [[nodiscard]] WaveformSum flattened() const noexcept {
     WaveformSum sum = *this;
     for (Part& p : sum.parts) {
@@ -191,7 +184,6 @@ class WaveformSum {
     return sum;
   }
 
-  /// Flat part of the greatest residual.
   [[nodiscard]] Part greatest_residual(const SystemWaveform& wave, std::span<const float> y,
                                        double interval) const noexcept {
     std::array<SystemWaveform::Blend, most> blends{};
@@ -210,7 +202,6 @@ class WaveformSum {
  private:
   static constexpr std::size_t parameters_max = 3 * most + 1;
 
-  /// Normal equations at an estimate.
   struct Equations {
     std::array<std::array<double, parameters_max>, parameters_max> matrix{};
     std::array<double, parameters_max> right{};
@@ -275,8 +266,6 @@ class WaveformSum {
   }
 };
 
-}  // namespace detail
-
-}  // namespace PULSECAST_NAMESPACE
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <type_traits>

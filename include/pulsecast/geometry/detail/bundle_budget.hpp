@@ -3,8 +3,6 @@
 #ifndef PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
 #define PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>
@@ -23,8 +21,7 @@ struct BudgetedLimit {
   mutable int asked = 0;  ///< number of reads of the limit
 
   /// As in `ClosestHits`.
-  template <class Rays>
-  [[nodiscard]] double limit(const Rays& rays) const noexcept {
+  [[nodiscard]] double limit(const auto& rays) const noexcept {
     return ++asked > most ? -std::numeric_limits<double>::infinity() : nearest.limit(rays);
   }
   [[nodiscard]] double limit_of(std::size_t j) const noexcept { return nearest.limit_of(j); }  ///< as in `ClosestHits`

@@ -8,11 +8,8 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -34,8 +31,7 @@ class BundleInterval {
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
-  template <class Rays>
-  BundleInterval(const Rays& rays, const Box& bounds, const Vec3& centre) noexcept
+  BundleInterval(const auto& rays, const Box& bounds, const Vec3& centre) noexcept
       : near_(round_down<Real>(rays.near)) {
     // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
@@ -61,8 +57,7 @@ class BundleInterval {
   }
 
   /// Largest range at which any ray can still find a closer hit.
-  template <class Rays, class Hits>
-  [[nodiscard]] Real limit(const Rays& rays, const Hits& nearest) const noexcept {
+  [[nodiscard]] Real limit(const auto& rays, const auto& nearest) const noexcept {
     return round_up<Real>(nearest.limit(rays));
   }
 
@@ -128,8 +123,7 @@ class BundleInterval {
     simd::Packet<Real> low, high;
   };
 
-  template <class WallsOf>
-  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const WallsOf& walls_of) const noexcept {
+  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const auto& walls_of) const noexcept {
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
       simd::Packet<Real> entry = simd::Packet<Real>{} + near_,
@@ -194,8 +188,7 @@ class RayInterval {
   [[nodiscard]] static Key last_key(Real limit) noexcept { return std::bit_cast<Key>(limit) | 7; }
 
   /// Of the only ray of a bundle. `bounds` of the accelerator; its boxes are relative to `centre`.
-  template <class Rays>
-  RayInterval(const Rays& ray, const Box& bounds, const Vec3& centre) noexcept {
+  RayInterval(const auto& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min),
@@ -215,15 +208,13 @@ class RayInterval {
     for (std::size_t k = 0; k < 3; ++k)
       entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
     const Axes both = o + direction;
-    const bool is_valid =
-        std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
+    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // sums keep infinity and NaN, which miss
     near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
                      : std::numeric_limits<Real>::infinity();  // no -0
   }
 
   /// Largest range at which the ray can still find a closer hit.
-  template <class Rays, class Hits>
-  [[nodiscard]] Real limit(const Rays&, const Hits& nearest) const noexcept {
+  [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
     return static_cast<Real>(std::min(nearest.limit_of(0) * (1 + tolerance), max_limit));
   }
 
@@ -291,8 +282,7 @@ class RayInterval {
   /// Linear map from a wall's coordinate along each axis to range; the margin makes two of it, for entry and for exit.
   simd::Vec4<Real> per_, start_[2];
   Real near_;
-  std::size_t entry_wall_[3];  ///< byte in the boxes of the walls where they are entered; the opposite ones are
-                               ///< `wall_bytes` apart
+  std::size_t entry_wall_[3];  ///< byte of the walls where boxes are entered; the opposite ones: `wall_bytes` apart
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -35,9 +35,8 @@ class AssetSearch {
     }
   }
 
-  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept {
-    return folders_;
-  }  ///< absolute, in search order
+  /// Absolute, in search order.
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept { return folders_; }
 
   /// Finds the file of a name. A backslash separates as well.
   [[nodiscard]] AssetMatch find(std::string name) const {
@@ -129,8 +128,7 @@ class AssetSearch {
   }
 
   [[nodiscard]] bool is_inside(const std::filesystem::path& place) const {
-    return std::any_of(folders_.begin(), folders_.end(),
-                       [&](const std::filesystem::path& folder) { return holds(folder, place); });
+    return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) { return holds(folder, place); });
   }
 
   /// Warning if the file of a name lies outside the folders; empty otherwise.

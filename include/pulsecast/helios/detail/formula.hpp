@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -37,22 +37,13 @@ class Formula {
     std::array<double, depth> stack{};
     std::size_t n = 0;
     for (const Step& s : steps_) {
-      if (s.kind == Kind::number) {
-        stack[n++] = s.number;
-      } else if (s.kind == Kind::variable) {
-        stack[n++] = value;
-      } else if (s.kind == Kind::negative) {
-        stack[n - 1] = -stack[n - 1];
-      } else if (s.kind == Kind::function) {
-        stack[n - 1] = s.function(stack[n - 1]);
+      if (s.unary != nullptr) {
+        stack[n - 1] = s.unary(stack[n - 1]);
+      } else if (s.binary != nullptr) {
+        --n;
+        stack[n - 1] = s.binary(stack[n - 1], stack[n]);
       } else {
-        const double b = stack[--n], a = stack[n - 1];
-        stack[n - 1] = s.kind == Kind::add        ? a + b
-                       : s.kind == Kind::subtract ? a - b
-                       : s.kind == Kind::multiply ? a * b
-                       : s.kind == Kind::divide   ? a / b
-                       : s.kind == Kind::power    ? std::pow(a, b)
-                                                  : std::atan2(a, b);
+        stack[n++] = s.number.value_or(value);
       }
     }
     return stack[0];
@@ -61,22 +52,11 @@ class Formula {
  private:
   static constexpr std::size_t depth = 256;  ///< size of the evaluation stack
 
-  enum class Kind : std::uint8_t {
-    number,
-    variable,
-    negative,
-    add,
-    subtract,
-    multiply,
-    divide,
-    power,
-    atan2,
-    function
-  };
+  /// A function, or a number; without either the variable.
   struct Step {
-    Kind kind = Kind::number;
-    double number = 0;
-    double (*function)(double) = nullptr;
+    double (*unary)(double) = nullptr;
+    double (*binary)(double, double) = nullptr;
+    std::optional<double> number{};
   };
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -84,14 +64,17 @@ class Formula {
                                 std::to_string(at_ + 1));
   }
 
-  void push(Step step) {
-    if (step.kind == Kind::number || step.kind == Kind::variable) {
-      if (++height_ > depth) fail("is nested too deeply");
-    } else if (step.kind != Kind::negative && step.kind != Kind::function) {
-      --height_;
-    }
-    steps_.push_back(step);
+  void push(std::optional<double> number) {
+    if (++height_ > depth) fail("is nested too deeply");
+    steps_.push_back({.number = number});
   }
+  void apply(double (*unary)(double)) { steps_.push_back({.unary = unary}); }
+  void apply(double (*binary)(double, double)) {
+    --height_;
+    steps_.push_back({.binary = binary});
+  }
+
+  static double negated(double x) noexcept { return -x; }
 
   void skip() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -110,10 +93,10 @@ class Formula {
     for (;;) {
       if (take('+')) {
         product(deep);
-        push({Kind::add});
+        apply([](double a, double b) { return a + b; });
       } else if (take('-')) {
         product(deep);
-        push({Kind::subtract});
+        apply([](double a, double b) { return a - b; });
       } else
         return;
     }
@@ -124,10 +107,10 @@ class Formula {
     for (;;) {
       if (take('*')) {
         signed_power(deep);
-        push({Kind::multiply});
+        apply([](double a, double b) { return a * b; });
       } else if (take('/')) {
         signed_power(deep);
-        push({Kind::divide});
+        apply([](double a, double b) { return a / b; });
       } else
         return;
     }
@@ -141,10 +124,10 @@ class Formula {
     while (take('^')) {
       const bool minus = take('-');
       value(deep);
-      if (minus) push({Kind::negative});
-      push({Kind::power});
+      if (minus) apply(negated);
+      apply([](double a, double b) { return std::pow(a, b); });
     }
-    if (negative) push({Kind::negative});
+    if (negative) apply(negated);
   }
 
   void value(int deep) {
@@ -160,7 +143,7 @@ class Formula {
       const auto number = text::take_number<double>(rest, std::chars_format::fixed);
       if (!number) fail("has a number out of range");
       at_ = text_.size() - rest.size();
-      return push({Kind::number, *number});
+      return push(number);
     }
     std::size_t end = at_;
     while (end < text_.size() && ((text_[end] >= 'a' && text_[end] <= 'z') ||
@@ -168,19 +151,10 @@ class Formula {
       ++end;
     const std::string_view name = text_.substr(at_, end - at_);
     if (name.empty()) fail("lacks a number, the variable or a function");
-    if (name == variable_) {
-      at_ = end;
-      return push({Kind::variable});
-    }
-    if (name == "pi") {
-      at_ = end;
-      return push({Kind::number, std::numbers::pi});
-    }
-    if (name == "e") {
-      at_ = end;
-      return push({Kind::number, std::numbers::e});
-    }
-    call(name, deep, end);
+    const bool is_pi = name == "pi";
+    if (name != variable_ && !is_pi && name != "e") return call(name, deep, end);
+    at_ = end;
+    push(name == variable_ ? std::nullopt : std::optional(is_pi ? std::numbers::pi : std::numbers::e));
   }
 
   void call(std::string_view name, int deep, std::size_t end) {
@@ -207,10 +181,12 @@ class Formula {
     if (two) {
       if (!take(',')) fail("lacks the second argument of atan2");
       sum(deep + 1);
-      push({Kind::atan2});
     }
     if (!take(')')) fail("lacks a closing parenthesis");
-    if (!two) push({Kind::function, 0, function});
+    if (two)
+      apply([](double y, double x) { return std::atan2(y, x); });
+    else
+      apply(function);
   }
 
   std::string_view text_, variable_;  // views for the parser; empty afterwards

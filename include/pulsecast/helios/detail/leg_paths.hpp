@@ -53,9 +53,8 @@ class LegPaths {
   }
 
   [[nodiscard]] const LegPath& operator[](std::size_t k) const noexcept { return paths_[k]; }
-  [[nodiscard]] std::optional<double> clock_start() const noexcept {
-    return clock_start_;
-  }  ///< start time of the survey, if a trajectory gives it [s]
+  /// Start time of the survey, if a trajectory gives it [s]
+  [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Number for messages, rounded to three digits after the point.
@@ -292,8 +291,7 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings>
-        formats;  // columns and separator per file, each from the first leg that gives it
+    std::map<std::string, TrajectorySettings> formats;  // columns and separator of each file, from its first leg
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");

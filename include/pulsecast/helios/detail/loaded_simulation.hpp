@@ -3,14 +3,11 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 #define PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,11 +16,12 @@
 #include <variant>
 #include <vector>
 
+#include <time.h>
+
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/helios/detail/any_survey.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
@@ -80,8 +78,7 @@ class WaveformLimits {
   /// Scanner with the smallest bin size in all channels, as a batch has one sample interval.
   [[nodiscard]] ScannerSettings sampled_alike(ScannerSettings scanner, std::vector<std::string>& warnings) const {
     double finest = finest_bin(scanner);
-    if (std::any_of(scanner.channels.begin(), scanner.channels.end(),
-                    [&](const auto& c) { return c.waveform.bin_size > finest; }))
+    if (std::ranges::any_of(scanner.channels, [&](const auto& c) { return c.waveform.bin_size > finest; }))
       warnings.push_back("scanner '" + scanner.id +
                          "': its channels have bins of different size; all are sampled by the smallest");
     if (las_) finest = las_bins(finest, warnings);

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/fiber_array.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
@@ -20,10 +20,7 @@
 #include <pulsecast/deflector/palmer_mirror.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/risley_prisms.hpp>
-#include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
-#include <pulsecast/helios/detail/leg_rates.hpp>
 #include <pulsecast/helios/detail/survey_optic.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/scanner.hpp>
@@ -31,20 +28,29 @@
 /// Converts the instrument of a survey document to stages of the library.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// State of a scanner's optic at the start of a leg.
-struct OpticClock {
-  double active = 0;  ///< running time since the last start; optics that run on between legs continue from it [s]
-};
+/// Pulse rate of a leg; by default the scanner's first [Hz]. Throws a `SettingError` if there is none.
+[[nodiscard]] inline double pulse_rate_of(const ScannerSettings& scanner, const LegScannerSettings& leg) {
+  const double rate = leg.pulse_rate > 0 || scanner.pulse_rates.empty() ? leg.pulse_rate : scanner.pulse_rates.front();
+  require_positive("pulseFreq_hz", rate, "Hz");
+  return rate;
+}
+
+/// Turning rate of the head in a leg, within the limits of the device [rad/s].
+[[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
+  return std::clamp(leg.head_rate, -channel.head_rate_max, channel.head_rate_max);
+}
+
+/// True if the head turns away from its stop angle.
+[[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
+  return (leg.head_rate > 0 && leg.head_stop < leg.head_start) || (leg.head_rate < 0 && leg.head_stop > leg.head_start);
+}
+
+/// True if a leg waits for a head that does not turn.
+[[nodiscard]] inline bool head_never_stops(const ChannelSettings& channel, const LegSettings& leg) noexcept {
+  return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
+}
 
 namespace detail {
-
-/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to
-/// `WaveformSettings::max_samples` of them [s].
-[[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
-  constexpr double most = WaveformSettings::max_samples;
-  const double bin = channel.waveform.bin_size, length = channel.pulse_length;
-  return bin > length ? length : length > most * bin ? std::nextafter(length / most, length) : bin;
-}
 
 [[nodiscard]] inline double scan_angle_of(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double angle = leg.scan_angle.value_or(channel.scan_angle_max);
@@ -147,7 +153,7 @@ struct OpticBuilder {
   const ChannelSettings& channel;
   const LegScannerSettings& leg;
   double pulse_rate;
-  double active;     ///< as in `OpticClock`
+  double active;     ///< running time since the last start; optics that run on between legs continue from it [s]
   double ahead = 0;  ///< result [s]
   double tilt = 0;   ///< result [rad]
 
@@ -229,9 +235,9 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 /// `SettingError` with the attribute at fault.
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
-                                              const OpticClock& clock = {}) {
+                                              double active = 0) {
   if (leg.active) detail::require_scan_rate(channel, leg);
-  detail::OpticBuilder build{channel, leg, pulse_rate, clock.active};
+  detail::OpticBuilder build{channel, leg, pulse_rate, active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
@@ -263,76 +269,6 @@ inline void require_finite(const char* field, const Formula& error, const std::p
   if (channel.beam_quality)  // Source: ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda)
     laser.waist_diameter = 4 * *channel.beam_quality * channel.wavelength / (pi * divergence);
   return laser;
-}
-
-namespace detail {
-
-/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of
-/// the factor has no effect, as noise is symmetric.
-[[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
-  const Formula times(channel.errors.range_noise, "t");
-  const double first = std::max(channel.range_min, 0.01),
-               last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
-  constexpr int rows = 2000;
-  std::vector<DeviationAtRange> table;
-  for (int i = 0; i <= rows && (i == 0 || first < last); ++i) {
-    const double range = first * std::pow(last / first, i / static_cast<double>(rows)),
-                 deviation = channel.accuracy * std::fabs(times(range));
-    if (!std::isfinite(deviation))
-      throw SettingError("distanceMeasurementError at t", range, "m",
-                         "a formula with a finite value from rangeMin_m to rangeMax_m");
-    table.push_back({range, deviation});
-  }
-  return {.deviations = std::move(table)};
-}
-
-}  // namespace detail
-
-/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a
-/// `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
-[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
-  const bool by_formula = !channel.errors.range_noise.empty();
-  const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
-  return {.diameter = channel.receiver_diameter,
-          .efficiency = channel.efficiency,
-          .visibility = channel.visibility,
-          .aerosols = library_physics ? AerosolModel::kim : AerosolModel::kruse,
-          .range_min = channel.range_min,
-          .range_max = channel.range_max,
-          .range_errors = errors};
-}
-
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
-/// measured; empty if there is none.
-[[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
-  if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
-  return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
-         text::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
-         (receiver.aerosols == AerosolModel::kim ? ""
-                                                 : ", and from 6 km on; --libraryPhysics has one for haze and fog");
-}
-
-/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
-/// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
-/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
-/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
-/// the scanner has another than that of HELIOS++, which is less than a photon.
-[[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
-                                                      bool library_physics = false, bool follows_light = false) {
-  const FullWaveformSettings& s = channel.waveform;
-  WaveformSettings out;
-  out.sample_interval = detail::limited_bin(channel);
-  if (!library_physics || channel.received_power_min != ChannelSettings{}.received_power_min)
-    out.threshold = channel.received_power_min;
-  if (!library_physics) {
-    if (!follows_light) out.timing = EchoTiming::true_range;
-    out.shape_divisor = 3.5;
-  }
-  out.window = 2 * s.window.value_or(channel.pulse_length / 4);
-  out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
-  out.returns_kept = channel.returns_kept;
-  out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
-  return out;
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

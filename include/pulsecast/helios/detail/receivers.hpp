@@ -4,20 +4,103 @@
 #define PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <pulsecast/base/error.hpp>
 #include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
 /// Receivers of a scanner's channels.
 namespace PULSECAST_NAMESPACE::helios {
+
+namespace detail {
+
+/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to
+/// `WaveformSettings::max_samples` of them [s].
+[[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
+  constexpr double most = WaveformSettings::max_samples;
+  const double bin = channel.waveform.bin_size, length = channel.pulse_length;
+  return bin > length ? length : length > most * bin ? std::nextafter(length / most, length) : bin;
+}
+
+/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of
+/// the factor has no effect, as noise is symmetric.
+[[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
+  const Formula times(channel.errors.range_noise, "t");
+  const double first = std::max(channel.range_min, 0.01),
+               last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
+  constexpr int rows = 2000;
+  std::vector<DeviationAtRange> table;
+  for (int i = 0; i <= rows && (i == 0 || first < last); ++i) {
+    const double range = first * std::pow(last / first, i / static_cast<double>(rows)),
+                 deviation = channel.accuracy * std::fabs(times(range));
+    if (!std::isfinite(deviation))
+      throw SettingError("distanceMeasurementError at t", range, "m",
+                         "a formula with a finite value from rangeMin_m to rangeMax_m");
+    table.push_back({range, deviation});
+  }
+  return {.deviations = std::move(table)};
+}
+
+}  // namespace detail
+
+/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a
+/// `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
+[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
+  const bool by_formula = !channel.errors.range_noise.empty();
+  const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
+  return {.diameter = channel.receiver_diameter,
+          .efficiency = channel.efficiency,
+          .visibility = channel.visibility,
+          .aerosols = library_physics ? AerosolModel::kim : AerosolModel::kruse,
+          .range_min = channel.range_min,
+          .range_max = channel.range_max,
+          .range_errors = errors};
+}
+
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
+/// measured; empty if there is none.
+[[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
+  if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
+  return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
+         text::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
+         (receiver.aerosols == AerosolModel::kim ? ""
+                                                 : ", and from 6 km on; --libraryPhysics has one for haze and fog");
+}
+
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
+/// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
+/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
+/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
+/// the scanner has another than that of HELIOS++, which is less than a photon.
+[[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
+                                                      bool library_physics = false, bool follows_light = false) {
+  const FullWaveformSettings& s = channel.waveform;
+  WaveformSettings out;
+  out.sample_interval = detail::limited_bin(channel);
+  if (!library_physics || channel.received_power_min != ChannelSettings{}.received_power_min)
+    out.threshold = channel.received_power_min;
+  if (!library_physics) {
+    if (!follows_light) out.timing = EchoTiming::true_range;
+    out.shape_divisor = 3.5;
+  }
+  out.window = 2 * s.window.value_or(channel.pulse_length / 4);
+  out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
+  out.returns_kept = channel.returns_kept;
+  out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
+  return out;
+}
 
 /// True if two channels have equal receivers; their lasers may differ.
 [[nodiscard]] inline bool same_receiver(const ChannelSettings& a, const ChannelSettings& b) {

@@ -9,29 +9,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include <pulsecast/helios/detail/part_motion.hpp>
+#include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
-#include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/io/obj.hpp>
-#include <pulsecast/io/picture.hpp>
-#include <pulsecast/io/point_cloud.hpp>
-#include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/io/vox.hpp>
 #include <pulsecast/material/variation.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
-#include <pulsecast/shape/height_field.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
-#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Conversion of the scene of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {
@@ -105,102 +95,6 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std:
       throw FileError(file.string(), "", error.what());
     }
   return all;
-}
-
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjSource& source) {
-  return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    const io::UpAxis up_axis = source.y_up ? io::UpAxis::y : io::UpAxis::z;
-    io::ObjModel model = io::read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
-    io::add_pictures(model.mesh, model.materials, model.pictures, model.warnings, {.isolated = true});
-    warn(model.warnings);
-    for (const io::MaterialPictures& pictures : model.pictures) pictures.append_to(model.files);
-    add_files(model.files);
-    if (model.mesh.triangles.empty()) {
-      warn({file.string() + ": is left out"});
-      return;
-    }
-    all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads),
-                   table(std::move(model.materials))});
-  });
-}
-
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzSource& source) {
-  io::PointCloudSettings s{.voxel_size = source.voxel_size, .default_normal = source.default_normal};
-  s.normals = source.estimate_normals > 0   ? io::VoxelNormals::fitted
-              : source.snap_neighbor_normal ? io::VoxelNormals::nearest
-                                            : io::VoxelNormals::mean;
-  s.columns.separators = source.separator;
-  io::PointColumns::Columns normal{};
-  std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
-                 [](int column) { return static_cast<std::size_t>(column); });
-  s.columns.normal = normal;
-  s.validate();
-  return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    io::PointCloud cloud = io::read_point_cloud(file, s);
-    if (s.normals == io::VoxelNormals::fitted && !s.default_normal)
-      drop_bare(file, cloud);
-    else
-      warn(cloud.warnings);
-    if (cloud.voxels.cells.empty()) {
-      warn({file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
-      return;
-    }
-    MaterialTable materials = assign_materials(source.material, cloud.voxels);
-    all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
-  });
-}
-
-/// Removes voxels without a fitted plane.
-PULSECAST_INLINE void SceneBuilder::drop_bare(const std::filesystem::path& file, io::PointCloud& cloud) {
-  VoxelData& v = cloud.voxels;
-  const auto is_bare = [&](std::size_t i) { return v.normals[i] == std::array<float, 3>{}; };
-  std::size_t kept = 0;
-  const std::size_t all = v.normals.size();
-  for (std::size_t i = 0; i < all; ++i)
-    if (!is_bare(i)) {
-      v.cells[kept] = v.cells[i];
-      v.normals[kept++] = v.normals[i];
-    }
-  if (kept == all) return warn(cloud.warnings);
-  if (all > 0) {
-    v.cells.resize(kept);
-    v.normals.resize(kept);
-  }
-  warn({file.string() + ": " + std::to_string(all - kept) + " of " + std::to_string(all) +
-        " voxels have too few points for a normal, and are left out; defaultNormal would keep them"});
-}
-
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const VoxelSource& source) {
-  io::VoxelFileSettings s{.exponent = source.scaling_exponent};
-  s.use = source.mode == VoxelMode::transmittive ? io::VoxelUse::transmissive
-          : source.mode == VoxelMode::fixed      ? io::VoxelUse::opaque
-                                                 : io::VoxelUse::scaled;
-  if (source.random_shift) s.shift = options_.seed;
-  s.validate();
-  if (!source.leaf_angles.empty()) add_files({source.leaf_angles});
-  const LeafAngles leaves =
-      source.leaf_angles.empty() ? LeafAngles::spherical() : io::read_leaf_angles(source.leaf_angles);
-  return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    io::VoxelFile voxels = io::read_voxel_file(file, s);
-    warn(voxels.warnings);
-    if (voxels.voxels.cells.empty()) {
-      warn({file.string() + ": holds no occupied voxel, and is left out"});
-      return;
-    }
-    MaterialTable materials = assign_materials(source.material, voxels.voxels);
-    if (!source.leaf_angles
-             .empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
-      for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
-    if (source.mode == VoxelMode::transmittive)
-      all.push_back(
-          {std::make_shared<const VoxelGrid<TransmissiveVoxels>>(
-               voxels.voxels, TransmissiveVoxels{leaves, options_.tilted_leaves, source.leaf_area, source.clumping}),
-           materials});
-    else if (source.mode == VoxelMode::fixed)
-      all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
-    else
-      all.push_back({std::make_shared<const VoxelGrid<ScaledVoxels>>(voxels.voxels), materials});
-  });
 }
 
 PULSECAST_INLINE Material SceneBuilder::material(const MaterialSource& source) {

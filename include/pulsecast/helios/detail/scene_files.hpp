@@ -20,17 +20,6 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files in the settings of a scene, in all runs, existing or not. `SceneBuilder::files` returns those that these files
-/// name.
-[[nodiscard]] std::set<std::filesystem::path> scene_files(const SceneSettings& scene);
-
-/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for
-/// `onGround`.
-[[nodiscard]] bool has_ground(const SceneSettings& scene);
-
-/// Folders of spectra, there or not: `spectra` in each folder of assets.
-[[nodiscard]] std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets);
-
 namespace detail {
 
 template <class Source>
@@ -137,15 +126,23 @@ inline bool declares_ground(const std::filesystem::path& file) {
 
 }  // namespace detail
 
-inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) { return detail::files_of(scene).all; }
+/// Files in the settings of a scene, in all runs, existing or not. `SceneBuilder::files` returns those that these files
+/// name.
+[[nodiscard]] inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) {
+  return detail::files_of(scene).all;
+}
 
-inline std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets) {
+/// Folders of spectra, there or not: `spectra` in each folder of assets.
+[[nodiscard]] inline std::vector<std::filesystem::path> spectra_folders(
+    const std::vector<std::filesystem::path>& assets) {
   std::vector<std::filesystem::path> folders;
   for (const std::filesystem::path& folder : assets) folders.push_back(folder / "spectra");
   return folders;
 }
 
-inline bool has_ground(const SceneSettings& scene) {
+/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for
+/// `onGround`.
+[[nodiscard]] inline bool has_ground(const SceneSettings& scene) {
   detail::SceneFiles files = detail::files_of(scene);
   for (const std::filesystem::path& obj : files.objs) detail::add_libraries(files.mtls, obj);
   return std::any_of(files.mtls.begin(), files.mtls.end(), detail::declares_ground);

@@ -37,12 +37,10 @@ struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
   AnyOptic optic{};
-  Tick ahead{};  ///< lead of the optic's clock over that of the leg
-  Pose<frame::Instrument, frame::Instrument>
-      emitter{};  ///< pose of the channel in the instrument, before the head turns it
+  Tick ahead{};                                          ///< lead of the optic's clock over that of the leg
+  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< of the channel, before the head turns it
   RotatingHead head{.angular_rate = 0};
-  std::shared_ptr<const Formula>
-      deflection_error{};  ///< error of the deflection, as a function of the deflection; none if empty [rad]
+  std::shared_ptr<const Formula> deflection_error{};  ///< error of the deflection, by the deflection; or none [rad]
   std::shared_ptr<const Formula> head_error{};   ///< error of the head angle, as a function of the deflection [rad]
   std::shared_ptr<const Formula> range_error{};  ///< error of the reported range, as a function of the deflection [m]
   double head_zero_threshold = 0;  ///< minimum distance of the argument of `head_error` from multiples of pi [rad]
@@ -73,9 +71,7 @@ struct SurveyOptic {
   }
 
   /// True pose of the beam, with the errors of deflection and head.
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
-  }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {

@@ -27,9 +27,8 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
   for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
   format.left_out = format.columns;
   for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
-  std::erase_if(format.left_out, [&](const std::string& c) {
-    return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end();
-  });
+  std::erase_if(format.left_out,
+                [&](const std::string& c) { return std::ranges::find(format.columns, c) == format.columns.end(); });
 }
 
 /// Format of the trajectory file of a leg.

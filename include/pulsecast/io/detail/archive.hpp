@@ -169,8 +169,7 @@ class ArchiveWriter {
 
   OutputFile& file_;
   Digest digest_;
-  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t>
-      numbers_;  ///< numbers of shared objects, by address and type
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of shared objects, by address and type
 };
 
 /// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is
@@ -288,8 +287,7 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    static_assert(pulsecast::detail::ConsistencyCheckingCheck<T>::passed &&
-                  pulsecast::detail::ValidatingCheck<T>::passed);
+    static_assert(pulsecast::detail::members_checked<T, tag::SelfChecking, tag::Validated>);
     if constexpr (SelfChecking<T>) require(object.is_consistent());
     if constexpr (Validated<T>) object.validate();
   }

@@ -63,6 +63,13 @@ class ChildOutput {
     bytes(elements.data(), elements.size_bytes());
   }
 
+  /// Number of items, and each by a function.
+  template <class Item, class Write>
+  void items(std::vector<Item>& all, const Write& write) {
+    value(std::uint64_t{all.size()});
+    for (Item& item : all) write(item);
+  }
+
   /// Raises the limit of memory by some bytes. Calls before the work grow what it may take.
   static void allow(double bytes) {
     rlimit limit{};
@@ -145,12 +152,23 @@ class ChildResult {
     if (position_ > bytes_.size() || count > (bytes_.size() - position_) / sizeof(T)) fail();
     return {reinterpret_cast<const T*>(take(count * sizeof(T)).data()), static_cast<std::size_t>(count)};
   }
-  /// Number of items that follow, of at least a byte each.
-  [[nodiscard]] std::uint64_t count() {
-    const auto items = value<std::uint64_t>();
-    if (items > bytes_.size()) fail();
-    return items;
+  /// As above, into what they are for.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void value(T& to) { to = value<T>(); }
+  void text(std::string& to) { to = text(); }
+  template <class T>
+  void array(std::span<const T>& to) {
+    to = array<T>();
   }
+  /// Items of at least a byte each, each by a function.
+  template <class Item, class Read>
+  void items(std::vector<Item>& all, const Read& read) {
+    const auto count = value<std::uint64_t>();
+    if (count > bytes_.size()) fail();
+    while (all.size() < count) read(all.emplace_back());
+  }
+
   [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
   [[noreturn]] void fail() const {
     throw FileError(path_, "", "its import in a child process gave an inconsistent result");

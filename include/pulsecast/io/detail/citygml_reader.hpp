@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_CITYGML_READER_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +13,6 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,52 +49,24 @@ struct CityClassRule {
   bool interior = false;  ///< is inside a building
 };
 [[nodiscard]] inline CityClassRule rule_of(CityClass type) {
-  using C = CityClass;
-  switch (type) {
-    case C::COT_Room:
-    case C::COT_BuildingFurniture:
-    case C::COT_InteriorWallSurface:
-    case C::COT_CeilingSurface:
-    case C::COT_FloorSurface:
-    case C::COT_IntBuildingInstallation:
-      return {.classification = 6, .interior = true};
-    case C::COT_Building:
-    case C::COT_BuildingPart:
-    case C::COT_BuildingInstallation:
-    case C::COT_Door:
-    case C::COT_Window:
-    case C::COT_WallSurface:
-    case C::COT_RoofSurface:
-    case C::COT_OuterCeilingSurface:
-    case C::COT_OuterFloorSurface:
-      return {.classification = 6};
-    case C::COT_GroundSurface:
-      return {.classification = 2};
-    case C::COT_ReliefFeature:
-    case C::COT_ReliefComponent:
-    case C::COT_TINRelief:
-    case C::COT_LandUse:
-      return {.classification = 2, .ground = true};
-    case C::COT_PlantCover:
-    case C::COT_SolitaryVegetationObject:
-      return {.classification = 5};
-    case C::COT_WaterBody:
-      return {.classification = 9};
-    case C::COT_Railway:
-      return {.classification = 10, .ground = true};
-    case C::COT_Road:
-    case C::COT_Track:
-    case C::COT_Square:
-    case C::COT_TransportationObject:
-      return {.classification = 11, .ground = true};
-    case C::COT_Bridge:
-    case C::COT_BridgePart:
-    case C::COT_BridgeInstallation:
-    case C::COT_BridgeConstructionElement:
-      return {.classification = 17, .ground = true};
-    default:
-      return {};
-  }
+  using enum citygml::CityObject::CityObjectsType;
+  const auto is = [type](auto... classes) { return ((type == classes) || ...); };
+  if (is(COT_Room, COT_BuildingFurniture, COT_InteriorWallSurface, COT_CeilingSurface, COT_FloorSurface,
+         COT_IntBuildingInstallation))
+    return {.classification = 6, .interior = true};
+  if (is(COT_Building, COT_BuildingPart, COT_BuildingInstallation, COT_Door, COT_Window, COT_WallSurface,
+         COT_RoofSurface, COT_OuterCeilingSurface, COT_OuterFloorSurface))
+    return {.classification = 6};
+  if (is(COT_GroundSurface)) return {.classification = 2};
+  if (is(COT_ReliefFeature, COT_ReliefComponent, COT_TINRelief, COT_LandUse))
+    return {.classification = 2, .ground = true};
+  if (is(COT_PlantCover, COT_SolitaryVegetationObject)) return {.classification = 5};
+  if (is(COT_WaterBody)) return {.classification = 9};
+  if (is(COT_Railway)) return {.classification = 10, .ground = true};
+  if (is(COT_Road, COT_Track, COT_Square, COT_TransportationObject)) return {.classification = 11, .ground = true};
+  if (is(COT_Bridge, COT_BridgePart, COT_BridgeInstallation, COT_BridgeConstructionElement))
+    return {.classification = 17, .ground = true};
+  return {};
 }
 
 /// EPSG code of the horizontal system of a name, such as `urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783`.

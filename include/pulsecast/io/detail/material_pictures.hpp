@@ -5,10 +5,23 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include <pulsecast/material/spectrum.hpp>
+
 namespace PULSECAST_NAMESPACE::io {
+
+/// Spectra by name.
+struct SpectralLibrary {
+  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
+  std::vector<std::string> reports{};   ///< report of each file, as in `SpectrumFile`
+  std::vector<std::string> warnings{};  ///< oddities that could still be read
+  std::vector<double> wavelengths{};    ///< of the lasers, if known: spectra that do not reach them cause a warning [m]
+};
 
 /// Picture that a material names: a file, or bytes inside the file of the mesh.
 struct PictureSource {
@@ -24,9 +37,8 @@ struct MaterialPictures {
   PictureSource opacity{};           ///< outline: by its opacity, or by its grey or red without one
   PictureSource reflectance{};       ///< reflectance
   bool reflectance_pattern = false;  ///< true if that is a pattern, see `ReflectanceMap::pattern`
-  bool outlined_by_colour =
-      false;            ///< true if the opacity of the colour picture is the outline; without effect if it has none
-  double cutoff = 0.5;  ///< opacity from which a surface is solid, in [0, 1]
+  bool outlined_by_colour = false;   ///< true: the opacity of the colour picture, if any, is the outline
+  double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
 
   [[nodiscard]] bool empty() const noexcept { return colour.empty() && opacity.empty() && reflectance.empty(); }
   /// Appends the files.

@@ -11,7 +11,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -22,16 +21,18 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
 
-/// Throws a `SettingError` unless the names of a layout are valid in the header of a file, and unique.
-inline void require_field_names(const PointLayout& layout) {
+/// Throws a `SettingError` for a layout or settings out of range, and unless the names of the layout are valid in the
+/// header of a file, and unique.
+inline void require_packable(const PointLayout& layout, const PointSettings& points) {
+  layout.validate();
+  points.validate();
   for (const PointField& field : layout.fields) {
     require_within("PointField::name (length)", static_cast<double>(field.name.size()), 1, 100, "");
     for (const char c : field.name)
       if (!(c > ' ' && c <= '~' && c != '/'))
         throw SettingError("PointField::name (character code)", static_cast<unsigned char>(c), "",
                            "that of a visible ASCII character but /");
-    const auto same = std::count_if(layout.fields.begin(), layout.fields.end(),
-                                    [&](const PointField& f) { return f.name == field.name; });
+    const auto same = std::ranges::count_if(layout.fields, [&](const PointField& f) { return f.name == field.name; });
     require_within("PointField::name (number of " + field.name + ")", static_cast<double>(same), 1, 1, "");
   }
 }
@@ -39,11 +40,9 @@ inline void require_field_names(const PointLayout& layout) {
 /// Encoder of packed records, of echoes or of the records of a buffer.
 class PackedPoints {
  public:
-  /// Packs the fields of `layout`. @throws SettingError for a layout or settings out of range
+  /// Packs the fields of `layout`, which must be packable.
   PackedPoints(const PointLayout& layout, const PointSettings& settings)
-      : encoder_(PointLayout::packed(layout.fields), settings) {
-    require_field_names(layout);
-  }
+      : encoder_(PointLayout::packed(layout.fields), settings) {}
 
   /// Layout of the packed records.
   [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }

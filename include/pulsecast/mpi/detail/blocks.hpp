@@ -4,8 +4,6 @@
 #define PULSECAST_MPI_DETAIL_BLOCKS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>

@@ -3,22 +3,77 @@
 #ifndef PULSECAST_MPI_DETAIL_OUTPUT_HPP
 #define PULSECAST_MPI_DETAIL_OUTPUT_HPP
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>
+#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>
+#include <pulsecast/run.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
+
+/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first
+/// write. Throws a `FileError` that names the final path.
+class MpiFile {
+ public:
+  explicit MpiFile(std::filesystem::path path) : path_(std::move(path)) {}
+  MpiFile(const MpiFile&) = delete;
+  MpiFile& operator=(const MpiFile&) = delete;
+  ~MpiFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+  void write(std::uint64_t position, std::span<const std::byte> bytes) {
+    if (file_ < 0 && !bytes.empty())
+      file_ = ::open(io::OutputFile::temporary_name(path_).c_str(), O_WRONLY | O_CLOEXEC);
+    while (!bytes.empty()) {
+      const ssize_t written =
+          file_ < 0 ? -1 : ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(position));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(bytes.size());
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      position += static_cast<std::uint64_t>(written);
+    }
+  }
+
+  /// Flushes to the disk and closes; the system may report write errors only now.
+  void close() {
+    if (file_ < 0) return;
+    if (!io::sync_to_disk(file_)) fail(0);
+    if (::close(std::exchange(file_, -1)) != 0) fail(0);
+  }
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  [[noreturn]] void fail(std::size_t bytes) const {
+    throw FileError(path_.string(), "",
+                    "cannot be written by all processes: " + std::generic_category().message(errno) +
+                        "; expected room for " + std::to_string(bytes) +
+                        " more bytes in a folder that all machines share");
+  }
+
+  std::filesystem::path path_;
+  int file_ = -1;
+};
 
 class MpiOutput;
 
@@ -87,12 +142,44 @@ class MpiPiece {
   /// Resets the piece, keeping its memory.
   virtual void clear() = 0;
   virtual void operator()(const EchoBatch& batch) = 0;  ///< adds a batch, in pulse order
-  [[nodiscard]] virtual bool reads_empty_shots() const noexcept {
-    return true;
-  }  ///< as the concept ChoosesShots describes
+  /// As the concept ChoosesShots describes.
+  [[nodiscard]] virtual bool reads_empty_shots() const noexcept { return true; }
   /// Size of the piece, after the last batch.
   [[nodiscard]] virtual MpiExtent extent() = 0;
   [[nodiscard]] virtual std::size_t memory() const noexcept = 0;  ///< [byte]
+};
+
+/// Piece of bytes that a `Writer` makes from the file it is given.
+template <class Writer>
+class MpiWrittenPiece final : public MpiPiece {
+ public:
+  using Make = std::function<Writer(io::OutputFile)>;
+
+  /// `path` is named in errors; it and `make` must outlive the piece.
+  MpiWrittenPiece(const std::filesystem::path& path, const Make& make) : path_(path), make_(make) { clear(); }
+
+  void clear() override {
+    bytes.clear();
+    writer_.emplace(make_(io::OutputFile(path_, bytes)));
+  }
+  void operator()(const EchoBatch& batch) override { (*writer_)(batch); }
+  [[nodiscard]] bool reads_empty_shots() const noexcept override {
+    return pulsecast::detail::reads_empty_shots(*writer_);
+  }
+  [[nodiscard]] MpiExtent extent() override {
+    writer_->close();
+    MpiExtent extent;
+    extent.amounts[0] = bytes.size();
+    return extent;
+  }
+  [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
+
+  std::vector<std::byte> bytes;
+
+ private:
+  const std::filesystem::path& path_;
+  const Make& make_;
+  std::optional<Writer> writer_;
 };
 
 /// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and writes each at the

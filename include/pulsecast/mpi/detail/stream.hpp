@@ -4,12 +4,11 @@
 #define PULSECAST_MPI_DETAIL_STREAM_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,7 +16,6 @@
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
-#include <pulsecast/run.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
 
@@ -28,9 +26,8 @@ class MpiBatchWriter {
   explicit MpiBatchWriter(io::OutputFile file, bool empty_shots = true)
       : file_(std::move(file)), empty_shots_(empty_shots) {}
 
-  [[nodiscard]] bool reads_empty_shots() const noexcept {
-    return empty_shots_;
-  }  ///< as the concept ChoosesShots describes
+  /// As the concept ChoosesShots describes.
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
 
   void operator()(const EchoBatch& batch) {
     const Head head{batch.shots.size(), batch.echoes.size(), batch.samples.size(), batch.subrays.size(),
@@ -75,13 +72,13 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
 template <class Writer>
 class MpiStream final : public MpiOutput {
  public:
-  using Make = std::function<Writer(io::OutputFile piece)>;
+  using Make = typename MpiWrittenPiece<Writer>::Make;
   using Take = std::function<void(MpiMessage bytes)>;
 
   MpiStream(MpiGroup& group, Make make, Take take, std::function<void()> close)
       : MpiOutput(group), make_(std::move(make)), take_(std::move(take)), close_(std::move(close)) {}
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(make_); }
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(path_, make_); }
 
   void put(MpiPiece& piece, const MpiPlace& place) override {
     MpiMessage message(std::move(static_cast<Piece&>(piece).bytes));
@@ -119,27 +116,9 @@ class MpiStream final : public MpiOutput {
   }
 
  private:
-  struct Piece final : MpiPiece {
-    explicit Piece(const Make& how) : make(how) { clear(); }
-    void clear() override {
-      bytes.clear();
-      writer.emplace(make(io::OutputFile("piece", bytes)));
-    }
-    void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] bool reads_empty_shots() const noexcept override {
-      return pulsecast::detail::reads_empty_shots(*writer);
-    }
-    [[nodiscard]] MpiExtent extent() override {
-      writer->close();
-      return {};
-    }
-    [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
+  using Piece = MpiWrittenPiece<Writer>;
 
-    const Make& make;
-    std::vector<std::byte> bytes;
-    std::optional<Writer> writer;
-  };
-
+  std::filesystem::path path_ = "piece";
   Make make_;
   Take take_;
   std::function<void()> close_;

@@ -4,7 +4,6 @@
 #define PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -267,8 +266,7 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
     block.add(listed_codes("kind", points, [](Point p) { return static_cast<std::uint32_t>(p.kind); }));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
     block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
-  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.coloured; }))
-    block.add(detail::colour_codes(points));
+  if (std::ranges::any_of(points, [](Point p) { return p.coloured; })) block.add(detail::colour_codes(points));
   if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));
   return block.finish(settings.effort);
 }

@@ -3,14 +3,11 @@
 #ifndef PULSECAST_PLATFORM_DETAIL_CURVED_PATH_HPP
 #define PULSECAST_PLATFORM_DETAIL_CURVED_PATH_HPP
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/platform/heading.hpp>
+#include <pulsecast/base/frame.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -32,8 +29,7 @@ struct PathPiece {
   /// heading in its middle.
   [[nodiscard]] Stance after(double driven) const noexcept {
     const double way = gear * driven, half = 0.5 * curvature * way;
-    const double chord =
-        std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // exact to 1e-18
+    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // +-1e-18
     const double middle = start.heading + half;
     return {start.position + chord * Vec2{std::sin(middle), std::cos(middle)}, start.heading + 2 * half};
   }

@@ -51,12 +51,10 @@ class PiecewiseCubic {
     return now.piece.after(std::clamp(elapsed, 0.0, now.piece.duration));
   }
 
-  /// Piece with its start.
   struct Timed {
     Tick start;           ///< start of the piece
     CubicPiece<V> piece;  ///< motion from its start on
   };
-  /// Pieces in order of time.
   [[nodiscard]] const std::vector<Timed>& pieces() const noexcept { return pieces_; }
 
  private:

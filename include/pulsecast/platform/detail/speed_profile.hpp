@@ -3,9 +3,7 @@
 #ifndef PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 #define PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <span>
 #include <vector>
 

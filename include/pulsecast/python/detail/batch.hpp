@@ -34,10 +34,9 @@ struct Batch {
   pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
   pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
   double sample_interval = 0;          ///< between samples [s]
-  pybind11::dict
-      columns{};           ///< arrays by name, of a number an echo; without those of the rows unless `by_column` is set
-  bool by_column = false;  ///< true if points are kept by column, and not as rows
-  RunSummary summary{};    ///< of the whole run; empty in a batch for a callback
+  pybind11::dict columns{};  ///< arrays by name, of a number an echo; those of the rows only if `by_column` is set
+  bool by_column = false;    ///< true if points are kept by column, and not as rows
+  RunSummary summary{};      ///< of the whole run; empty in a batch for a callback
 };
 
 /// Kinds of data that a `RowSink` keeps.
@@ -176,12 +175,10 @@ inline void bind_batch(pybind11::module_& m) {
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
       .def_property_readonly("points", &points_of,
                              "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity "
-                             "[W]; reflectance; echo_width [s]; "
-                             "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; "
-                             "channel; kind of light: "
-                             "0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the air, 5 scattered more "
-                             "than once. AttributeError after "
-                             "run(columns=True).")
+                             "[W]; reflectance; echo_width [s]; cos_incidence; pulse; object; classification; leg; "
+                             "return_number; number_of_returns; channel; kind of light: 0 direct, 1 through glass, 2 "
+                             "from water, 3 by a mirror, 4 from the air, 5 scattered more than once. AttributeError "
+                             "after run(columns=True).")
       .def_property_readonly(
           "columns", &columns_of,
           "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "
@@ -194,8 +191,7 @@ inline void bind_batch(pybind11::module_& m) {
           "pulses", &Batch::pulses,
           "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
           "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; "
-          "channel; fate, "
-          "an index into FATES.")
+          "channel; fate, an index into FATES.")
       .def_readonly("waveforms", &Batch::waveforms, "Samples of all pulses, concatenated, shape (n,) [W].")
       .def_readonly("sample_interval", &Batch::sample_interval,
                     "Sample spacing of the waveforms [s]; 0 without waveforms.")
@@ -211,9 +207,7 @@ inline void bind_batch(pybind11::module_& m) {
       .def_property_readonly(
           "energy", [](const Batch& b) { return dict_of(b.summary.energy); },
           "Energy sent, and its parts by the end of their paths [J]: missed, out_of_range, absorbed, scattered, cut. "
-          "received: energy at "
-          "the "
-          "receiver, of that scattered.")
+          "received: energy at the receiver, of that scattered.")
       .def("waveform_of", &waveform_of, py::arg("row"), "Samples of the pulse in a row of `pulses`, shape (n,) [W].")
       .def("__repr__",
            [](const Batch& b) {

@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_CELL_BLOCK_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
 #include <pulsecast/base/simd.hpp>
@@ -47,14 +45,12 @@ class CellBlock {
   }
 
  private:
-  template <class Heights>
-  void copy(const Heights& heights, const RasterGrid& grid, std::uint32_t c, std::uint32_t r) noexcept {
+  void copy(const auto& heights, const RasterGrid& grid, std::uint32_t c, std::uint32_t r) noexcept {
     for (std::uint32_t i = 0; i < 3; ++i)
       for (std::uint32_t j = 0; j < 5; ++j) copied_[i][j] = heights[grid.index(c + j, r + i)];
   }
   /// Copies the pixels in the raster, repeated beyond its edge.
-  template <class Heights>
-  void copy_edge(const Heights& heights, const RasterGrid& grid, std::uint32_t c, std::uint32_t r, std::uint32_t wide,
+  void copy_edge(const auto& heights, const RasterGrid& grid, std::uint32_t c, std::uint32_t r, std::uint32_t wide,
                  std::uint32_t high) noexcept {
     for (std::uint32_t i = 0; i < 3; ++i)
       for (std::uint32_t j = 0; j < 5; ++j)

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -93,8 +91,7 @@ struct PyramidLayout {
 };
 
 /// Bounding box of the triangles of a node of level 1: 4 by 2 cells.
-template <class Heights>
-[[nodiscard]] Box ground_of(const RasterGrid& grid, const Heights& heights, std::uint32_t node_column,
+[[nodiscard]] Box ground_of(const RasterGrid& grid, const auto& heights, std::uint32_t node_column,
                             std::uint32_t node_row) {
   const std::uint32_t west = 4 * node_column, north = 2 * node_row;
   const std::uint32_t east = std::min(west + 4, grid.columns - 1), south = std::min(north + 2, grid.rows - 1);
@@ -126,8 +123,7 @@ struct HeightPyramid {
   std::vector<float> heights;
   Box bounds{};
 
-  template <class Heights>
-  HeightPyramid(const RasterGrid& grid, const Heights& pixels, const PyramidLayout& layout, Workers workers)
+  HeightPyramid(const RasterGrid& grid, const auto& pixels, const PyramidLayout& layout, Workers workers)
       : heights(layout.size) {
     constexpr HeightInterval empty;
     for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 16 < 8 ? empty.least : empty.greatest;

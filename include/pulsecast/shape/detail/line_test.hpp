@@ -21,11 +21,9 @@ namespace PULSECAST_NAMESPACE {
 /// corner shared by its two edges; bounds: Higham 2002, ch. 3.
 class LineTest {
  public:
-  /// Leaves the line unset.
   LineTest() noexcept {}
   /// Line through the only ray of a bundle, for triangles within `bounds` [m].
-  template <class Rays>
-  LineTest(const Rays& ray, const Box& bounds) noexcept : origin_(ray.origin), direction_(ray.direction(0)) {
+  LineTest(const auto& ray, const Box& bounds) noexcept : origin_(ray.origin), direction_(ray.direction(0)) {
     // `intersect` lets a side be in doubt by 17 roundings of 4 reach^2 times the direction's length, and this test adds
     // 12 of its 1-norm
     using Axes = simd::Vec4<double>;

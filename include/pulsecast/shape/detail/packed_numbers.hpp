@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_PACKED_NUMBERS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -29,10 +27,7 @@ class PackedNumbers {
     bytes_ = std::move(bytes);
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a(bytes_, shift_, most_);
-  }
+  void archive(auto& a) { a(bytes_, shift_, most_); }
   /// True if there are `size` numbers, none above the greatest.
   [[nodiscard]] bool is_consistent(std::size_t size) const noexcept {
     if (bytes_.empty()) return most_ == 0;

@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/shape/detail/voxel_keys.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 #include <pulsecast/shape/voxel_index.hpp>
 
@@ -22,7 +19,6 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Cell `a` relative to cell `b`.
 [[nodiscard]] inline LatticeCell cell_offset(const std::array<std::uint32_t, 3>& a,
                                              const std::array<std::uint32_t, 3>& b) noexcept {
   return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]),
@@ -59,7 +55,6 @@ class VoxelIndexBuilder {
  public:
   explicit VoxelIndexBuilder(VoxelIndex& index) noexcept : index_(index) {}
 
-  /// As the constructor of `VoxelIndex`.
   void build(const VoxelData& data, std::vector<std::uint32_t>& order) {
     const std::array<std::uint32_t, 3> least = place(data);
     const std::vector<Keyed> sorted = sorted_cells(data, least);
@@ -87,7 +82,6 @@ class VoxelIndexBuilder {
   }
 
  private:
-  /// Cell by its sort key.
   struct Keyed {
     std::uint64_t key;
     std::uint32_t number;
@@ -196,7 +190,6 @@ class VoxelIndexBuilder {
     index_.pyramid_ = SharedArray<std::uint64_t>(std::move(pyramid));
   }
 
-  /// Lower corner cell of a root.
   LatticeCell root_corner(std::uint64_t key) const noexcept {
     const LatticeCell c = unpacked_cell(key);
     return {c[0] << 2 * index_.height_, c[1] << 2 * index_.height_, c[2] << 2 * index_.height_};

@@ -11,8 +11,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/io/detail/copc/sampling.hpp>
-#include <pulsecast/io/detail/copc/sorting.hpp>
+#include <pulsecast/io/detail/copc/subtree.hpp>
 
 #include "support/generators.hpp"
 

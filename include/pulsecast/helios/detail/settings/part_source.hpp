@@ -44,12 +44,11 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path>
-      files{};                ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` are other formats
-  MaterialSource material{};  ///< that of pixels without a class
-  bool mosaic = false;        ///< true: the files are tiles of one raster. `mosaic`
-  std::filesystem::path classes{};       ///< raster of classes, which choose materials; empty: none. `classfile`
-  bool class_colours = false;            ///< true: its colour table colours the materials. `classcolours`
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, `efilepath`; `.asc` and `.png` tell other formats
+  MaterialSource material{};                   ///< that of pixels without a class
+  bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
+  std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
+  bool class_colours = false;                  ///< true: its colour table colours the materials. `classcolours`
   std::optional<double> height_scale{};  ///< metres per unit of height; by default that of the file [m]. `heightScale`
   double height_offset = 0;              ///< added to the heights [m]. `heightOffset`
   std::optional<double> missing{};       ///< number of missing heights; by default that of the file. `noDataValue`
@@ -119,8 +118,7 @@ struct MeshSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MeshUp up = MeshUp::file;                    ///< `up`
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
-  std::filesystem::path
-      materials{};  ///< MTL file whose materials replace those of the same names; empty: none. `materials`
+  std::filesystem::path materials{};  ///< MTL file whose materials replace those of the same names. `materials`
 
   void validate() const {
     if (unit) require_within("unit", *unit, 1e-9, 1e9, "m");

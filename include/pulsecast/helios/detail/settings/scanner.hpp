@@ -22,8 +22,7 @@ using pulsecast::KeptReturns;
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
-  double scan_product_max =
-      radians(1e6);  ///< maximum of half scan angle times scan frequency; `scanProduct` in deg Hz [rad/s]
+  double scan_product_max = radians(1e6);  ///< of half scan angle times frequency; `scanProduct` in deg Hz [rad/s]
 
   bool operator==(const OscillatingOptic&) const = default;
 };
@@ -91,8 +90,7 @@ struct ErrorFormulas {
   std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
   double head_zero_threshold = 0;  ///< minimum distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
   std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
-  std::string
-      range_noise{};  ///< factor of range noise, as a function of the range [m]; `distanceMeasurementError` in t
+  std::string range_noise{};       ///< factor of range noise, by the range [m]; `distanceMeasurementError` in t
 
   bool operator==(const ErrorFormulas&) const = default;
 };

@@ -238,8 +238,7 @@ struct SceneSettings {
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
   std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
-  std::vector<LightSettings>
-      light{};  ///< `<light>`: the first counts; none: every ray ends at its first surface, unless there are media
+  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; without it and media, rays end at surfaces
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
   /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as

@@ -182,8 +182,7 @@ class XmlDocument {
     const std::size_t odd = xml::first_not_utf8(text_);
     const bool is_utf8 =
         declared.empty() || declared == "utf-8" || declared == "utf8" || declared == "us-ascii" || declared == "ascii";
-    const bool is_ascii =
-        std::none_of(text_.begin(), text_.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+    const bool is_ascii = std::ranges::none_of(text_, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     if (is_ascii || (is_utf8 && odd == text_.size())) return;
     if (!is_utf8 && declared != "iso-8859-1" && declared != "latin1" && declared != "windows-1252" &&
         declared != "cp1252")

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -103,25 +102,20 @@ class XmlInput {
   }
 
   /// Reads a number; `low` and `high` are its limits, in the unit of the document.
-  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) {
-    if (const auto text = value(name))
-      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
-  }
-  void number(const char* name, std::optional<double>& number, const XmlUnit& unit, double low, double high) {
+  template <class Number>
+  void number(const char* name, Number& number, const XmlUnit& unit, double low, double high) {
     if (const auto text = value(name))
       if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
   }
 
   void whole(const char* name, int& number, int low, int high) {
-    if (const auto text = value(name)) {
-      const auto found = number_of(*text);
-      if (found && *found == std::floor(*found) && *found >= low && *found <= high) {
-        number = static_cast<int>(*found);
-      } else {
-        fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " +
-                        std::to_string(high));
-      }
-    }
+    const auto text = value(name);
+    const auto found = text ? number_of(*text) : std::nullopt;
+    if (found && *found == std::floor(*found) && *found >= low && *found <= high)
+      number = static_cast<int>(*found);
+    else if (text)
+      fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " +
+                      std::to_string(high));
   }
 
   void flag(const char* name, bool& flag) {
@@ -135,11 +129,9 @@ class XmlInput {
     warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
   }
 
-  void text(const char* name, std::string& value) {
+  template <class Text>
+  void text(const char* name, Text& value) {
     if (auto text = given(name)) value = *std::move(text);
-  }
-  void text(const char* name, std::optional<std::string>& value) {
-    if (auto text = given(name)) value = std::move(text);
   }
 
   /// Reads one of several words; case is ignored.
@@ -149,10 +141,7 @@ class XmlInput {
     if (!text) return;
     std::vector<std::string> known;
     for (const auto& [word, meaning] : words) {
-      if (text::is_same_word(word, *text)) {
-        chosen = meaning;
-        return;
-      }
+      if (text::is_same_word(word, *text)) return void(chosen = meaning);
       known.emplace_back(word);
     }
     fault(name, said(name, *text) + " is not known" + text::suggestion(*text, known));
@@ -232,10 +221,7 @@ class XmlInput {
 
   /// Reports attributes and children that were not requested.
   void finish() {
-    if (params_) {
-      finish_params();
-      return;
-    }
+    if (params_) return finish_params();
     for (const pugi::xml_attribute attribute : node_.attributes()) {
       const std::string_view name = attribute.name();
       if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name))

@@ -3,11 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
 
-#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>

@@ -109,9 +109,8 @@ class XmlOutput {
   }
   void warn(std::string_view /*name*/, std::string problem) { notes_.push_back(std::move(problem)); }
 
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept {
-    return notes_;
-  }  ///< of this element and those in it
+  /// Of this element and those in it.
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
   void require(std::initializer_list<const char*> /*names*/) {}

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include <pulsecast/helios/detail/formula.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -187,8 +187,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("averagePower_w", channel.average_power, units::watt, 1e-12, 1e9);
   io.number("beamQualityFactor", channel.beam_quality, units::one, 0.1, 1e3);
   if constexpr (Io::reads)
-    if (channel.beam_quality == 1.0)
-      channel.beam_quality.reset();  // the default of the format does not describe the instrument
+    if (channel.beam_quality == 1.0) channel.beam_quality.reset();  // the format's default says nothing
   io.number("wavelength_nm", channel.wavelength, units::nanometre, 100, 1e5);
   io.number("opticalEfficiency", channel.efficiency, units::one, 0, 1);
   io.number("receiverDiameter_m", channel.receiver_diameter, units::metre, 1e-6, 1e3);

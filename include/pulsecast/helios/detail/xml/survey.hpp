@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,7 +20,6 @@
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/detail/xml/file_name.hpp>
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
@@ -63,9 +61,8 @@ class SurveyReader {
       asset({&document_, node}, values.emplace_back());
   }
 
-  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept {
-    return leg_places_;
-  }                                                                           ///< per leg, of the survey
+  /// Per leg, of the survey.
+  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }
   [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< position of the survey
   [[nodiscard]] const XmlReport& report() const noexcept { return report_; }
 

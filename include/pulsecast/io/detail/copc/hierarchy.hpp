@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,8 +32,7 @@ class CopcHierarchy {
   /// `page_nodes` of a subtree that has no page of its own; at least one entry.
   CopcHierarchy(std::vector<CopcEntry> entries, std::size_t page_nodes)
       : entries_(std::move(entries)), page_nodes_(page_nodes) {
-    std::sort(entries_.begin(), entries_.end(),
-              [](const CopcEntry& a, const CopcEntry& b) { return copc_before(a.key, b.key); });
+    std::ranges::sort(entries_, [](const CopcEntry& a, const CopcEntry& b) { return copc_before(a.key, b.key); });
     ranges_.push_back({0, entries_.size()});
     for (std::size_t i = 0; i < ranges_.size(); ++i) list(ranges_[i]);  // ranges_ grows meanwhile
   }
@@ -81,7 +79,7 @@ class CopcHierarchy {
       std::size_t end = range.begin + 1;
       if (entry.key.level == below) {
         while (end < range.end && entries_[end].key.level > below)
-          ++end;  // those after it, before the next of its level, are below it
+          ++end;  // those after it, up to the next of its level
         if (end - range.begin > page_nodes_) {
           page.push_back({entry.key, ranges_.size(), 0, -1});  // the number of its page, for now
           ranges_.push_back({range.begin, end});

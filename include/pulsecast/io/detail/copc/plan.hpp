@@ -4,12 +4,10 @@
 #define PULSECAST_IO_DETAIL_COPC_PLAN_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/copc/octree.hpp>

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,7 +16,6 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>
-#include <pulsecast/io/detail/copc/sorting.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,10 +19,8 @@
 #include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/detail/copc/plan.hpp>
 #include <pulsecast/io/detail/copc/runs.hpp>
-#include <pulsecast/io/detail/copc/sampling.hpp>
-#include <pulsecast/io/detail/copc/sorting.hpp>
 #include <pulsecast/io/detail/copc/subtree.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/laz/chunk.hpp>
 #include <pulsecast/io/output_file.hpp>
 
@@ -52,9 +49,8 @@ class CopcTree {
   }
 
   [[nodiscard]] std::vector<CopcEntry>& entries() noexcept { return entries_; }  ///< nodes
-  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept {
-    return chunk_sizes_;
-  }  ///< of the chunks, in order [byte]
+  /// Of the chunks, in order [byte]
+  [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept { return chunk_sizes_; }
   [[nodiscard]] const std::vector<std::uint32_t>& points() const noexcept { return chunk_points_; }  ///< of the chunks
 
  private:

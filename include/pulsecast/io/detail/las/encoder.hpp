@@ -21,7 +21,6 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 

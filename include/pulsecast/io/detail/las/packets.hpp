@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -52,12 +51,10 @@ class LasPackets {
     spacing_ = spacing;
   }
 
-  [[nodiscard]] std::uint64_t position() const noexcept {
-    return file_.position();
-  }  ///< offset of the next packet [byte]
-  [[nodiscard]] std::uint32_t spacing() const noexcept {
-    return spacing_;
-  }  ///< interval of samples, 0 without packets [ps]
+  /// Offset of the next packet [byte]
+  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }
+  /// Interval of samples, 0 without packets [ps]
+  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }
 
   /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError` for more than
   /// `max_samples`, or an interval other than before or not of whole picoseconds.

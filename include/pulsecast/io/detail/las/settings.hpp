@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -13,11 +14,47 @@
 #include <string_view>
 #include <vector>
 
+#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/las/extras.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Extra value of each point, after the standard ones.
+struct LasExtra {
+  std::string_view name, description;
+  std::uint8_t type, size;  ///< type: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
+};
+
+inline constexpr std::array las_extras{
+    LasExtra{"Range", "from the instrument [m]", 10, 8},  // a float would err by 0.5 mm at 10 km
+    LasExtra{"Amplitude", "received power at peak [dB]", 9, 4},
+    LasExtra{"Reflectance", "re white Lambertian target [dB]", 9, 4},
+    LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
+    LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
+    LasExtra{"ObjectId", "number of the object met", 5, 4},
+    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless requested
+};
+
+// sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
+inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
+inline constexpr std::size_t las_extras_size = [] {
+  std::size_t size = 0;
+  for (const LasExtra& extra : las_extras) size += extra.size;
+  return size;
+}();
+
+/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, without a part of a UTF-8
+/// character.
+[[nodiscard]] constexpr std::string_view las_extra_name(std::string_view name) noexcept {
+  std::size_t size = name.size() > 31 ? 31 : name.size();
+  while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;
+  return name.substr(0, size);
+}
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -67,10 +104,9 @@ struct LasSettings {
   std::optional<double> intensity_full_scale =
       {};  ///< value stored as the maximum intensity, 65535, and clipped above; if empty, a reflectance of 1, or the
            ///< maximum amplitude of the file [W]
-  double intensity_range = 1;         ///< range that intensities are normalized to [m]
-  double amplitude_reference = 1e-9;  ///< reference power of amplitudes in dB [W]
-  std::optional<Date> created =
-      std::nullopt;  ///< date in the header; if empty, 0, so that equal surveys give equal bytes
+  double intensity_range = 1;                  ///< range that intensities are normalized to [m]
+  double amplitude_reference = 1e-9;           ///< reference power of amplitudes in dB [W]
+  std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0, for equal bytes of equal surveys
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
@@ -118,12 +154,55 @@ struct LasSettings {
         throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(),
                            static_cast<double>(name.size()), "bytes",
                            "above 0, and names that differ in their first 31 bytes from others and from Range, "
-                           "Amplitude, Reflectance, "
-                           "EchoWidth, PulseIndex, ObjectId, LightKind");
+                           "Amplitude, Reflectance, EchoWidth, PulseIndex, ObjectId, LightKind");
       known.push_back(cut);
     }
   }
 };
+
+namespace detail {
+
+/// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 to 9;
+/// LAS 1.0, Public Header Block, Point Data Start Signature.
+struct LasLayout {
+  explicit LasLayout(const LasSettings& s) noexcept
+      : legacy(s.format != LasFormat::las_1_4),
+        minor(s.format == LasFormat::las_1_0 ? 0 : 4),
+        format(legacy            ? (s.waveforms ? 4 : 1)
+               : s.waveforms     ? 9
+               : s.near_infrared ? 8
+               : s.colours       ? 7
+                                 : 6),
+        header(minor == 0 ? 227 : 375),
+        start_signature(minor == 0 ? 2 : 0),
+        colour(legacy ? 28 : 30),
+        colour_size(format == 7   ? 6
+                    : format == 8 ? 8
+                                  : 0),
+        packet(colour + colour_size),
+        extras(packet + (s.waveforms ? las_packet_size : 0)),
+        extra_count(las_extras.size() - (s.light_kinds ? 0 : 1)),
+        attributes(extras + las_extras_size - (s.light_kinds ? 0 : las_extras.back().size)),
+        attribute_count(s.attributes ? s.attributes->names().size() : 0),
+        max_returns(legacy ? 5 : 15),
+        max_class(legacy ? 31 : 255) {}
+
+  /// Size of a point [byte].
+  [[nodiscard]] std::size_t record() const noexcept { return attributes + sizeof(double) * attribute_count; }
+
+  bool legacy;                           ///< true for point formats older than version 1.4
+  std::uint8_t minor, format;            ///< version 1.`minor`, point format
+  std::size_t header;                    ///< size of the header [byte]
+  std::size_t start_signature;           ///< size of the signature between the last record and the first point [byte]
+  std::size_t colour, colour_size;       ///< offset and size of red, green, blue and near infrared in a point [byte]
+  std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
+  std::size_t extra_count;               ///< number of extra values of a point, without attributes
+  std::size_t attributes;                ///< offset of the attributes in a point [byte]
+  std::size_t attribute_count;           ///< number of attributes of a point
+  std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
+};
+
+}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE::io
 

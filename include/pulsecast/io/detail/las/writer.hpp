@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +19,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>

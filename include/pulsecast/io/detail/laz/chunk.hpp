@@ -16,9 +16,7 @@
 #include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/colour.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
-#include <pulsecast/io/detail/laz/median.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
-#include <pulsecast/io/detail/laz/time.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -69,8 +67,7 @@ class LazChunk {
     const LazPoint* before;  ///< last point of this channel, or of any if there is none
     bool new_time;           ///< true if the time differs from that of `before`
     std::uint8_t out;        ///< error of the prediction in x and y: mean number of bits
-    std::uint8_t
-        told;  ///< channel for extra bytes: in version 3, that of the point if other than the last point's, else 0
+    std::uint8_t told;       ///< channel for extra bytes: that of the point if other than the last point's, else 0
   };
 
   /// Models by channel, initialized with the point before the channel's first.

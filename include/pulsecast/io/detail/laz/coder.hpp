@@ -115,7 +115,7 @@ class LazEncoder {
   /// Bytes of all coded symbols; bytes after them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
     const std::uint32_t gap =
-        (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long, so it holds a number that ends in 24 zeros
+        (0U - base_) & 0xFFFFFFU;  // the interval, at least 2^24 long, has a number that ends in 24 zeros
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);

@@ -35,8 +35,7 @@ class LazColours {
 
   void encode(LazEncoder& encoder, const Value& before, const Value& now) {
     std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
-    unsigned changed =
-        0;  // a bit for each byte: low and high of red, green and blue; one more for colours that are not grey
+    unsigned changed = 0;  // a bit a byte: low and high of red, green and blue; one more if not grey
     for (std::size_t c = 0; c < 3; ++c) {
       old[c] = laz_halves(before[c]);
       next[c] = laz_halves(now[c]);

@@ -4,14 +4,44 @@
 #define PULSECAST_IO_DETAIL_LAZ_INTEGERS_HPP
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/io/detail/laz/coder.hpp>
 
+/// Coders of the numbers of a LAZ file.
 namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the
+/// median. From then on it replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1
+/// (median of five).
+class LazMedian {
+ public:
+  [[nodiscard]] std::int32_t value() const noexcept { return sorted_[2]; }
+
+  void add(std::int32_t number) noexcept {
+    const std::int32_t middle = value();
+    if (drop_greatest_) {
+      sorted_[4] = number;
+      for (std::size_t i = 4; i > 0 && sorted_[i] < sorted_[i - 1]; --i) std::swap(sorted_[i], sorted_[i - 1]);
+      drop_greatest_ = number < middle;
+    } else {
+      sorted_[0] = number;
+      for (std::size_t i = 0; i < 4 && sorted_[i + 1] < sorted_[i]; ++i) std::swap(sorted_[i], sorted_[i + 1]);
+      drop_greatest_ = number <= middle;
+    }
+  }
+
+ private:
+  std::array<std::int32_t, 5> sorted_{};
+  bool drop_greatest_ = true;
+};
 
 /// Coder of integers as corrections to a prediction. First comes the bit length of the correction, by a model for each
 /// context, then its rank among corrections of that length, with its highest eight bits modelled. Source: Isenburg
@@ -53,6 +83,96 @@ class LazIntegers {
   std::vector<LazModel<33>> lengths_;
   LazBitModel zero_or_one_;
   std::vector<LazModel<>> corrections_;  // by length, from 1
+};
+
+/// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its
+/// last time and usual step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+class LazTimes {
+ public:
+  explicit LazTimes(std::int64_t first) { last_[0] = first; }
+
+  void encode(LazEncoder& encoder, std::int64_t time) {
+    if (!near(time, series_)) {
+      for (std::size_t k = 1; k < 4; ++k)
+        if (const std::size_t other = (series_ + k) % 4; near(time, other)) {
+          change_series(encoder, k);
+          series_ = other;
+          return go_on(encoder, time);
+        }
+      return begin_series(encoder, time);
+    }
+    go_on(encoder, time);
+  }
+
+ private:
+  /// Symbols of a step as a multiple of the usual one: 0 to 499, at least 500, -9 to -1, at most -10; or a new series.
+  static constexpr int most = 500, least = -10, new_series = most - least + 1;
+  static constexpr int symbols = new_series + 4;  // plus the three other series
+
+  [[nodiscard]] std::int64_t step_to(std::int64_t time, std::size_t series) const noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - static_cast<std::uint64_t>(last_[series]));
+  }
+  [[nodiscard]] bool near(std::int64_t time, std::size_t series) const noexcept {
+    const std::int64_t step = step_to(time, series);
+    return step == static_cast<std::int32_t>(step);
+  }
+
+  void change_series(LazEncoder& encoder, std::size_t k) {
+    if (usual_[series_] == 0)
+      encoder.encode(first_steps_, 1 + k);
+    else
+      encoder.encode(multiples_, new_series + k);
+  }
+
+  void begin_series(LazEncoder& encoder, std::int64_t time) {
+    change_series(encoder, 0);
+    const auto high = [](std::int64_t bits) { return static_cast<std::int32_t>(bits >> 32); };
+    steps_.encode(encoder, high(last_[series_]), high(time), 8);
+    encoder.encode_bits(static_cast<std::uint32_t>(time), 32);
+    series_ = newest_ = (newest_ + 1) % 4;
+    last_[series_] = time;
+    usual_[series_] = 0;
+    unusual_[series_] = 0;
+  }
+
+  void go_on(LazEncoder& encoder, std::int64_t time) {
+    const auto step = static_cast<std::int32_t>(step_to(time, series_));
+    last_[series_] = time;
+    std::int32_t& usual = usual_[series_];
+    if (usual == 0) {
+      encoder.encode(first_steps_, 0);
+      steps_.encode(encoder, 0, step, 0);
+      usual = step;
+      unusual_[series_] = 0;
+      return;
+    }
+    const double ratio = static_cast<double>(step) / usual;
+    const int multiple = static_cast<int>(std::lround(std::fmin(std::fmax(ratio, least), most)));
+    encoder.encode(multiples_, static_cast<std::size_t>(multiple >= 0 ? multiple : most - multiple));
+    const auto expected =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(usual));
+    steps_.encode(encoder, expected, step, context_of(multiple));
+    if (multiple == 1) unusual_[series_] = 0;
+    if (multiple != 0 && multiple != least && multiple != most) return;
+    if (++unusual_[series_] <= 3) return;
+    usual = step;
+    unusual_[series_] = 0;
+  }
+
+  [[nodiscard]] static constexpr std::size_t context_of(int multiple) noexcept {
+    if (multiple == 1) return 1;
+    if (multiple > 0) return multiple < 10 ? 2 : multiple < most ? 3 : 4;
+    if (multiple < 0) return multiple > least ? 5 : 6;
+    return 7;
+  }
+
+  LazModel<5> first_steps_;  // without a usual step: a step, a new series, one of the others
+  LazModel<symbols> multiples_;
+  LazIntegers steps_{32, 9};
+  std::array<std::int64_t, 4> last_{};
+  std::array<std::int32_t, 4> usual_{};
+  std::array<unsigned, 4> unusual_{};  // steps nearly in a row that were unlike the usual one
+  std::size_t series_ = 0, newest_ = 0;
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -6,13 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <tiny_obj_loader.h>

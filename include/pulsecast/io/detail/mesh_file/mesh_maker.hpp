@@ -16,7 +16,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Meshes of the library from those of a file.
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -12,7 +12,6 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/part.hpp>
@@ -40,8 +39,7 @@ struct ImportLimits {
 struct MeshFileSettings {
   /// Vertical axis; by default by the file: y in glTF and GLB, as named in DAE and FBX, z in others.
   std::optional<UpAxis> up = std::nullopt;
-  std::optional<double> unit =
-      std::nullopt;  ///< size of a unit; by default by the file: as named in DAE and FBX, 1 in others [m]
+  std::optional<double> unit = std::nullopt;  ///< size of a unit; by default as named in DAE and FBX, 1 in others [m]
   /// MTL file whose materials replace those of the same names but for their colours, with spectra, classes and ground;
   /// empty: none.
   std::filesystem::path materials{};
@@ -72,8 +70,7 @@ struct FileMesh {
 struct MeshPlacement {
   std::size_t mesh = 0;   ///< number of the mesh
   Placement placement{};  ///< from the mesh to the world: z up, in metres
-  std::string
-      name{};  ///< names of the node and those above it, but for the root, joined by `/`; else that of the mesh or file
+  std::string name{};     ///< names of the node and those above it, joined by `/`; else that of the mesh or file
 };
 
 /// Content of a mesh file.

@@ -3,9 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 

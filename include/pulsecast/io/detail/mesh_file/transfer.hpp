@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/child_process.hpp>
@@ -20,99 +19,64 @@
 /// Transfer of the data read by a child process to its parent.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-inline void hand_over(ChildOutput& to, const RawPicture& picture) {
-  to.text(picture.name);
-  to.value(picture.embedded);
+/// Writes a picture to a `ChildOutput`, or reads it from a `ChildResult`.
+template <class Io>
+void hand_over(Io& io, RawPicture& picture) {
+  io.text(picture.name);
+  io.value(picture.embedded);
 }
 
-inline void hand_over(ChildOutput& to, const RawScene& scene) {
-  to.value(std::uint64_t{scene.meshes.size()});
-  for (const RawMesh& mesh : scene.meshes) {
-    to.text(mesh.name);
-    to.value(mesh.material);
-    to.array(mesh.vertices);
-    to.array(mesh.precise);
-    to.array(mesh.triangles);
-    to.array(mesh.texture);
-  }
-  to.value(std::uint64_t{scene.nodes.size()});
-  for (const RawNode& node : scene.nodes) {
-    to.text(node.name);
-    to.value(node.place);
-    to.array(std::span<const std::uint32_t>(node.meshes));
-  }
-  to.value(std::uint64_t{scene.materials.size()});
-  for (const RawMaterial& material : scene.materials) {
-    to.text(material.name);
-    to.value(material.optics);
-    hand_over(to, material.colour);
-    hand_over(to, material.opacity);
-  }
-  to.value(std::uint64_t{scene.embedded.size()});
-  for (const auto& picture : scene.embedded) to.array(std::span<const std::byte>(*picture));
-  for (const auto* const texts : {&scene.warnings, &scene.files}) {
-    to.value(std::uint64_t{texts->size()});
-    for (const std::string& text : *texts) to.text(text);
-  }
-  to.value(scene.unit);
-  to.value(scene.applied_unit);
-  to.value(scene.upright);
-  to.text(scene.reference);
+/// As above, a scene.
+template <class Io>
+void hand_over(Io& io, RawScene& scene) {
+  io.items(scene.meshes, [&](RawMesh& mesh) {
+    io.text(mesh.name);
+    io.value(mesh.material);
+    io.array(mesh.vertices);
+    io.array(mesh.precise);
+    io.array(mesh.triangles);
+    io.array(mesh.texture);
+  });
+  io.items(scene.nodes, [&](RawNode& node) {
+    io.text(node.name);
+    io.value(node.place);
+    io.items(node.meshes, [&](std::uint32_t& mesh) { io.value(mesh); });
+  });
+  io.items(scene.materials, [&](RawMaterial& material) {
+    io.text(material.name);
+    io.value(material.optics);
+    hand_over(io, material.colour);
+    hand_over(io, material.opacity);
+  });
+  io.items(scene.embedded, [&](std::shared_ptr<const std::vector<std::byte>>& picture) {
+    std::span<const std::byte> bytes;
+    if (picture) bytes = *picture;
+    io.array(bytes);
+    if (!picture) picture = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
+  });
+  for (auto* const texts : {&scene.warnings, &scene.files}) io.items(*texts, [&](std::string& text) { io.text(text); });
+  io.value(scene.unit);
+  io.value(scene.applied_unit);
+  io.value(scene.upright);
+  io.text(scene.reference);
 }
 
-[[nodiscard]] inline RawPicture taken_picture(ChildResult& from) {
-  RawPicture picture{.name = from.text()};
-  picture.embedded = from.value<std::int64_t>();
-  return picture;
-}
-
-/// Mesh whose indices are right.
-[[nodiscard]] inline RawMesh taken_mesh(ChildResult& from) {
-  RawMesh mesh{.name = from.text()};
-  mesh.material = from.value<std::uint32_t>();
-  mesh.vertices = from.array<Float3>();
-  mesh.precise = from.array<Vec3>();
-  mesh.triangles = from.array<Corners3>();
-  mesh.texture = from.array<Float3>();
-  if (!mesh.texture.empty() && mesh.texture.size() != mesh.vertex_count()) from.fail();
-  for (const Corners3& corners : mesh.triangles)
-    for (const std::uint32_t corner : corners)
-      if (corner >= mesh.vertex_count()) from.fail();
-  return mesh;
-}
-
+/// Scene from a child, whose indices are right.
 [[nodiscard]] inline RawScene taken_over(ChildResult from) {
   RawScene scene;
-  for (auto left = from.count(); left > 0; --left) scene.meshes.push_back(taken_mesh(from));
-  for (auto left = from.count(); left > 0; --left) {
-    RawNode& node = scene.nodes.emplace_back();
-    node.name = from.text();
-    node.place = from.value<Affine>();
-    const auto meshes = from.array<std::uint32_t>();
-    node.meshes.assign(meshes.begin(), meshes.end());
+  hand_over(from, scene);
+  for (const RawMesh& mesh : scene.meshes) {
+    if (!mesh.texture.empty() && mesh.texture.size() != mesh.vertex_count()) from.fail();
+    if (mesh.material >= scene.materials.size()) from.fail();
+    for (const Corners3& corners : mesh.triangles)
+      for (const std::uint32_t corner : corners)
+        if (corner >= mesh.vertex_count()) from.fail();
+  }
+  for (const RawNode& node : scene.nodes) {
+    if (node.meshes.empty()) from.fail();
     for (const std::uint32_t mesh : node.meshes)
       if (mesh >= scene.meshes.size()) from.fail();
-    if (node.meshes.empty()) from.fail();
   }
-  for (auto left = from.count(); left > 0; --left) {
-    RawMaterial& material = scene.materials.emplace_back();
-    material.name = from.text();
-    material.optics = from.value<RawOptics>();
-    material.colour = taken_picture(from);
-    material.opacity = taken_picture(from);
-  }
-  for (const RawMesh& mesh : scene.meshes)
-    if (mesh.material >= scene.materials.size()) from.fail();
-  for (auto left = from.count(); left > 0; --left) {
-    const auto bytes = from.array<std::byte>();
-    scene.embedded.push_back(std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end()));
-  }
-  for (auto* const texts : {&scene.warnings, &scene.files})
-    for (auto left = from.count(); left > 0; --left) texts->push_back(from.text());
-  scene.unit = from.value<double>();
-  scene.applied_unit = from.value<double>();
-  scene.upright = from.value<Matrix3>();
-  scene.reference = from.text();
   scene.owner = from.owner();
   return scene;
 }
@@ -130,7 +94,10 @@ template <class Import>
   return taken_over(ChildProcess::result(path.string(),
                                          {.memory = limits.memory + (ignored ? 0 : limits.memory_per_byte * size),
                                           .time = limits.time + (ignored ? 0 : limits.time_per_byte * size)},
-                                         [&](ChildOutput& output) { hand_over(output, import(opened)); }));
+                                         [&](ChildOutput& output) {
+                                           RawScene scene = import(opened);
+                                           hand_over(output, scene);
+                                         }));
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

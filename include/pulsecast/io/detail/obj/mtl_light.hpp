@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -62,8 +61,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
         numbers_from(words, std::min<std::size_t>(words.size(), 2), 0, 3, 0, 1e6);
     return right ? nullptr
                  : "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering "
-                   "and backscatter "
-                   "from 0";
+                   "and backscatter from 0";
   }
   if (key == "pulsecast_water") {
     const bool right =
@@ -80,8 +78,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
                         numbers_from(words, 2, 0, 1, 0, 0.1));
     return right ? nullptr
                  : "beads, cubeCorner, or prisms and their index from 1 to 4, and then, if given, the half width of "
-                   "the light from 0 to "
-                   "0.1 rad";
+                   "the light from 0 to 0.1 rad";
   }
   return nullptr;
 }

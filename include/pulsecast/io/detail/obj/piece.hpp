@@ -114,9 +114,8 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
-  std::vector<std::size_t>
-      without_place;            ///< by index into `uses`: corners without texture coordinates, if they are read
-  std::vector<Note> crossings;  ///< polygons whose outline crosses itself
+  std::vector<std::size_t> without_place;    ///< by index into `uses`: corners without texture coordinates
+  std::vector<Note> crossings;               ///< polygons whose outline crosses itself
   std::optional<Note> first_unknown, first_flat;
   std::size_t unknown = 0, flat = 0;
   std::size_t open_line = 0;  ///< line of a last statement without end; 0 if there is none
@@ -143,8 +142,7 @@ class ObjPiece : private StatementBuffer {
       add_flat(line());
       return;
     } else if (keyword() == "f") {
-      require(std::all_of(given.begin(), given.end(), is_corner),
-              "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
+      require(std::ranges::all_of(given, is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl" && given.empty()) {
       uses.push_back({"default", line(), std::nullopt});

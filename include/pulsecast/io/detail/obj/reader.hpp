@@ -25,7 +25,7 @@
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Reading of OBJ files.
 namespace PULSECAST_NAMESPACE::io {
@@ -75,8 +75,7 @@ class ObjReader {
       for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
     });
     std::vector<Vec3>& vertices = model_.mesh.vertices;
-    std::vector<std::size_t> before,
-        places_before;  // number of vertices, and of texture coordinates, before each piece
+    std::vector<std::size_t> before, places_before;  // vertices and texture coordinates before each piece
     for (const auto& piece : pieces) {
       before.push_back(vertices.size());
       places_before.push_back(places_.size());
@@ -193,8 +192,7 @@ class ObjReader {
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
   std::optional<Note> first_unknown_, first_flat_;
   std::size_t unknown_ = 0, flat_ = 0;
-  std::map<std::string, std::size_t>
-      without_place_;  // corners without texture coordinates, if they are read, by material
+  std::map<std::string, std::size_t> without_place_;  // corners without texture coordinates, by material
   std::size_t open_line_ = 0;
 };
 

@@ -101,9 +101,8 @@ class StatementBuffer : public std::streambuf {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::size_t line() const { return line_; }   ///< first line of the current statement, from 1
   [[nodiscard]] bool line_is_open() const { return open_; }  ///< true for a last line without end
-  [[nodiscard]] const std::string& statement() const {
-    return statement_;
-  }  ///< current statement, with one blank after the keyword
+  /// Current statement, with one blank after the keyword.
+  [[nodiscard]] const std::string& statement() const { return statement_; }
   [[nodiscard]] std::string_view keyword() const {
     return std::string_view(statement_).substr(0, statement_.find(' '));
   }

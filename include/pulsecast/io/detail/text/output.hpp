@@ -7,17 +7,96 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/row.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
+
+/// Row of a text table: numbers with a separator between, a blank by default, independent of the locale.
+class TextRow {
+ public:
+  explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
+
+  /// Adds a number in the shortest form that reads back the same; zero has no sign.
+  TextRow& add(double value) { return append(text::to_text(value == 0 ? 0 : value)); }
+
+  /// Adds a number in fixed notation, rounded to nearest; zero and NaN have no sign.
+  TextRow& add(double value, int decimals) {
+    if (std::isnan(value)) return append("nan");
+    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as the general case
+      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)],
+                   units = size * unit;
+      if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
+    }
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // of the longest number
+    const auto [end, error] =
+        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
+    std::string_view text(digits.data(), end);
+    if (text.find_first_not_of("-0.") == std::string_view::npos && text.front() == '-') text.remove_prefix(1);
+    return append(text);
+  }
+
+  template <std::integral Integer>
+  TextRow& add(Integer value) {
+    std::array<char, std::numeric_limits<Integer>::digits10 + 3> digits;
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return append({digits.data(), end});
+  }
+
+  /// Adds a word, which must not contain the separator.
+  TextRow& add(std::string_view word) { return append(word); }
+
+  /// Row with line end, valid until the next `add`, which begins a new row.
+  [[nodiscard]] std::string_view end() {
+    text_ += '\n';
+    ended_ = true;
+    return text_;
+  }
+
+ private:
+  static constexpr std::array powers_of_ten{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error decides ties, and
+  /// exact ties go to even, so the digits are those of the exact product.
+  TextRow& append_units(bool negative, double size, double unit, double units, int decimals) {
+    const double below = std::floor(units), over_half = (units - below - 0.5) + std::fma(size, unit, -units);
+    auto whole = static_cast<std::uint64_t>(below);
+    if (over_half > 0 || (over_half == 0 && whole % 2 == 1)) ++whole;
+    std::array<char, 24> digits;
+    char* const end = digits.data() + digits.size();
+    char* at = end;
+    const bool signed_text = negative && whole != 0;
+    for (int i = 0; i < decimals; ++i, whole /= 10) *--at = static_cast<char>('0' + whole % 10);
+    if (decimals > 0) *--at = '.';
+    do {
+      *--at = static_cast<char>('0' + whole % 10);
+      whole /= 10;
+    } while (whole != 0);
+    if (signed_text) *--at = '-';
+    return append({at, end});
+  }
+
+  TextRow& append(std::string_view text) {
+    if (ended_) text_.clear();
+    if (!text_.empty()) text_ += separator_;
+    text_ += text;
+    ended_ = false;
+    return *this;
+  }
+
+  char separator_;
+  std::string text_;
+  bool ended_ = false;
+};
 
 /// Text table under construction, row by row. The file may be a compressing one: see `gzip_file`.
 class TextOutput {

@@ -12,8 +12,6 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/cells.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -15,8 +15,8 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/cells.hpp>
 #include <pulsecast/io/detail/text/point_columns.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -53,9 +53,8 @@ class TextPoints {
     return false;
   }
 
-  [[nodiscard]] Vec3 position() const {
-    return vector(columns_.position);
-  }  ///< of the current point, in coordinates of the file
+  /// Of the current point, in coordinates of the file.
+  [[nodiscard]] Vec3 position() const { return vector(columns_.position); }
   [[nodiscard]] bool has_normals() const noexcept { return columns_.normal.has_value(); }
   [[nodiscard]] Vec3 normal() const { return vector(*columns_.normal); }
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
@@ -75,9 +74,8 @@ class TextPoints {
  private:
   using Columns = PointColumns::Columns;
 
-  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept {
-    return cells_.cells();
-  }  ///< of the current row
+  /// Of the current row.
+  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }
 
   void note(const std::string& oddity) {
     notes_.push_back(text::joined({file_.path(), ", line ", std::to_string(file_.line()), ": ", oddity}));

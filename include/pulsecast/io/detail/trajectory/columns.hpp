@@ -158,8 +158,7 @@ class TrajectoryColumns {
   TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
     for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
       const auto same = [&](const std::string& other) { return detail::plain(other) == detail::plain(names[i]); };
-      columns_.push_back(std::any_of(left_out.begin(), left_out.end(), same) ? std::nullopt
-                                                                             : trajectory_column(names[i], angles));
+      columns_.push_back(std::ranges::any_of(left_out, same) ? std::nullopt : trajectory_column(names[i], angles));
       if (columns_.back())
         put(i);
       else if (std::none_of(left_out.begin(), left_out.end(), same)) {

@@ -44,18 +44,6 @@ struct TrajectoryTable {
   std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
-///
-/// Warnings:
-/// - poses out of order, which are sorted; repeated poses, which are left out;
-/// - different poses at one time within the window, which are a jump from the first in the file to the last;
-/// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
-///
-/// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
-[[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path,
-                                              const TrajectoryFormat& format = csv_format(),
-                                              const TimeWindow& window = {});
-
 namespace detail {
 
 inline constexpr double max_in_trajectory = 1e12;  ///< [s, m or rad]; at this size a double resolves about 0.1 mm
@@ -328,8 +316,17 @@ class TrajectoryReader {
 
 }  // namespace detail
 
-inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format,
-                                       const TimeWindow& window) {
+/// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
+///
+/// Warnings:
+/// - poses out of order, which are sorted; repeated poses, which are left out;
+/// - different poses at one time within the window, which are a jump from the first in the file to the last;
+/// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
+///
+/// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
+[[nodiscard]] inline TrajectoryTable read_trajectory(const std::filesystem::path& path,
+                                                     const TrajectoryFormat& format = csv_format(),
+                                                     const TimeWindow& window = {}) {
   return reading(path, [&] { return detail::TrajectoryReader(path, format).read(window); });
 }
 

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/material/surface_law.hpp>
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/material/material.hpp>
+#include <pulsecast/material/normalized_phong.hpp>
+#include <pulsecast/material/retroreflector.hpp>
+#include <pulsecast/material/tabulated.hpp>
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+constexpr double nir = 1.064e-6;
+}
+
+namespace {
+
+/// User-defined law that takes the wavelength alone.
+struct Snow {
+  double albedo = 0.9;
+  double backscatter(double cosine, double wavelength) const noexcept { return albedo * cosine * wavelength / nir; }
+  double scattered_share(double, double) const noexcept { return albedo; }
+};
+
+}  // namespace
+
+TEST_CASE("a user-defined law is called as it is, whatever the reflectance of its material") {
+  const Material m{.reflectance = 0.1, .law = Snow{}};
+  CHECK(m.backscatter(0.5, nir) == 0.45);
+  CHECK(m.backscatter(0.5, 2 * nir) == 0.9);
+  CHECK(m.scattered_share(nir, 0.5) == 0.9);
+  REQUIRE(m.law.get<Snow>());
+  CHECK(m.law.get<Snow>()->albedo == 0.9);
+  CHECK_FALSE(m.law.get<Lambert>());
+  CHECK_FALSE(m.law.model()->scatters_between);
+}
+
+TEST_CASE("the linear laws have no model, and are told apart") {
+  CHECK_FALSE(SurfaceLaw{}.model());
+  CHECK(SurfaceLaw{}.get<Lambert>());
+  CHECK_FALSE(SurfaceLaw{}.get<DirectionIndependent>());
+  CHECK(SurfaceLaw{DirectionIndependent{}}.get<DirectionIndependent>());
+  CHECK_FALSE(SurfaceLaw{DirectionIndependent{}}.get<Lambert>());
+}
+
+TEST_CASE("lanes have the backscatter of one, by every law") {
+  const Material laws[]{{.law = NormalizedPhong{0.4, 12.5}},
+                        {.law = Retroreflector<>{200}},
+                        {.law = Snow{}},
+                        {.law = Tabulated{SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}}};
+  for (const Material& m : laws) {
+    const Backscatter law = m.backscatter(nir);
+    for (double cosine = 0; cosine < 0.9; cosine += 0.01) {
+      const simd::Doubles cosines =
+          simd::generate([&](std::size_t lane) { return cosine + 0.02 * static_cast<double>(lane); });
+      const simd::Doubles all = law(cosines);
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) CHECK(all[lane] == law(cosines[lane]));
+    }
+  }
+}
