@@ -276,7 +276,7 @@ TEST_CASE("the diameter of a uniform number is the inverse of the cumulative dis
       REQUIRE(d > p.diameter_min);
       REQUIRE(d < p.diameter_max);
       Precipitation part = p;
-      part.most = d;
+      part.diameter_max = d;
       REQUIRE(part.number() == relative(u * p.number(), 1e-9));
     }
   }
