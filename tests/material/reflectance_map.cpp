@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 

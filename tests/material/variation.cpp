@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/material/variation.hpp>
 
 #include <algorithm>
@@ -15,8 +16,7 @@ using namespace pulsecast;
 using namespace pulsecast::support;
 
 TEST_CASE("variants fill the range evenly, keep the rest of the material, and can be made again") {
-  const Material leaf{
-      .name = "leaf", .reflectance = 0.5, .law = Phong{0.2}, .classification = 5};
+  const Material leaf{.name = "leaf", .reflectance = 0.5, .law = Phong{0.2}, .classification = 5};
   const std::vector<Material> variants = vary_reflectance(leaf, 10'000, 0.2, 7);
   REQUIRE(variants.size() == 10'000);
   CHECK(variants[0].name == "leaf 1");

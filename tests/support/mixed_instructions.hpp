@@ -12,6 +12,7 @@
 
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 /// The same survey from files that are compiled with other flags or macros, in one program.

@@ -45,9 +45,9 @@ std::string scattering_laws(const Law& law, const ScatteringExceptions& except =
     if (law.backscatter(cosine, wavelength) != back) return "backscatter is not pure";
   }
   if constexpr (ScattersBetween<Law>) {
-    const Vec3 normal = random.direction();
+    const Vec3 normal = random.unit();
     const auto outside = [&] {
-      const Vec3 d = random.direction();
+      const Vec3 d = random.unit();
       return dot(d, normal) < 0 ? -d : d;
     };
     for (int k = 0; k < 1000; ++k) {
@@ -69,7 +69,7 @@ std::string scattering_laws(const Law& law, const ScatteringExceptions& except =
     }
   }
   if constexpr (SamplesDirections<Law>) {
-    const Vec3 normal = random.direction();
+    const Vec3 normal = random.unit();
     const Vec3 in = normal;
     double area = 0;
     constexpr int n = 512;

@@ -16,6 +16,7 @@
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/scanner/scanner.hpp>

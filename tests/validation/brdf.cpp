@@ -12,6 +12,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
@@ -46,8 +47,7 @@ TEST_CASE("Lambert against incidence") {
 }
 
 TEST_CASE("Phong against incidence") {
-  const Material phong{
-      .reflectance = 0.5, .law = Phong{0.3, 10}};
+  const Material phong{.reflectance = 0.5, .law = Phong{0.3, 10}};
   for (const double angle_deg : {0.0, 20.0, 45.0, 60.0, 80.0}) {
     const double a = radians(angle_deg);
     // Source: Jutzi & Gross 2009; the lobe ends 90 degrees from the mirror direction

@@ -15,6 +15,7 @@
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/phong.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
 
@@ -72,8 +73,7 @@ TEST_CASE("the peer's received power, without its factor of pi, with its extinct
 }
 
 TEST_CASE("the peer's Phong, as far as its lobe reaches") {
-  const Material phong{
-      .reflectance = 0.5, .law = Phong{0.3, 10}};
+  const Material phong{.reflectance = 0.5, .law = Phong{0.3, 10}};
   struct Case {
     double angle_deg, factor;
   };
