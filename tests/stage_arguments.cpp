@@ -36,17 +36,6 @@ static_assert(!detail::Surveyable<Carried, Device, LeastRayTarget&, LeastDetecto
 static_assert(!detail::Surveyable<Carried, LeastFootprint, LeastGeometry&, LeastDetector>);
 static_assert(!detail::Surveyable<Carried, LeastFootprint, LeastRayTarget&, LeastOptic>);
 
-struct Throwing {
-  int at(Tick) const { return 1; }
-};
-struct Stepping {
-  int at(Tick) noexcept { return 1; }
-};
-static_assert(detail::PosedConst<LeastOptic> && detail::PosedNoexcept<LeastOptic>);
-static_assert(detail::PosedConst<Throwing> && !detail::PosedNoexcept<Throwing>);
-static_assert(!detail::PosedConst<Stepping>);
-static_assert(detail::PosedConst<Beams> && detail::PosedNoexcept<Beams>, "without a pose there is no fault in it");
-
 using OwnSurvey = Survey<Carried, LeastFootprint, LeastRayTarget, LeastDetector>;
 using Units = std::vector<ReceiverUnit<LeastFootprint, LeastDetector>>;
 static_assert(

@@ -36,7 +36,7 @@ template <class AnyMesh>
     const auto first = static_cast<std::uint32_t>(data.vertices.size());
     data.vertices.insert(data.vertices.end(), {t.a, t.b, t.c});
     data.triangles.push_back({first, first + 1, first + 2});
-    data.materials.push_back(mesh.surface(i, RayBundle{}, 0).material);
+    data.materials.push_back(mesh.surface(i, RayBundle{}, 0).material_index);
   }
   return data;
 }

@@ -65,7 +65,7 @@ TEST_CASE("a mesh is met where its triangles are") {
   const SurfaceInteraction surface = mesh.surface(0, rays, 0);
   CHECK(surface.normal == axis::up);
   CHECK(surface.material_index == 3);
-  CHECK(mesh.surface(1, rays, 1).material == 1);
+  CHECK(mesh.surface(1, rays, 1).material_index == 1);
 }
 
 TEST_CASE("a ray at the edge of two triangles meets the first") {

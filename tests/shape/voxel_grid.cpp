@@ -227,7 +227,7 @@ TEST_CASE("from inside a cube that has a neighbour, the neighbour is met where i
   const RayBundle rays = bundle_of({{0.25, 0.5, 0.5}, axis::right});
   const ClosestHits nearest = met(grid, rays);
   CHECK(nearest.range[0] == 0.75);
-  CHECK(grid.surface(nearest.primitive_of(0), rays, 0).material == 1);
+  CHECK(grid.surface(nearest.primitive_of(0), rays, 0).material_index == 1);
   CHECK(!grid.surface(nearest.primitive_of(0), rays, 0).foliage);
   CHECK(grid.material_count() == 3);
   CHECK(range(grid, {{2.25, 0.5, 0.5}, axis::right}) == 0.75);

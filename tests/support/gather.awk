@@ -15,6 +15,7 @@ FNR == 1 { source = FILENAME; sources[++count] = source }
   sub(/^namespace [a-z_:]+/, "&::gathered_" count)
   inside[source] = 1
 }
+/^namespace PULSECAST_NAMESPACE/ { inside[source] = 1 }  # macros of the library expand in its own namespace only
 { text[source] = text[source] $0 "\n" }
 END {
   for (i = 1; i <= count; ++i) {

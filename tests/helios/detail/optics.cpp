@@ -130,7 +130,7 @@ TEST_CASE("fibres stand at the lower ends of equal shares of the scan angle") {
 
 TEST_CASE("a Palmer mirror turns as often as the leg asks for, on from where the leg before left it") {
   const SurveyOptic optic =
-      survey_optic(channel(ConicOptic{}, 20), {.scan_rate = 10, .scan_angle = radians(15)}, rate, no_rotation, {0.025});
+      survey_optic(channel(ConicOptic{}, 20), {.scan_rate = 10, .scan_angle = radians(15)}, rate, no_rotation, 0.025);
   const Vec3 d = optic.at({}).direction(axis::forward);  // a quarter of a turn on
   CHECK(d.x == relative(std::sin(radians(15)), 1e-9));
   CHECK(std::fabs(d.z) < 1e-9);
