@@ -144,6 +144,13 @@ struct StaggeredBundle : RayBundle {
   return rays;
 }
 
+namespace detail {
+/// A range, or minus infinity for NaN.
+[[nodiscard]] inline double limit_of(double range) noexcept {
+  return range > -std::numeric_limits<double>::infinity() ? range : -std::numeric_limits<double>::infinity();
+}
+}  // namespace detail
+
 /// Closest hit so far of each ray of a bundle, or of a single ray. At exactly equal range the smallest id wins.
 template <std::size_t capacity>
 struct Closest {
@@ -189,16 +196,14 @@ struct Closest {
   /// Largest range at which any ray can still find a closer hit [m]; minus infinity for NaN.
   template <class Rays>
   [[nodiscard]] double limit(const Rays& rays) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double one = range[0] > -infinity ? range[0] : -infinity;
-    if constexpr (capacity > 1) {
-      if (rays.size == 1) return one;
-      simd::Doubles last = simd::Doubles{} - infinity;
-      for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
-        last = simd::max(simd::load<simd::Doubles>(range[j]), last);
-      return simd::max(last);
-    }
-    return one;
+    if constexpr (capacity > 1)
+      if (rays.size != 1) {
+        simd::Doubles last = simd::Doubles{} - std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
+          last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+        return simd::max(last);
+      }
+    return detail::limit_of(range[0]);
   }
 
  private:

@@ -62,13 +62,6 @@ struct SingleRayPacket {
   return rays;
 }
 
-namespace detail {
-/// A range, or minus infinity for NaN.
-[[nodiscard]] inline double limit_of(double range) noexcept {
-  return range > -std::numeric_limits<double>::infinity() ? range : -std::numeric_limits<double>::infinity();
-}
-}  // namespace detail
-
 /// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
 struct AnyHit {
   double far;              ///< greatest range that counts [m]; minus infinity after the first hit
