@@ -27,6 +27,8 @@ struct Hit {
       1;  ///< reflectance times the angular law, cosine included: 1 for a white Lambertian surface at normal incidence
   ObjectId object = 0;               ///< number of the object hit
   std::uint16_t classification = 0;  ///< class of the material hit
+  /// Share of the light that the surface scatters, into all directions; NaN: that of Lambert's law for `backscatter`.
+  double scattered_share = std::numeric_limits<double>::quiet_NaN();
 
   /// True for a hit.
   [[nodiscard]] bool met() const noexcept { return range < std::numeric_limits<double>::infinity(); }

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_GEOMETRY_BUNDLE_HPP
 #define PULSECAST_GEOMETRY_BUNDLE_HPP
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -163,10 +164,12 @@ struct Closest {
 
   /// No hits so far of a bundle's rays.
   explicit Closest(const RayBundle& rays) noexcept requires(capacity == RayBundle::capacity) {
-    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane hits nothing
-      id[j] = none;
+    for (std::size_t j = 0; j < rays.padded_size(); j += RayBundle::lanes) {
+      std::fill_n(range.begin() + j, RayBundle::lanes, rays.far);
+      std::fill_n(id.begin() + j, RayBundle::lanes, none);
     }
+    for (std::size_t j = rays.size; j < rays.padded_size(); ++j)
+      range[j] = -std::numeric_limits<double>::infinity();  // an idle lane hits nothing
   }
   /// No hit so far of a single ray, up to a range [m].
   explicit Closest(double far) noexcept requires(capacity == 1) : range{far}, id{none} {}

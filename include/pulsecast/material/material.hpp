@@ -21,25 +21,6 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Backscatter of a material in one light, by the cosine of incidence.
-struct Backscatter {
-  SurfaceLight light{0, 0};          ///< wavelength and reflectance
-  double cosine = 0, even = 0;       ///< shares of the reflectance: Lambertian; isotropic; without a model
-  const SurfaceLaw::Model* model{};  ///< law that is not linear; null for others
-
-  /// Backscatter towards the source at a cosine of incidence in [0, 1].
-  [[nodiscard]] double operator()(double cos_incidence) const noexcept {
-    return model ? model->backscatter(simd::Doubles{} + cos_incidence, light)[0]
-                 : light.reflectance * (cosine * cos_incidence + even);
-  }
-  /// As above, by lane.
-  [[nodiscard, gnu::always_inline]] simd::Doubles operator()(const simd::Doubles& cos_incidence) const noexcept {
-    if (model) [[unlikely]]
-      return model->backscatter(cos_incidence, light);
-    return light.reflectance * (cosine * cos_incidence + even);
-  }
-};
-
 /// Surface material.
 struct Material {
   std::string name = "default";  ///< name in its file or program
@@ -111,13 +92,12 @@ struct Material {
     return law.model() ? law.model()->scattered(from, to, normal, in) : std::min(in.reflectance, 1.0) * cos_out;
   }
 
-  /// Law of the backscatter at a wavelength [m] and, for a map, at texture coordinates.
-  [[nodiscard]] Backscatter backscatter(double wavelength, const std::optional<Vec2>& texture = {}) const noexcept {
-    return {light(wavelength, texture), law.cosine_share(), law.even_share(), law.model()};
-  }
-  /// Backscatter at a cosine of incidence and a wavelength [m].
-  [[nodiscard]] double backscatter(double cos_incidence, double wavelength) const noexcept {
-    return backscatter(wavelength)(cos_incidence);
+  /// Backscatter at a cosine of incidence, a wavelength [m] and, for a map, texture coordinates.
+  [[nodiscard]] double backscatter(double cos_incidence, double wavelength,
+                                   const std::optional<Vec2>& texture = {}) const noexcept {
+    const SurfaceLight in = light(wavelength, texture);
+    return law.model() ? law.model()->backscatter(cos_incidence, in)
+                       : in.reflectance * (law.cosine_share() * cos_incidence + law.even_share());
   }
 };
 

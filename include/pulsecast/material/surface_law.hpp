@@ -3,16 +3,20 @@
 #ifndef PULSECAST_MATERIAL_SURFACE_LAW_HPP
 #define PULSECAST_MATERIAL_SURFACE_LAW_HPP
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/hit.hpp>
 #include <pulsecast/material/lambert.hpp>
 #include <pulsecast/material/scattering_law.hpp>
 
@@ -27,8 +31,9 @@ class SurfaceLaw {
    public:
     virtual ~Model() = default;
     virtual void validate() const {}
-    virtual simd::Doubles backscatter(const simd::Doubles& cosines, const SurfaceLight& light) const noexcept = 0;
+    virtual double backscatter(double cosine, const SurfaceLight& light) const noexcept = 0;
     virtual double scattered_share(double cosine, const SurfaceLight& light) const noexcept = 0;
+    virtual void scatter_at(std::span<Hit> hits, const SurfaceLight& light) const noexcept = 0;
     virtual double scattered(const Vec3&, const Vec3&, const Vec3&, const SurfaceLight&) const noexcept { return 0; }
     virtual std::optional<SampledDirection> sample(const Vec3&, const Vec3&, double, double) const noexcept {
       return std::nullopt;
@@ -88,14 +93,32 @@ class SurfaceLaw {
     void validate() const override {
       if constexpr (Validated<Law>) law.validate();
     }
-    simd::Doubles backscatter(const simd::Doubles& cosines, const SurfaceLight& light) const noexcept override {
-      if constexpr (ScattersInLanes<Law>)
-        return law.backscatter(cosines, taken_by<Law>(light));
-      else
-        return simd::generate([&](std::size_t lane) { return law.backscatter(cosines[lane], taken_by<Law>(light)); });
+    double backscatter(double cosine, const SurfaceLight& light) const noexcept override {
+      return law.backscatter(cosine, taken_by<Law>(light));
     }
     double scattered_share(double cosine, const SurfaceLight& light) const noexcept override {
       return law.scattered_share(cosine, taken_by<Law>(light));
+    }
+    void scatter_at(std::span<Hit> hits, const SurfaceLight& light) const noexcept override {
+      const auto& in = taken_by<Law>(light);
+      constexpr std::size_t lanes = ScattersInLanes<Law> ? simd::lane_count : 1;
+      if (hits.size() < lanes || lanes == 1) {
+        for (Hit& hit : hits) {
+          hit.backscatter = law.backscatter(hit.cos_incidence, in);
+          hit.scattered_share = law.scattered_share(hit.cos_incidence, in);
+        }
+      } else if constexpr (lanes > 1) {
+        for (std::size_t j = 0; j < hits.size(); j += lanes) {
+          Hit* const block = &hits[std::min(j, hits.size() - lanes)];  // the last may overlap the one before
+          const simd::Doubles values =
+              law.backscatter(simd::generate([&](std::size_t k) { return block[k].cos_incidence; }), in);
+#pragma GCC unroll 8
+          for (std::size_t k = 0; k < lanes; ++k) {
+            block[k].backscatter = values[k];
+            block[k].scattered_share = law.scattered_share(block[k].cos_incidence, in);
+          }
+        }
+      }
     }
     double scattered(const Vec3& in, const Vec3& out, const Vec3& normal,
                      const SurfaceLight& light) const noexcept override {

@@ -3,10 +3,16 @@
 #ifndef PULSECAST_SCENE_FIND_HITS_HPP
 #define PULSECAST_SCENE_FIND_HITS_HPP
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -17,6 +23,24 @@ void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits)
     target.closest(rays, hits);
   else
     for (std::size_t j = 0; j < rays.size; ++j) hits[j] = target.closest_hit(rays.ray(j)).value_or(Hit{});
+  if constexpr (!SceneQueries<Target>)  // a map of the user's may leave it open
+    for (Hit& hit : hits.first(rays.size))
+      if (std::isnan(hit.scattered_share))
+        hit.scattered_share = hit.backscatter < hit.cos_incidence ? hit.backscatter / hit.cos_incidence : 1;
+}
+
+/// Asks the law of a material what it scatters of light of a wavelength [m], at hits whose cosine is set.
+[[gnu::always_inline]] inline void scatter_at(const Material& material, double wavelength,
+                                              const std::optional<Vec2>& texture, std::span<Hit> hits) noexcept {
+  const SurfaceLaw& law = material.law;
+  const double reflectance = material.reflectance_at(wavelength, texture);
+  if (law.model()) [[unlikely]]
+    return law.model()->scatter_at(hits, {wavelength, reflectance, material.index()});
+  const double share = std::min(reflectance, 1.0);
+  for (Hit& hit : hits) {
+    hit.backscatter = reflectance * (law.cosine_share() * hit.cos_incidence + law.even_share());
+    hit.scattered_share = share;
+  }
 }
 
 namespace detail {

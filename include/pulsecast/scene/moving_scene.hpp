@@ -69,7 +69,7 @@ class MovingScene {
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, hits, detail::TakesSurfaces{});
+    describe(rays, hits, typename Scene<Shapes...>::AskLaws{});
   }
   /// As above, and visits the surfaces, as of a target with `SceneQueries`.
   template <class Visitor>

@@ -22,6 +22,7 @@
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/detail/surface_sample.hpp>
+#include <pulsecast/scene/find_hits.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -119,9 +120,9 @@ class Scene {
 
   /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, nearest(rays), hits, placements(), detail::TakesSurfaces{});
+    describe(rays, nearest(rays), hits, placements(), AskLaws{});
   }
-  /// As above, and visits the surfaces, as of a target with `SceneQueries`.
+  /// As above, and visits the surfaces in place of asking their laws, as of a target with `SceneQueries`.
   template <class Visitor>
   void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     describe(rays, nearest(rays), hits, placements(), visit);
@@ -189,6 +190,7 @@ class Scene {
   friend class MovingScene;
 
   enum class Motions : std::uint8_t { refused, left_out };
+  struct AskLaws {};  ///< in place of a visitor: hits tell what the laws of their materials say
 
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
@@ -272,7 +274,8 @@ class Scene {
     visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
-  /// Sets the hits of rays and visits their surfaces. `placement_of(i)` returns the placement of part i.
+  /// Sets the geometry of the hits of rays, and visits their surfaces. `placement_of(i)` returns the placement of part
+  /// i.
   template <class PlacementOf, class Visitor>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
                 const Visitor& visit) const noexcept {
@@ -296,27 +299,28 @@ class Scene {
       while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
         ++end;  // neighbouring rays often hit the same primitive
       const Vec3 n = surface.normal / local->direction_length;
-      const Backscatter law = surface.material->backscatter(rays.wavelength, surface.texture);
       const ObjectId object = parts_[at].object;
       const std::uint16_t classification = surface.material->classification;
-      const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + (surface.normal == Vec3{} ? 1.0 : 0.0);
-      for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
-        const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
-        const simd::Doubles projections =
-            simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
-        const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
-        const simd::Doubles values = law(cosines);
-        for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
-          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], object, classification};
+      const double least = surface.normal == Vec3{} ? 1 : 0;
+      for (std::size_t j = first; j < end; ++j) {
+        const double cosine = std::min(1.0, std::fabs(dot(local->direction(j), n)));
+        Hit& hit = hits[j];
+        hit.range = nearest.range[j];
+        hit.cos_incidence = std::max(least, cosine);
+        hit.object = object;
+        hit.classification = classification;
       }
-      visit(first, end,
-            SurfaceInteraction{.normal = placement_of(at).rotation * surface.normal,
-                               .material_index = surface.material_index,
-                               .foliage = surface.foliage,
-                               .classification = classification,
-                               .object = object,
-                               .material = surface.material,
-                               .texture = surface.texture});
+      if constexpr (std::is_same_v<Visitor, AskLaws>)
+        scatter_at(*surface.material, rays.wavelength, surface.texture, hits.subspan(first, end - first));
+      else
+        visit(first, end,
+              SurfaceInteraction{.normal = placement_of(at).rotation * surface.normal,
+                                 .material_index = surface.material_index,
+                                 .foliage = surface.foliage,
+                                 .classification = classification,
+                                 .object = object,
+                                 .material = surface.material,
+                                 .texture = surface.texture});
     }
   }
 

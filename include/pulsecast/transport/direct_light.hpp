@@ -91,7 +91,7 @@ struct DirectLight {
     rays.pulse = light.index;
     const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
-    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
+    double missed = 0, out_of_range = 0, lit = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
     bool met = false, in_gate = false;
     RayBundle::Column power;
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {
@@ -116,12 +116,12 @@ struct DirectLight {
           continue;
         }
         in_gate = true;
+        lit += share;
+        scattered += share * hit.scattered_share;
         if (!(power[j] > 0)) {
-          absorbed += share;
           result.nan |= std::isnan(power[j]);
           continue;
         }
-        scattered += share;
         received += power[j];
         Reflection& reflection = reflections[result.reflections++];
         detail::set_reflection(reflection, hit, power[j]);
@@ -133,7 +133,7 @@ struct DirectLight {
     result.energy = {.sent = sent,
                      .missed = missed * sent,
                      .out_of_range = out_of_range * sent,
-                     .absorbed = absorbed * sent,
+                     .absorbed = (lit - scattered) * sent,
                      .scattered = scattered * sent,
                      .received = received * light.emitter.laser.pulse_length};
   }

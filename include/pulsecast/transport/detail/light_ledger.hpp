@@ -45,8 +45,9 @@ class LightLedger {
 
   /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the
   /// hit is half the optical path [m].
-  void end_at(const Hit& hit, const Material& material, double scattered, double power, const PathState& way) noexcept {
+  void end_at(const Hit& hit, const Material& material, double power, const PathState& way) noexcept {
     met_ = true;
+    const double scattered = hit.scattered_share;
     const double kept = material.smooth.passes_light() ? 0 : 1 - scattered;
     if (!light_.gate.contains(hit.range)) {
       shares.out_of_range += (scattered + kept) * way.share;

@@ -15,6 +15,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
+#include <pulsecast/scene/find_hits.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/media_passage.hpp>
@@ -104,8 +105,11 @@ class PathTracer {
 
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
+    const std::span<Hit> all(hits);
+    const double wavelength = p.rays.wavelength;
     target_.closest(
-        p.rays, hits, [&met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+        p.rays, hits, [=, &met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+          scatter_at(*at.material, wavelength, at.texture, all.subspan(first, end - first));
           std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
         });
     if (level > 0) retrace_before_origin(level);
@@ -121,12 +125,12 @@ class PathTracer {
       }
       goes_on |= surfaces[j].material->smooth.passes_light();
       if (refracts(surfaces[j])) continue;  // its path meets the surface once more
-      const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object,
-                   hits[j].classification};
+      Hit at = hits[j];
+      at.range += p.delay[j];
       power[j] *= aperture_fraction(light_.budget, *surfaces[j].material, at.range);
       PathState way{p.kind, p.sent[j]};
       if constexpr (with_velocity) way.velocity = p.path_rate[j] + radial_velocity(target_, ray_of(p, j));
-      ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
+      ledger_.end_at(at, *surfaces[j].material, power[j], way);
     }
     if (goes_on) pass_on(level);
   }
@@ -151,16 +155,12 @@ class PathTracer {
       surfaces[j] = {at.material, at.normal, at.foliage, at.texture};
       hits[j] = {.range = hit->range, .object = at.object, .classification = at.classification};
       if (at.normal != Vec3{}) hits[j].cos_incidence = std::min(1.0, std::fabs(dot(at.normal, ray.direction)));
-      hits[j].backscatter = at.material->backscatter(p.rays.wavelength, at.texture)(hits[j].cos_incidence);
+      scatter_at(*at.material, p.rays.wavelength, at.texture, {&hits[j], 1});
     }
   }
 
   static bool refracts(const PathVertex& surface) noexcept {
     return surface.material->smooth.passes_light() && !surface.material->smooth.keeps_pencils();
-  }
-
-  double scattered_share(const PathVertex& surface, const Hit& hit) const noexcept {
-    return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence, surface.texture);
   }
 
   /// Passes on the rays of a level that met smooth surfaces: those on one plane together.
@@ -177,7 +177,7 @@ class PathTracer {
         continue;
       }
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
-      const double reaching = 1 - scattered_share(surfaces[first], hits[first]);
+      const double reaching = 1 - hits[first].scattered_share;
       const bool mirror = smooth.kind == InterfaceKind::mirror;
       const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;  // a pane loses its own
       for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += lost * p.sent[j];

@@ -69,16 +69,19 @@ class RefractedPaths {
   /// Light that a surface sends back to a path that ends there.
   template <class Point>
   void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
-    Hit hit{
-        .range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
-    hit.backscatter = at.material->backscatter(light_.emitter.laser.wavelength, at.texture)(hit.cos_incidence);
+    Hit hit{.range = path.optical,
+            .cos_incidence = face.cosine,
+            .object = at.object,
+            .classification = at.classification,
+            .scattered_share = face.scattered};
+    hit.backscatter = at.material->backscatter(hit.cos_incidence, light_.emitter.laser.wavelength, at.texture);
     const double spread = path.spread(),
                  wide = light_.budget.power_through(path.two_way_share, hit.backscatter, spread, path.air);
     const double power = wide * aperture_fraction(light_.budget, *at.material, spread);
     PathState way{path.kind, path.sent};
     if constexpr (with_velocity)
       way.velocity = path.path_rate + path.medium().index * dot(at.velocity, path.ray.direction);
-    ledger_.end_at(hit, *at.material, face.scattered, power, way);
+    ledger_.end_at(hit, *at.material, power, way);
   }
 
   /// Passes a path on: reflects a part of it, and goes on with the other. Returns false if nothing goes on.
