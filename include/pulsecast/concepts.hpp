@@ -199,6 +199,22 @@ concept TracesVelocity = Transport<T, Target> &&
   { t.template trace<true>(target, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
 };
 
+/// Transport that is asked, when a survey is made, whether it can trace a target; it throws a `SettingError`.
+template <class T, class Target>
+concept ValidatesTarget = Transport<T, Target> && requires(const T t, const Target& target) { t.validate(target); };
+
+/// Transport that takes the light of several pulses of one emitter at once, at most `simd::lane_count`. Pulse k sets
+/// `results[k]`, and the first of the reflections from `k * reflections(subrays)` on. Reserved: surveys ask pulse by pulse
+/// so far.
+/// Law: what `trace` gives for each, bit for bit.
+template <class T, class Target>
+concept TracesInLanes = Transport<T, Target> &&
+    requires(const T t, const Target& target, std::span<const TransportInput> light, std::size_t subrays,
+             decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections,
+             std::span<TransportResult> results) {
+  { t.trace_lanes(target, light, workspace, reflections, results) } noexcept -> std::same_as<void>;
+};
+
 /// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by
 /// `workspace(n)` for up to n reflections. Random draws take `input.key` with a `purpose` of the detector's own, as
 /// `Purpose{128}`, and any `subray` and `part`.
@@ -211,6 +227,16 @@ concept Detector = std::copyable<D> &&
     requires(const D d, const DetectorInput& input, std::size_t reflections,
              decltype(d.workspace(reflections))& workspace) {
   { d.detect(input, workspace) } noexcept -> std::same_as<Detection>;
+};
+
+/// Detector that takes the reflections of several pulses at once, at most `simd::lane_count`. Reserved, as
+/// `TracesInLanes`.
+/// Law: what `detect` gives for each, bit for bit; all detections are valid until the next call.
+template <class D>
+concept DetectsInLanes = Detector<D> &&
+    requires(const D d, std::span<const DetectorInput> inputs, std::size_t reflections,
+             decltype(d.workspace(reflections))& workspace, std::span<Detection> detections) {
+  { d.detect_lanes(inputs, workspace, detections) } noexcept -> std::same_as<void>;
 };
 
 /// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the

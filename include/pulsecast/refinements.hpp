@@ -154,6 +154,20 @@ concept MissesCones = requires(const T target, const RayCone& cone) {
 };
 PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const noexcept", misses_cone, (RayCone{}))
 
+struct Material;
+namespace detail {
+struct TakesMaterials {
+  void operator()(const Material&) const {}
+};
+}  // namespace detail
+
+/// Target that visits its materials, so that a transport may refuse one before the first pulse, as of `LightPaths`.
+template <class T>
+concept VisitsMaterials = requires(const T& target, const detail::TakesMaterials& visit) {
+  { target.visit_materials(visit) } -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(VisitsMaterials, "void visit_materials(const Visitor&) const", visit_materials, (detail::TakesMaterials{}))
+
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
 PULSECAST_OPTIONAL_CONSTANT(UniformGeometry, uniform_surface)
 

@@ -252,6 +252,7 @@ class Survey {
       require_whole_beam(unit.footprint);
     }
     require_alike();
+    if constexpr (ValidatesTarget<Transport, Target>) transport_.validate(*target_);
     const std::vector<Emitter> emitters = source_.emitters();
     require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0,
                    max_emitters, "");

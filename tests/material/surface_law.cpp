@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/material/surface_law.hpp>
 
-#include <cmath>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -15,10 +15,8 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 
 namespace {
-constexpr double nir = 1.064e-6;
-}
 
-namespace {
+constexpr double nir = 1.064e-6;
 
 /// User-defined law that takes the wavelength alone.
 struct Snow {
@@ -48,18 +46,20 @@ TEST_CASE("the linear laws have no model, and are told apart") {
   CHECK_FALSE(SurfaceLaw{DirectionIndependent{}}.get<Lambert>());
 }
 
-TEST_CASE("lanes have the backscatter of one, by every law") {
+TEST_CASE("a run of hits has the backscatter and share of one by one, by every law") {
   const Material laws[]{{.law = NormalizedPhong{0.4, 12.5}},
                         {.law = Retroreflector<>{200}},
                         {.law = Snow{}},
                         {.law = Tabulated{SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}}};
   for (const Material& m : laws) {
-    const Backscatter law = m.backscatter(nir);
-    for (double cosine = 0; cosine < 0.9; cosine += 0.01) {
-      const simd::Doubles cosines =
-          simd::generate([&](std::size_t lane) { return cosine + 0.02 * static_cast<double>(lane); });
-      const simd::Doubles all = law(cosines);
-      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) CHECK(all[lane] == law(cosines[lane]));
+    for (std::size_t count = 1; count < 2 * simd::lane_count + 3; ++count) {
+      std::vector<Hit> hits(count);
+      for (std::size_t j = 0; j < count; ++j) hits[j].cos_incidence = 1 - 0.07 * static_cast<double>(j);
+      m.law.model()->scatter_at(hits, m.light(nir));
+      for (const Hit& hit : hits) {
+        CHECK(hit.backscatter == m.backscatter(hit.cos_incidence, nir));
+        CHECK(hit.scattered_share == m.scattered_share(nir, hit.cos_incidence));
+      }
     }
   }
 }

@@ -17,6 +17,7 @@ namespace pulsecast::support {
 struct ScatteringExceptions {
   bool peaked = false;  ///< backscatter has a peak that other directions do not have
   bool loses = false;   ///< light that is hidden from all directions
+  bool one_way = false;  ///< not reciprocal, as a coat that weakens light on its way in only
 };
 
 /// Integral over the hemisphere about a normal of a function of a direction.
@@ -54,7 +55,7 @@ std::string scattering_laws(const Law& law, const ScatteringExceptions& except =
       const Vec3 a = outside(), b = outside();
       const double ab = law.scattered(a, b, normal, wavelength) / dot(b, normal),
                    ba = law.scattered(b, a, normal, wavelength) / dot(a, normal);
-      if (!(std::fabs(ab - ba) <= 1e-9 * std::max(ab, ba))) return "scattered is not reciprocal";
+      if (!except.one_way && !(std::fabs(ab - ba) <= 1e-9 * std::max(ab, ba))) return "scattered is not reciprocal";
       const double cosine = dot(a, normal), back = law.backscatter(cosine, wavelength);
       if (!except.peaked && !(std::fabs(law.scattered(a, a, normal, wavelength) - back) <= 1e-12 * back))
         return "backscatter is not scattered(in, in)";

@@ -133,11 +133,11 @@ TEST_CASE("each term of the ledger is that of its own subrays") {
     const Outcome o = s(0, w);
     double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     for (const SubrayRecord& subray : o.subrays) {
-      double& term = !subray.met()             ? missed
-                     : subray.range > 100      ? out_of_range
-                     : subray.backscatter == 0 ? absorbed
-                                               : scattered;
-      term += o.energy.sent / 500;
+      const double sent = o.energy.sent / 500;
+      const bool lit = subray.met() && subray.range <= 100;
+      if (!lit) (subray.met() ? out_of_range : missed) += sent;
+      if (lit) scattered += subray.scattered_share * sent;
+      if (lit) absorbed += (1 - subray.scattered_share) * sent;
       received += subray.power * Laser{}.pulse_length;
     }
     CHECK(o.energy.sent == Laser{}.energy());
@@ -151,6 +151,44 @@ TEST_CASE("each term of the ledger is that of its own subrays") {
   };
   check(survey);
   for (const double term : check(wide)) CHECK(term > 0);
+}
+
+TEST_CASE("a grey wall is half scattered, half absorbed, whatever transport, and whether a scene or a map tells it") {
+  struct Wall {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const double cosine = ray.direction.y, range = (20 - ray.origin.y) / cosine;
+      if (!(cosine > 0 && range > ray.near && range <= ray.far)) return std::nullopt;
+      return Hit{.range = range, .cos_incidence = cosine, .backscatter = 0.5 * cosine};
+    }
+  };
+  const auto halves = [](const TransportResult& result) {
+    CHECK(result.energy.scattered == support::relative(result.energy.sent / 2, 1e-12));
+    CHECK(result.energy.absorbed == support::relative(result.energy.sent / 2, 1e-12));
+  };
+  const Scene<Mesh> scene({{.geometry = plate(20), .materials = material_table({{.reflectance = 0.5}})}});
+  for (const double turn : {0.0, 0.5}) {
+    const auto pose = support::from_to({0, 0, 0}, {std::sin(turn), std::cos(turn), 0});
+    halves(support::traced(DirectLight{}, scene, pose, RingFootprint{3}).result);
+    halves(support::traced(LightPaths{}, scene, pose, RingFootprint{3}).result);
+    halves(support::traced(DirectLight{}, Wall{}, pose, RingFootprint{3}).result);
+  }
+}
+
+TEST_CASE("the ledger is that of light paths, by every law and at any incidence") {
+  const SurfaceLaw laws[]{Lambert{}, DirectionIndependent{}, NormalizedPhong{0.4, 12.5}, Microfacet{0.3},
+                          Retroreflector<>{70, 0.01}};
+  support::Generator any(5);
+  for (std::size_t k = 0; k < std::size(laws); ++k)
+    for (int i = 0; i < 20; ++i) {
+      CAPTURE(k, i);
+      const Scene<Mesh> scene({{.geometry = plate(20), .materials = material_table({{.law = laws[k]}})}});
+      const auto pose = support::from_to({0, 0, 0}, {any.uniform(-1, 1), 1, any.uniform(-1, 1)});
+      const EnergyLedger direct = support::traced(DirectLight{}, scene, pose, RingFootprint{3}).result.energy,
+                         paths = support::traced(LightPaths{}, scene, pose, RingFootprint{3}).result.energy;
+      CHECK(direct.scattered == support::relative(paths.scattered, 1e-14));
+      CHECK(std::fabs(direct.absorbed - paths.absorbed) <= 1e-14 * direct.sent);
+      CHECK(direct.received <= direct.scattered);
+    }
 }
 
 TEST_CASE("a transport of one's own may give two reflections a subray") {

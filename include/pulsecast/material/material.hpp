@@ -92,6 +92,11 @@ struct Material {
     return law.model() ? law.model()->scattered(from, to, normal, in) : std::min(in.reflectance, 1.0) * cos_out;
   }
 
+  /// Direction drawn by a law that `SamplesDirections`; empty for others, and for leaves.
+  [[nodiscard]] std::optional<SampledDirection> sample(const Vec3& from, const Vec3& normal, double u,
+                                                       double v) const noexcept {
+    return law.model() && normal != Vec3{} ? law.model()->sample(from, normal, u, v) : std::nullopt;
+  }
   /// Backscatter at a cosine of incidence, a wavelength [m] and, for a map, texture coordinates.
   [[nodiscard]] double backscatter(double cos_incidence, double wavelength,
                                    const std::optional<Vec2>& texture = {}) const noexcept {

@@ -5,6 +5,7 @@
 
 #include <concepts>
 
+#include <pulsecast/base/optional_member.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -54,6 +55,9 @@ concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::
   { law.backscatter(cosines, taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
 };
 
+// each law has a `backscatter` of a cosine, too
+PULSECAST_OPTIONAL_MEMBER(ScattersInLanes, "simd::Doubles backscatter(const simd::Doubles&, double) const noexcept", backscatter, (1.0, 1.0), && false)
+
 /// Law of the light from one direction towards another, without which `MultipleScattering` refuses a material. `in` and
 /// `out` are unit vectors away from the surface, on the side of its unit normal; the result is by the light of a white
 /// Lambertian surface towards its normal.
@@ -64,6 +68,8 @@ template <class L>
 concept ScattersBetween = ScatteringLaw<L> && requires(const L law, const Vec3& in, const Vec3& out, const Vec3& normal, double wavelength) {
   { law.scattered(in, out, normal, wavelength) } noexcept -> std::convertible_to<double>;
 };
+PULSECAST_OPTIONAL_MEMBER(ScattersBetween, "double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, double) const noexcept",
+                          scattered, (Vec3{}, Vec3{}, Vec3{}, 1.0))
 
 /// Direction drawn by a law, with its density.
 struct SampledDirection {
@@ -77,6 +83,8 @@ template <class L>
 concept SamplesDirections = ScattersBetween<L> && requires(const L law, const Vec3& in, const Vec3& normal, double u, double v) {
   { law.sample(in, normal, u, v) } noexcept -> std::same_as<SampledDirection>;
 };
+PULSECAST_OPTIONAL_MEMBER(SamplesDirections, "SampledDirection sample(const Vec3& in, const Vec3& normal, double, double) const noexcept",
+                          sample, (Vec3{}, Vec3{}, 1.0, 1.0))
 
 /// Law with light that returns to its source in a narrow cone, as of retroreflectors.
 template <class L>
@@ -84,10 +92,11 @@ concept Retroreflects = ScatteringLaw<L> && requires(const L law) {
   { law.returned_share() } noexcept -> std::same_as<double>;  ///< share of the light along the normal in the cone
   { law.returned_half_angle() } noexcept -> std::same_as<double>;  ///< of the cone at 1/e^2; 0: wide against the aperture [rad]
 };
+PULSECAST_OPTIONAL_MEMBER(Retroreflects, "double returned_share() const noexcept, with double returned_half_angle() const noexcept",
+                          returned_share, ())
 
-/// Law that also reflects what the face of a body would mirror, as rough facets do: `reflects_interface` is true.
-template <class L>
-concept ReflectsInterface = ScatteringLaw<L> && L::reflects_interface;
+/// Law that also reflects what the face of a body would mirror, as rough facets do.
+PULSECAST_OPTIONAL_CONSTANT(ReflectsInterface, reflects_interface)
 
 }  // namespace PULSECAST_NAMESPACE
 // clang-format on

@@ -72,6 +72,8 @@ class SurfaceLaw {
   [[nodiscard]] const Model* model() const noexcept { return model_.get(); }
   [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1 for Lambert's law, or 0
   [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 1 for `DirectionIndependent`, or 0
+  /// True of a law that `ScattersBetween`.
+  [[nodiscard]] bool scatters_between() const noexcept { return !model_ || model_->scatters_between; }
   /// True of a law that `ReflectsInterface`.
   [[nodiscard]] bool reflects_interface() const noexcept { return model_ && model_->reflects_interface; }
   /// As of a law that `Retroreflects`; 0 of others.
@@ -81,6 +83,8 @@ class SurfaceLaw {
  private:
   template <class Law>
   struct ModelOf final : Model {
+    static_assert(detail::members_checked<Law, tag::ScattersInLanes, tag::ScattersBetween, tag::SamplesDirections,
+                                          tag::Retroreflects, tag::ReflectsInterface>);
     explicit ModelOf(Law l) : law(std::move(l)) {
       this->scatters_between = ScattersBetween<Law>;
       if constexpr (Retroreflects<Law>) {

@@ -67,6 +67,12 @@ class AnyTarget {
     return std::visit([&](const auto& target) noexcept { return target.surface(hit, ray); }, target_);
   }
 
+  /// As of a target that `VisitsMaterials`, if it does.
+  template <class Visitor>
+  void visit_materials(const Visitor& visit) const {
+    std::visit([&](const auto& target) { detail::visit_materials(target, visit); }, target_);
+  }
+
   /// Bounds of the target [m].
   [[nodiscard]] Box bounds() const noexcept requires(requires(const First& f, const Others&... o) {
     f.bounds();

@@ -44,6 +44,12 @@ void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits)
 }
 
 namespace detail {
+/// Visits the materials of a target that `VisitsMaterials`.
+template <class Target, class Visitor>
+void visit_materials(const Target& target, const Visitor& visit) {
+  static_assert(members_checked<Target, tag::VisitsMaterials>);
+  if constexpr (VisitsMaterials<Target>) target.visit_materials(visit);
+}
 /// True only if a target that `MissesCones` says so of a cone of rays.
 template <Target Target>
 [[nodiscard]] bool misses_cone(const Target& target, const RayCone& cone) noexcept {

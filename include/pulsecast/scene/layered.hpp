@@ -92,6 +92,12 @@ class Layered {
                       targets_);
   }
 
+  /// As of a target that `VisitsMaterials`, for targets that do.
+  template <class Visitor>
+  void visit_materials(const Visitor& visit) const {
+    each([&](std::uint32_t, const auto& target) { detail::visit_materials(target, visit); });
+  }
+
   /// Bounds of all targets [m].
   [[nodiscard]] Box bounds() const noexcept requires(requires(const First& f, const Others&... o) {
     f.bounds();
@@ -161,9 +167,9 @@ class Layered {
 
   /// Calls `visit(i, target)` for each target, in order.
   template <class Visitor>
-  void each(const Visitor& visit) const noexcept {
+  void each(const Visitor& visit) const {
     std::uint32_t i = 0;
-    std::apply([&](const auto*... targets) noexcept { (visit(i++, *targets), ...); }, targets_);
+    std::apply([&](const auto*... targets) { (visit(i++, *targets), ...); }, targets_);
   }
 
   static constexpr std::uint32_t size = 1 + sizeof...(Others);

@@ -47,6 +47,11 @@ class MovingScene {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
+  /// As of a target that `VisitsMaterials`.
+  template <class Visitor>
+  void visit_materials(const Visitor& visit) const {
+    scene_.visit_materials(visit);
+  }
   /// As `Scene::deterministic`.
   [[nodiscard]] bool deterministic() const noexcept { return scene_.deterministic(); }
 

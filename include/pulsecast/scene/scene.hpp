@@ -94,6 +94,14 @@ class Scene {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
+  /// As of a target that `VisitsMaterials`.
+  template <class Visitor>
+  void visit_materials(const Visitor& visit) const {
+    const void* last = nullptr;  // neighbouring parts often share a table
+    for (const Part& part : parts_)
+      if (std::exchange(last, part.materials.get()) != part.materials.get())
+        for (const Material& material : *part.materials) visit(material);
+  }
   /// True if no hit depends on the key of a ray, as of parts that are a `DeterministicGeometry`.
   [[nodiscard]] bool deterministic() const noexcept { return deterministic_; }
 

@@ -18,7 +18,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
+/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed: what
+/// is not scattered counts as absorbed.
 struct DirectLight {
   bool spread_planes =
       true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`

@@ -43,6 +43,21 @@ struct LightPaths {
     require_within("LightPaths::volume_cells", static_cast<double>(volume_cells), 4, 1e6, "");
   }
 
+  /// Refuses a target that `VisitsMaterials` for a law that does not `ScattersBetween`, if light is scattered to and
+  /// fro.
+  /// @throws SettingError
+  template <SceneQueries Target>
+  void validate(const Target& target) const {
+    if (scattering.orders == 1) return;
+    detail::visit_materials(target, [&](const Material& material) {
+      if (!material.law.scatters_between())
+        throw SettingError(
+            "MultipleScattering::orders",
+            text::joined({" above 1 need laws with scattered(in, out, normal, wavelength), which material '",
+                          material.name, "' has not"}));
+    });
+  }
+
   /// Scratch memory of one worker.
   using Workspace = detail::PathWorkspace;
 

@@ -91,12 +91,18 @@ class ScatteredPaths {
       const Draw any = draw(path, static_cast<std::uint32_t>(order - 1));
       const auto [u, v] = any.turn;
       const bool even = at.normal == Vec3{};
+      const auto drawn = at.material->sample(-at.direction, at.normal, u, v);
       Ray ray{.origin = at.place,
-              .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v),
+              .direction = drawn  ? drawn->direction
+                           : even ? evenly(u, v)
+                                  : by_cosine(at.normal, u, v),
               .near = surface_epsilon,
               .tick = light_.pulse.tick};
       name(ray);
-      const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
+      const double per_draw =  // inverse density of the directions, by pi
+          drawn  ? 1 / (pi * drawn->density)
+          : even ? 4
+                 : 1 / dot(ray.direction, at.normal);
       at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength, at.texture);
       if (!(at.share > 0)) return;
       const auto hit = target_.closest_hit(ray);
