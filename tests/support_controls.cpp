@@ -18,6 +18,7 @@
 #include "support/checksum.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
+#include "support/scattering_laws.hpp"
 
 // Negative controls: the helpers of tests/support notice what they are there to notice.
 
@@ -479,6 +480,28 @@ TEST_CASE("transports that keep the law pass, and those that break it do not") {
               "a fate"));
   CHECK(
       names(transport_flaw_found([](R&, Found found, Record, int uses) { found[0].range += uses; }), "another answer"));
+}
+
+TEST_CASE("laws of scattered light that keep the laws pass, and those that break them do not") {
+  struct Uphill : Lambert {  // light goes more easily uphill
+    double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, const SurfaceLight& light) const noexcept {
+      return Lambert::scattered(in, out, normal, light) * (1 + 0.1 * (dot(out, normal) - dot(in, normal)));
+    }
+  };
+  struct Dim : Lambert {
+    double scattered_share(double, const SurfaceLight&) const noexcept { return 0.9; }
+  };
+  struct Bright : Lambert {
+    double backscatter(double cosine, const SurfaceLight&) const noexcept { return 1.1 * cosine; }
+  };
+  struct Drawn : Lambert {
+    SampledDirection sample(const Vec3&, const Vec3& normal, double, double) const noexcept { return {normal, 1 / pi}; }
+  };
+  CHECK(support::scattering_laws(Lambert{}) == "");
+  CHECK(support::scattering_laws(Uphill{}) == "scattered is not reciprocal");
+  CHECK(support::scattering_laws(Dim{}) == "scattered does not integrate to scattered_share");
+  CHECK(support::scattering_laws(Bright{}) == "backscatter is not scattered(in, in)");
+  CHECK(support::scattering_laws(Drawn{}) == "the density of sample does not integrate to 1");
 }
 
 TEST_CASE("surveys that keep the law of changes pass, and those that remember do not") {

@@ -62,11 +62,10 @@ struct EnergyLedger {
   double sent = 0;          ///< peak power times pulse length; the pulse shape makes some percent of difference
   double missed = 0;        ///< met nothing
   double out_of_range = 0;  ///< met a surface outside the range gate
-  double absorbed =
-      0;  ///< met a surface inside the gate that sent nothing back: black, edge-on, or too far in the haze
-  double scattered = 0;  ///< met a surface inside the gate that sent light back
-  double cut = 0;        ///< left on paths that the transport follows no further
-  double received = 0;   ///< arrived at the receiver, of `scattered`
+  double absorbed = 0;      ///< absorbed by surfaces inside the range gate, and by media
+  double scattered = 0;     ///< scattered by surfaces inside the range gate, and by media, in all directions
+  double cut = 0;           ///< left on paths that the transport follows no further
+  double received = 0;      ///< arrived at the receiver, of `scattered`
 
   /// Adds another ledger.
   void add(const EnergyLedger& other) noexcept {

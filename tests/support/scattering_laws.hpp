@@ -15,8 +15,8 @@ namespace pulsecast::support {
 
 /// Kinds of laws that break a law by their nature.
 struct ScatteringExceptions {
-  bool peaked = false;  ///< backscatter has a peak that other directions do not have
-  bool loses = false;   ///< light that is hidden from all directions
+  bool peaked = false;   ///< backscatter has a peak that other directions do not have
+  bool loses = false;    ///< light that is hidden from all directions
   bool one_way = false;  ///< not reciprocal, as a coat that weakens light on its way in only
 };
 

@@ -9,12 +9,23 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/scene/any_target.hpp>
+#include <pulsecast/scene/layered.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/survey.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/light.hpp"
+#include "support/scattering_laws.hpp"
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
@@ -58,6 +69,63 @@ TEST_CASE(
   }
   CHECK(std::fabs(power_of(seen.of(ReflectionKind::multiple)) / first - expected) < 4 * std::sqrt(variance));
   CHECK(seen.result.energy.received <= seen.result.energy.scattered);
+}
+
+namespace {
+
+/// Lambert's law; draws directions evenly over the hemisphere.
+struct EvenlyDrawn : Lambert {
+  SampledDirection sample(const Vec3&, const Vec3& normal, double u, double v) const noexcept {
+    const Vec3 x = normalize(cross(normal, std::fabs(normal.z) < 0.9 ? axis::up : axis::right)), y = cross(normal, x);
+    const double r = std::sqrt(1 - u * u);
+    return {r * std::cos(2 * pi * v) * x + r * std::sin(2 * pi * v) * y + u * normal, 1 / (2 * pi)};
+  }
+};
+
+/// Tells of light back to its source alone.
+struct BackOnly {
+  double backscatter(double cosine, double) const noexcept { return 0.5 * cosine; }
+  double scattered_share(double, double) const noexcept { return 0.5; }
+};
+
+}  // namespace
+
+TEST_CASE("directions that a law draws give the same light as those by the cosine") {
+  CHECK(support::scattering_laws(EvenlyDrawn{}) == "");
+  const auto ratio = [](const SurfaceLaw& law) {
+    const Scene<support::UnitBall> sphere({{.geometry = std::make_shared<const support::UnitBall>(),
+                                            .materials = material_table({{.reflectance = 0.8, .law = law}}),
+                                            .placement = {.scale = 7}}});
+    const auto seen = traced(to_and_fro(3, 20'000), sphere, from_to({0, 0, 0}, {1, 2, 3}), RingFootprint(2));
+    return power_of(seen.of(ReflectionKind::multiple)) / power_of(seen.of(ReflectionKind::surface));
+  };
+  // A quarter of each order; drawn evenly, the weight 2 cos of a chord has the variance 1/3, more than that of the
+  // cosines.
+  CHECK(ratio(EvenlyDrawn{}) == doctest::Approx(0.25 * (0.8 + 0.64)).epsilon(0.03));
+  CHECK(ratio(EvenlyDrawn{}) != ratio(Lambert{}));
+}
+
+TEST_CASE("a law without light between directions is refused by name when a survey is made, in any target") {
+  const Scene<TriangleMesh<>> snow({rectangle({0, 5, 0}, {1, 0, 0}, {0, 0, 1}, {.name = "snow", .law = BackOnly{}})});
+  const MovingScene<TriangleMesh<>> moving({snow.parts().begin(), snow.parts().end()}, {.to = 1});
+  const AnyTarget<Scene<TriangleMesh<>>, MovingScene<TriangleMesh<>>> any{snow};
+  const Scene<TriangleMesh<>> plain({rectangle({0, 6, 0}, {1, 0, 0}, {0, 0, 1}, {})});
+  const Layered both{plain, snow};
+  const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1}}};
+  const auto survey = [&](const auto& target, std::size_t orders) {
+    const LightPaths light{.scattering = {.orders = orders}};
+    return Survey{source, SingleRay{}, target, light, Receiver{}, FirstHit{}}.size();
+  };
+  const char* const problem =
+      "MultipleScattering::orders above 1 need laws with scattered(in, out, normal, wavelength), which material 'snow' "
+      "has not";
+  CHECK_THROWS_WITH_AS(survey(snow, 2), problem, SettingError);
+  CHECK_THROWS_WITH_AS(survey(moving, 2), problem, SettingError);
+  CHECK_THROWS_WITH_AS(survey(any, 2), problem, SettingError);
+  CHECK_THROWS_WITH_AS(survey(both, 2), problem, SettingError);
+  CHECK(survey(plain, 2) == 1);
+  CHECK(survey(snow, 1) == 1);
+  CHECK(survey(both, 1) == 1);
 }
 
 TEST_CASE("a receiver sees by default 2 mrad, or what its beam lights") {

@@ -59,8 +59,8 @@ struct Microfacets {
 };
 
 /// Light reflected by rough facets, and Lambert's law for the rest: varnish, wet ground, rippled water. The facets have
-/// the refractive index of the material's body, or 1.5. They weaken the light of the rest on its way in only, so that light
-/// towards other directions is not quite reciprocal.
+/// the refractive index of the material's body, or 1.5. They weaken the light of the rest on its way in only, so that
+/// light towards other directions is not quite reciprocal.
 struct Microfacet {
   static constexpr bool reflects_interface = true;  ///< as the concept ReflectsInterface describes
 

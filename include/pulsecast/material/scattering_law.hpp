@@ -56,7 +56,7 @@ concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::
 };
 
 // each law has a `backscatter` of a cosine, too
-PULSECAST_OPTIONAL_MEMBER(ScattersInLanes, "simd::Doubles backscatter(const simd::Doubles&, double) const noexcept", backscatter, (1.0, 1.0), && false)
+PULSECAST_OPTIONAL_MEMBER(ScattersInLanes, "simd::Doubles backscatter(const simd::Doubles&, double) const noexcept", backscatter, (simd::Doubles{}, 1.0), && false)
 
 /// Law of the light from one direction towards another, without which `MultipleScattering` refuses a material. `in` and
 /// `out` are unit vectors away from the surface, on the side of its unit normal; the result is by the light of a white

@@ -18,8 +18,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed: what
-/// is not scattered counts as absorbed.
+/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed:
+/// what is not scattered counts as absorbed.
 struct DirectLight {
   bool spread_planes =
       true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`
@@ -92,7 +92,7 @@ struct DirectLight {
     rays.pulse = light.index;
     const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
-    double missed = 0, out_of_range = 0, lit = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
+    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
     bool met = false, in_gate = false;
     RayBundle::Column power;
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {
@@ -117,8 +117,9 @@ struct DirectLight {
           continue;
         }
         in_gate = true;
-        lit += share;
-        scattered += share * hit.scattered_share;
+        const double back = share * hit.scattered_share;
+        scattered += back;
+        absorbed += share - back;
         if (!(power[j] > 0)) {
           result.nan |= std::isnan(power[j]);
           continue;
@@ -134,7 +135,7 @@ struct DirectLight {
     result.energy = {.sent = sent,
                      .missed = missed * sent,
                      .out_of_range = out_of_range * sent,
-                     .absorbed = (lit - scattered) * sent,
+                     .absorbed = absorbed * sent,
                      .scattered = scattered * sent,
                      .received = received * light.emitter.laser.pulse_length};
   }
