@@ -36,7 +36,7 @@ includes_of_higher_layers() {
     may["echo"] = may["hit"] " hit"
     may["reflection"] = may["echo"] " echo pulse"
     may["refinements"] = words
-    may["material"] = "base geometry"
+    may["material"] = "base geometry hit"
     may["concepts"] = words " refinements material"
     may["accel"] = may["detector"] = may["cloud"] = may["stage_arguments"] = may["pulse_lanes"] = words " concepts"
     may["scanner"] = words " concepts pulse_lanes"
