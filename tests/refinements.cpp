@@ -64,6 +64,12 @@ MISSPELT(DrawsByLeg, nothing, void draw_for_leg());
 MISSPELT(MeasuresBeam, always, Pose<frame::Beam, frame::Instrument> measured(PulseIndex, Tick) const noexcept);
 MISSPELT(PrefetchesPrimitives, index, void prefetch(const PrimitiveIndex*) const noexcept);
 MISSPELT(MissesCones, throwing, bool misses_cone(const RayCone&) const);
+MISSPELT(VisitsMaterials, argument, void visit_materials(int) const);
+MISSPELT(ScattersBetween, throwing, double scattered(const Vec3&, const Vec3&, const Vec3&, double) const);
+MISSPELT(ScattersBetween, cosines, double scattered(double, double, double) const noexcept);
+MISSPELT(SamplesDirections, direction, Vec3 sample(const Vec3&, const Vec3&, double, double) const noexcept);
+MISSPELT(Retroreflects, alone, double returned_share() const noexcept);
+MISSPELT(ReflectsInterface, function, bool reflects_interface() const noexcept);
 MISSPELT(
     UniformGeometry, function, static constexpr bool uniform_surface() { return true; });
 MISSPELT(UniformGeometry, variable, bool uniform_surface = true);

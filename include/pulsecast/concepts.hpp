@@ -140,11 +140,11 @@ struct TakesSurfaces {
 };
 }  // namespace detail
 
-/// Map that tells the surfaces that rays hit, as `Scene`: light can be followed further there, and its velocity is
-/// known. `closest` calls `visit(first, end, surface)` for rays from `first` up to `end` that hit one surface, after
-/// their hits are set; a later call for the same ray counts. Rays begin at ranges of their own. `surface(hit, ray)` is
-/// at a hit of the same ray, `occluded` true if a ray hits anything beyond `ray.near`, up to a range [m] and to
-/// `ray.far`.
+/// Map that tells the surfaces that rays hit, as `Scene`: light can be followed further there, and its velocity is known.
+/// `closest` tells geometry: it sets range, cosine, object and class of the hits, and calls `visit(first, end, surface)`
+/// for rays from `first` up to `end` that hit one surface; a later call for the same ray counts. What the surface
+/// scatters, `visit` asks its law: `scatter_at`. Rays begin at ranges of their own. `surface(hit, ray)` is at a hit of the
+/// same ray, `occluded` true if a ray hits anything beyond `ray.near`, up to a range [m] and to `ray.far`.
 /// Law: hits are those of a `BundleTarget`, but for the ranges at which rays begin; `closest_hit` finds the same.
 /// Not required: all hits of a ray; `position`, `part`, `primitive`, `weights` and `velocity` of what `closest` visits.
 template <class T>

@@ -161,7 +161,8 @@ struct TakesMaterials {
 };
 }  // namespace detail
 
-/// Target that visits its materials, so that a transport may refuse one before the first pulse, as of `LightPaths`.
+/// Target that visits its materials, so that a transport may refuse one before the first pulse, as `LightPaths` does.
+/// Law: its hits have a `scattered_share`.
 template <class T>
 concept VisitsMaterials = requires(const T& target, const detail::TakesMaterials& visit) {
   { target.visit_materials(visit) } -> std::same_as<void>;

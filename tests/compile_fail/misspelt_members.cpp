@@ -16,6 +16,7 @@
 // error: 'identity' has another form here. it must be: std::shared_ptr<const void> identity.. const noexcept
 // error: 'misses_cone' has another form here. it must be: bool misses_cone.const RayCone&. const noexcept
 // error: 'is_consistent' has another form here. it must be: bool is_consistent.. const
+// error: 'scattered' has another form here. it must be: double scattered.const Vec3& in, .*, double. const noexcept
 // error: 'next_open' is promised .* is missing. it must be: Tick next_open.Tick. const noexcept
 // error: 'validate' is promised .* is missing. it must be: void validate.. const
 // error: 'slot_from' is promised .* is missing. it must be: PulseIndex slot_from.Tick. const noexcept
@@ -25,6 +26,7 @@
 // error: 'deterministic' is promised .* is missing. it must be: static constexpr bool deterministic = true
 // error: 'misses_cone' is promised .* is missing. it must be: bool misses_cone.const RayCone&. const noexcept
 // error: 'reads_empty_shots' is promised .* is missing. it must be: bool reads_empty_shots.. const noexcept
+// error: 'sample' is promised .* is missing. it must be: SampledDirection sample.const Vec3& in, .*. const noexcept
 // error: 'Validating' is not a member of 'pulsecast::.*tag'|no member named 'Validating' in namespace 'pulsecast::tag'
 //
 // Each stage checks the optional members that it uses, and the promises of its parts. tests/refinements.cpp has a wrong
@@ -106,6 +108,11 @@ struct OwnShape : LeastGeometry {
 struct WideShape : LeastGeometry {
   bool misses_cone(const RayCone&) const NAME(noexcept, ) { return false; }
 };
+struct OwnLaw : Lambert {
+  using refinements = refines<tag::SamplesDirections>;
+  double scattered(const Vec3&, const Vec3&, const Vec3&, double) const NAME(noexcept, ) { return 0; }
+  SampledDirection NAME(sample, draw)(const Vec3&, const Vec3&, double, double) const noexcept { return {}; }
+};
 struct OwnTest {
   void operator()(std::span<const PrimitiveIndex>) const noexcept {}
   void prefetch(std::span<const PrimitiveIndex>) const NAME(noexcept, ) {}
@@ -150,6 +157,7 @@ int main() {
   (void)tail_of(OwnWidth{});
   const Scene<OwnShape> scene(std::vector<Scene<OwnShape>::Part>{});
   const Scene<WideShape> wide(std::vector<Scene<WideShape>::Part>{});
+  const SurfaceLaw law = OwnLaw{};
   const RayBundle rays;
   ClosestHits nearest(rays);
   Bvh<>(std::span<const Box>{}).closest(rays, OwnTest{}, nearest);

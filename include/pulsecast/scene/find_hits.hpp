@@ -23,7 +23,7 @@ void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits)
     target.closest(rays, hits);
   else
     for (std::size_t j = 0; j < rays.size; ++j) hits[j] = target.closest_hit(rays.ray(j)).value_or(Hit{});
-  if constexpr (!SceneQueries<Target>)  // a map of the user's may leave it open
+  if constexpr (!VisitsMaterials<Target>)  // a map of the user's may leave it open
     for (Hit& hit : hits.first(rays.size))
       if (std::isnan(hit.scattered_share))
         hit.scattered_share = hit.backscatter < hit.cos_incidence ? hit.backscatter / hit.cos_incidence : 1;
