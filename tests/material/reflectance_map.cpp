@@ -34,7 +34,7 @@ TEST_CASE("samples of a picture are linear shares of light by the curve of sRGB"
 }
 
 TEST_CASE("a map is linear between the wavelengths of its channels, and constant beyond") {
-  const ReflectanceMap map{.image = two_pixels(255, 188, 0)};
+  const ReflectanceMap map(two_pixels(255, 188, 0));
   const double green = linear_share(188);
   CHECK(map.reflectance(1064e-9, left, 0.9) == 1);
   CHECK(map.reflectance(612e-9, left, 0.9) == 1);
@@ -43,7 +43,7 @@ TEST_CASE("a map is linear between the wavelengths of its channels, and constant
   CHECK(map.reflectance((549e-9 + 465e-9) / 2, left, 0.9) == doctest::Approx(green / 2));
   CHECK(map.reflectance(355e-9, left, 0.9) == 0);
   CHECK(map.reflectance(532e-9, right, 0.9) == 0);
-  const ReflectanceMap grey{.image = {1, 1, 1, std::vector<std::uint8_t>{188}}};
+  const ReflectanceMap grey({1, 1, 1, std::vector<std::uint8_t>{188}});
   for (const double wavelength : {355e-9, 532e-9, 1550e-9})
     CHECK(grey.reflectance(wavelength, left, 0.9) == doctest::Approx(green));
 }
@@ -60,7 +60,7 @@ TEST_CASE("a pattern keeps the mean of the material's own reflectance") {
 
 TEST_CASE("maps out of range are refused") {
   const auto refused = [](auto change) {
-    ReflectanceMap map{.image = two_pixels(1, 2, 3)};
+    ReflectanceMap map(two_pixels(1, 2, 3));
     map.validate();
     change(map);
     CHECK_THROWS_AS(map.validate(), SettingError);
@@ -76,7 +76,7 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
   MeshData wall{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   wall.texture = {{{{0, 0}, {1, 0}, {1, 1}}}, {{{0, 0}, {1, 1}, {0, 1}}}};
   Material paint{.reflectance = 0.3, .law = Lambert{}};
-  paint.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap{.image = two_pixels(188, 188, 188)});
+  paint.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap(two_pixels(188, 188, 188)));
   const Scene<TriangleMesh<>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<>>(wall), .materials = material_table({paint})}});
   RayBundle rays;
@@ -103,7 +103,7 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
 
 TEST_CASE("a map leaves to a retroreflector and a mirror their shares") {
   Material sign{.reflectance = 0.1, .law = Retroreflector<>{.coefficient = 100, .half_angle = 0.05}};
-  sign.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap{.image = two_pixels(255, 255, 255)});
+  sign.reflectance_map = std::make_shared<const ReflectanceMap>(ReflectanceMap(two_pixels(255, 255, 255)));
   sign.validate();
   CHECK(sign.reflectance_at(1e-6, left) == doctest::Approx(1 - sign.law.returned_share()));
   CHECK(sign.scattered_share(1e-6, 1, left) == doctest::Approx(1));

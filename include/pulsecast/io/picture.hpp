@@ -12,6 +12,7 @@
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/image.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/material/reflectance_map.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Pictures of surfaces: PNG, JPEG, BMP, TGA, GIF, PSD and PNM, read by stb_image.
@@ -164,7 +165,7 @@ PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materi
     if (!of.reflectance.empty())
       if (const auto picture = shelf.get(of.reflectance))
         materials[i].reflectance_map = std::make_shared<const ReflectanceMap>(
-            of.reflectance_pattern ? ReflectanceMap::pattern(*picture) : ReflectanceMap{.image = *picture});
+            of.reflectance_pattern ? ReflectanceMap::pattern(*picture) : ReflectanceMap(*picture));
     if (Mask mask = detail::outline(of, shelf); mask.width > 0) {
       mesh.masks.resize(std::max(mesh.masks.size(), i + 1));
       mesh.masks[i] = std::move(mask);

@@ -29,6 +29,7 @@
 #include <pulsecast/material/microfacet.hpp>
 #include <pulsecast/material/normalized_phong.hpp>
 #include <pulsecast/material/phong.hpp>
+#include <pulsecast/material/reflectance_map.hpp>
 #include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/material/tabulated.hpp>
 #include <pulsecast/scene/motion.hpp>
@@ -120,7 +121,9 @@ void list_members(Archive& a, SurfaceLaw& law) {
 template <class Archive>
 void list_members(Archive& a, Material& m) {
   auto& [name, reflectance, law, classification, ground, spectrum, smooth, colour, picture, reflectance_map] = m;
-  a(name, reflectance, law, classification, ground, spectrum, colour, picture, reflectance_map);
+  auto map = std::dynamic_pointer_cast<const ReflectanceMap>(reflectance_map);
+  a(name, reflectance, law, classification, ground, spectrum, colour, picture, map);
+  reflectance_map = std::move(map);
   auto& [kind, mirrored, thickness, inside] = smooth;
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
@@ -134,8 +137,7 @@ void list_members(Archive& a, Image& image) {
 /// Lists the members of a map of reflectances.
 template <class Archive>
 void list_members(Archive& a, ReflectanceMap& map) {
-  auto& [image, wavelengths, mean] = map;
-  a(image, wavelengths, mean);
+  a(map.image, map.wavelengths, map.mean);
 }
 /// Lists the members of a named number.
 template <class Archive>
@@ -250,9 +252,11 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
     if (part.motion && !detail::Restorable<PartMotion>)
       throw FileError(path.string(), "", "cannot be written: motions of parts are not supported");
     for (const Material& material : *part.materials)
-      if (!detail::known_law(material.law))
+      if (!detail::known_law(material.law) ||
+          (material.reflectance_map && !dynamic_cast<const ReflectanceMap*>(material.reflectance_map.get())))
         throw FileError(path.string(), "",
-                        "cannot be written: the material '" + material.name + "' has a user-defined law of scattering");
+                        "cannot be written: the material '" + material.name +
+                            "' has a user-defined law of scattering or map of reflectances");
     writer(part);
   }
   header.program = detail::program_of<typename S::Part>();

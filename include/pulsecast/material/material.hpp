@@ -14,12 +14,21 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/image.hpp>
-#include <pulsecast/material/reflectance_map.hpp>
 #include <pulsecast/material/smooth_interface.hpp>
 #include <pulsecast/material/spectrum.hpp>
 #include <pulsecast/material/surface_law.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+/// Reflectance by texture coordinates, as `ReflectanceMap`.
+struct ReflectanceByTexture {
+  virtual ~ReflectanceByTexture() = default;
+  virtual void validate() const = 0;
+  /// Picture that it is read from; null without.
+  [[nodiscard]] virtual const Image* picture() const noexcept = 0;
+  /// Reflectance at a wavelength [m], where that of the material is `even`.
+  [[nodiscard]] virtual double reflectance(double wavelength, const Vec2& texture, double even) const noexcept = 0;
+};
 
 /// Surface material.
 struct Material {
@@ -33,7 +42,7 @@ struct Material {
   SmoothInterface smooth{};  ///< light that goes on from it, for a transport that follows it
   Vec3 colour{1, 1, 1};      ///< red, green and blue of its points, as displays take them (sRGB), each from 0 to 1
   std::shared_ptr<const Image> picture{};  ///< what the colour is multiplied by, by texture coordinates; empty without
-  std::shared_ptr<const ReflectanceMap> reflectance_map{};  ///< reflectance by texture coordinates; empty without
+  std::shared_ptr<const ReflectanceByTexture> reflectance_map{};  ///< reflectance by texture coordinates; empty without
 
   /// @throws SettingError for values out of range
   void validate() const {

@@ -10,7 +10,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/material/image.hpp>
+#include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -30,7 +30,7 @@ namespace PULSECAST_NAMESPACE {
 /// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
 /// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all
 /// wavelengths.
-struct ReflectanceMap {
+struct ReflectanceMap final : ReflectanceByTexture {
   Image image{};  ///< picture
   std::array<double, 3> wavelengths{612e-9, 549e-9,
                                     465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
@@ -39,10 +39,14 @@ struct ReflectanceMap {
   /// as 1064 nm.
   Vec3 mean{};
 
+  ReflectanceMap() = default;
+  /// Map of an image with linear shares of light.
+  explicit ReflectanceMap(Image of) noexcept : image(std::move(of)) {}
+
   /// Map of a pattern: the mean is that of all pixels, and 1 for a channel that is black.
   [[nodiscard]] static ReflectanceMap pattern(Image image) {
     image.validate();
-    ReflectanceMap map{.image = std::move(image)};
+    ReflectanceMap map(std::move(image));
     const std::size_t pixels = std::size_t{map.image.width} * map.image.height;
     for (std::size_t k = 0; k < 3; ++k) {
       double sum = 0;
@@ -53,7 +57,7 @@ struct ReflectanceMap {
     return map;
   }
 
-  void validate() const {
+  void validate() const override {
     image.validate();
     for (const double wavelength : wavelengths)
       require_within("ReflectanceMap::wavelengths", wavelength, 1e-8, 1e-3, "m");
@@ -63,8 +67,9 @@ struct ReflectanceMap {
     if (mean != Vec3{}) require_positive("ReflectanceMap::mean (least)", std::min({mean.x, mean.y, mean.z}), "");
   }
 
+  [[nodiscard]] const Image* picture() const noexcept override { return &image; }
   /// Reflectance at a wavelength [m] and texture coordinates, where that of the material is `even`.
-  [[nodiscard]] double reflectance(double wavelength, const Vec2& texture, double even) const noexcept {
+  [[nodiscard]] double reflectance(double wavelength, const Vec2& texture, double even) const noexcept override {
     const auto pixel = image.at(texture);
     const auto at = [&](std::size_t k) noexcept {
       const double share = linear_share(pixel[channel(k)]);

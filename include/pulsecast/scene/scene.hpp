@@ -118,8 +118,8 @@ class Scene {
         table += detail::heap_bytes(material.name);
         if (material.spectrum) shared.add(material.spectrum.get(), material.spectrum->memory());
         if (material.picture) shared.add(material.picture->samples.data(), material.picture->samples.memory());
-        if (material.reflectance_map)
-          shared.add(material.reflectance_map->image.samples.data(), material.reflectance_map->image.samples.memory());
+        if (const Image* read = material.reflectance_map ? material.reflectance_map->picture() : nullptr)
+          shared.add(read->samples.data(), read->samples.memory());
       }
       shared.add(part.materials.get(), table);
     }
