@@ -65,10 +65,13 @@ int main() {
   std::printf("bodies %.9g\n", light_bodies(of_glass));
   std::printf("twice %.9g\n", light_twice(matt));
 
-  const auto black = town_with({.reflectance = 0});
-  const Survey survey{car(1'398'000), LatticeFootprint{19}, black, DirectLight{}, Receiver{}, FirstHit{}};
-  auto workspace = survey.workspace();
-  EnergyLedger all;
-  for (PulseIndex i = 0; i < survey.size(); i += 466) all.add(survey(i, workspace).energy);
-  std::printf("share of the light that meets windows: %.3f\n", all.share(&EnergyLedger::absorbed));
+  const auto absorbed = [](const Scene<Mesh>& town) {
+    const Survey survey{car(1'398'000), LatticeFootprint{19}, town, DirectLight{}, Receiver{}, FirstHit{}};
+    auto workspace = survey.workspace();
+    EnergyLedger all;
+    for (PulseIndex i = 0; i < survey.size(); i += 466) all.add(survey(i, workspace).energy);
+    return all.share(&EnergyLedger::absorbed);
+  };
+  std::printf("share of the light that meets windows: %.3f\n",
+              absorbed(town_with({.reflectance = 0})) - absorbed(town_with({.reflectance = 1})));
 }

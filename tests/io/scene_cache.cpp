@@ -254,6 +254,27 @@ TEST_CASE("height fields and grids of voxels come back, too") {
   CHECK(opened.scene->bounds() == scene.bounds());
 }
 
+TEST_CASE("laws and maps of reflectances of one's own are refused by name") {
+  struct OwnLaw {
+    double backscatter(double cosine, double) const noexcept { return cosine; }
+    double scattered_share(double, double) const noexcept { return 1; }
+  };
+  struct OwnMap final : ReflectanceByTexture {
+    void validate() const override {}
+    const Image* picture() const noexcept override { return nullptr; }
+    double reflectance(double, const Vec2& texture, double) const noexcept override { return texture.x; }
+  };
+  using S = Scene<TriangleMesh<>>;
+  for (const Material& own : {Material{.name = "snow", .law = OwnLaw{}},
+                              Material{.name = "snow", .reflectance_map = std::make_shared<const OwnMap>()}}) {
+    const S scene(
+        {{.geometry = shared<TriangleMesh<>>(some_mesh(1, 10)), .materials = material_table({own, {}, {}, {}})}});
+    CHECK_THROWS_WITH_AS(save_scene(folder / "own.cache", scene, {}),
+                         doctest::Contains("'snow' has a user-defined law of scattering or map of reflectances"),
+                         FileError);
+  }
+}
+
 TEST_CASE("a scene that moves is made from its parts and its time") {
   using S = MovingScene<TriangleMesh<KdTree<>>>;
   const auto parts = [] {
