@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/echo.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
