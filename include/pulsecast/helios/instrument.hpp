@@ -47,12 +47,10 @@ class Instrument {
     return channels_.pulse(i);
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return channels_.pulse_lanes(i, count);
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
   /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty

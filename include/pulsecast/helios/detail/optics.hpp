@@ -100,13 +100,15 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
 
+/// Number for messages, rounded to three digits after the point.
+[[nodiscard]] inline std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
+
 /// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are
 /// those of the document.
 [[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
                                                           const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
   std::vector<std::string> notes;
-  const auto brief = [](double x) { return text::to_text(std::round(x * 1e3) / 1e3); };
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
