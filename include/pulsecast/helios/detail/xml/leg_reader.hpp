@@ -168,10 +168,8 @@ class LegReader {
       inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();
-        if (content.find_first_not_of(" \t\r\n") == std::string::npos) {
-          report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
-          return;
-        }
+        if (content.find_first_not_of(" \t\r\n") == std::string::npos)
+          return report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
         const auto seconds = number_of(content);
         if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
           report_.fault(text.place(),

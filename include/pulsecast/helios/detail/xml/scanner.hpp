@@ -239,12 +239,10 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
         rest.remove_prefix(end + 1);
         continue;
       }
-      if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates) {
-        io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
-                                      xml_number(least_rate) + " to " + xml_number(most_rate) +
-                                      " Hz, with commas between");
-        return;
-      }
+      if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates)
+        return io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
+                                             xml_number(least_rate) + " to " + xml_number(most_rate) +
+                                             " Hz, with commas between");
       rates.push_back(*rate);
       if (end == std::string_view::npos) return;
       rest.remove_prefix(end + 1);
