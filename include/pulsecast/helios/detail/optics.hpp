@@ -145,12 +145,11 @@ struct OpticBuilder {
   const ChannelSettings& channel;
   const LegScannerSettings& leg;
   double pulse_rate;
-  double active;     ///< running time since the last start; optics that run on between legs continue from it [s]
-  double ahead = 0;  ///< result [s]
-  double tilt = 0;   ///< result [rad]
+  double active;          ///< running time since the last start; optics that run on between legs continue from it [s]
+  double ahead = active;  ///< result [s]
+  double tilt = 0;        ///< result [rad]
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
-    ahead = active;
     if (!(leg.scan_rate > 0))
       throw SettingError("scanFreq_hz", leg.scan_rate, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
@@ -162,6 +161,7 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
     const double sweep = channel.scan_angle_max, f = leg.scan_rate;
+    ahead = 0;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
     const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
@@ -171,7 +171,6 @@ struct OpticBuilder {
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
-    ahead = active;
     const double f = leg.scan_rate > 0 ? leg.scan_rate : channel.scan_rate_max;
     if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for a Palmer mirror");
     return PalmerMirror{.rotation_rate = f, .half_angle = scan_angle_of(channel, leg)};
@@ -179,7 +178,6 @@ struct OpticBuilder {
 
   /// Fibres divide the full scan angle evenly, each at the lower end of its share.
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const LineOptic& optic) {
-    ahead = active;
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
     tilt = optic.fibers > 1 ? -angle / n : 0;
     return FiberArray{.fibers = static_cast<std::uint32_t>(optic.fibers),
@@ -188,7 +186,6 @@ struct OpticBuilder {
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RisleyOptic& optic) {
-    ahead = active;
     RisleyPrisms out{.surrounding_index = optic.air_refractive_index, .incident = optic.incident_beam};
     for (const RisleyPrism& p : optic.prisms)
       if (std::fabs(p.angle) > radians(1e-6))
