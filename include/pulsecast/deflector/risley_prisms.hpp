@@ -15,9 +15,8 @@ namespace PULSECAST_NAMESPACE {
 /// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end,
 /// towards which it bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;  ///< angle between the faces [rad]
-  double rotation_rate =
-      100;  ///< rate, positive from up to right as seen along forward; at most 1e12 in magnitude [Hz]
+  double wedge = pi / 10;          ///< angle between the faces [rad]
+  double rotation_rate = 100;      ///< positive from up to right as seen along forward; at most 1e12 in magnitude [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
   double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there

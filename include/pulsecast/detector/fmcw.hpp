@@ -22,8 +22,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
-  double bandwidth =
-      1e9;  ///< change of frequency in a sweep, 1e6 to 1e12: surfaces closer than c / 2B are one echo [Hz]
+  double bandwidth = 1e9;  ///< frequency change in a sweep, 1e6 to 1e12: surfaces closer than c / 2B are one echo [Hz]
   double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
   double threshold = 1e-12;       ///< minimum power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]

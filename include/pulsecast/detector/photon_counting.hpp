@@ -24,12 +24,11 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a receiver that counts photons: single-photon avalanche diodes, in linear or Geiger mode.
 struct PhotonCountingSettings {
-  double efficiency = 0.3;  ///< detections per photon, in (0, 1]
-  double dark_rate = 0;     ///< dark counts of all pixels together, at most 1e12 [1/s]
-  double background = 0;    ///< received sunlight [W]
-  std::size_t pixels = 1;   ///< detectors that share the light evenly, at most 4096
-  double dead_time =
-      20e-9;              ///< time after a detection in which a pixel is blind; infinite: one a shot, Geiger mode [s]
+  double efficiency = 0.3;   ///< detections per photon, in (0, 1]
+  double dark_rate = 0;      ///< dark counts of all pixels together, at most 1e12 [1/s]
+  double background = 0;     ///< received sunlight [W]
+  std::size_t pixels = 1;    ///< detectors that share the light evenly, at most 4096
+  double dead_time = 20e-9;  ///< time that a pixel is blind after a detection; infinite: one a shot, Geiger mode [s]
   double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
   double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
   double jitter = 0;                              ///< standard deviation of a detection's time [s]

@@ -11,12 +11,10 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/channels.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
 /// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
@@ -49,12 +47,10 @@ class Instrument {
     return channels_.pulse(i);
   }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return channels_.pulse_lanes(i, count);
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
   /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty
@@ -98,8 +94,6 @@ template <EchoWidth Width = NoWidth>
 
 #if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
 #include <cmath>
-
-#include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

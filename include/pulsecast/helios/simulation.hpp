@@ -167,7 +167,6 @@ class Simulation {
 #include <algorithm>
 
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -49,10 +49,7 @@ struct CompiledSurvey {
 #include <utility>
 
 #include <pulsecast/helios/detail/leg_paths.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/xml/writer.hpp>
-#include <pulsecast/helios/instrument.hpp>
-#include <pulsecast/platform/platform.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -80,8 +77,8 @@ class SurveyCompiler {
       const double late = follow(k, path, compiled), way = std::max(0.0, paths_[k].duration - late);
       const double duration = in_whole_slots(duration_of(k, way), rate, paths_[k].rounding);
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + LegPaths::brief(way) +
-                           " s, and stays for " + LegPaths::brief(duration - way) +
+        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
+                           brief(duration - way) +
                            " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
       require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
       require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");

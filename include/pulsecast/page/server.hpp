@@ -175,14 +175,9 @@ class PageServer {
       const std::string last = !fresh.empty()    ? std::to_string(fresh.back().pulse)
                                : other || !after ? ""
                                                  : std::to_string(*after);
-      json.begin_object()
-          .member("run", run_)
-          .member("state", state_)
-          .member("done", progress_.done)
-          .member("total", progress_.total);
-      json.member("echoes", sample_.seen())
-          .member("seconds", progress_.seconds)
-          .member("largest_key", sample_.largest_key());
+      json.begin_object().member("run", run_).member("state", state_);
+      json.member("done", progress_.done).member("total", progress_.total).member("echoes", sample_.seen());
+      json.member("seconds", progress_.seconds).member("largest_key", sample_.largest_key());
       json.member("more", end != all.end()).member("last", last);
       if (other) {
         json.key("legs");

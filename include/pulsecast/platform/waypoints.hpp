@@ -130,20 +130,18 @@ class Waypoints {
   /// cubic Bessel interpolation; Catmull & Rom 1974 where the times are evenly spaced.
   void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
-    const auto mean = [&](std::size_t i) {
-      return (points_[i + 1].position - points_[i].position) / interval(i);
-    };  // velocity
+    const auto velocity = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };
     for (std::size_t i = first; i < last; ++i)
       require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the previous one)",
-                     length(mean(i)), "m/s");
-    velocities_[first] = velocities_[last] = mean(first);
+                     length(velocity(i)), "m/s");
+    velocities_[first] = velocities_[last] = velocity(first);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));
-      velocities_[i] = share * mean(i - 1) + (1 - share) * mean(i);
+      velocities_[i] = share * velocity(i - 1) + (1 - share) * velocity(i);
     }
     if (last > first + 1) {
-      velocities_[first] = 2.0 * mean(first) - velocities_[first + 1];
-      velocities_[last] = 2.0 * mean(last - 1) - velocities_[last - 1];
+      velocities_[first] = 2.0 * velocity(first) - velocities_[first + 1];
+      velocities_[last] = 2.0 * velocity(last - 1) - velocities_[last - 1];
     }
   }
 

@@ -33,7 +33,6 @@ class AnySurvey {
   [[nodiscard]] virtual PulseIndex next_pulse(PulseIndex i) const noexcept = 0;
   [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
 
-  /// As the concept SimulatesInOrder requires.
   template <class Next>
   void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
     simulate(

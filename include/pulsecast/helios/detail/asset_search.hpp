@@ -128,17 +128,15 @@ class AssetSearch {
   }
 
   [[nodiscard]] bool is_inside(const std::filesystem::path& place) const {
-    return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) { return holds(folder, place); });
+    return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) {
+      return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
+    });
   }
 
   /// Warning if the file of a name lies outside the folders; empty otherwise.
   [[nodiscard]] std::string warning(const std::string& name, const std::filesystem::path& place) const {
     if (std::filesystem::path(name).is_absolute() || is_inside(place)) return "";
     return "is outside the assets folders: " + place.string();
-  }
-
-  [[nodiscard]] static bool holds(const std::filesystem::path& folder, const std::filesystem::path& place) {
-    return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
   }
 
   [[nodiscard]] std::string problem(const std::string& name, const std::vector<std::filesystem::path>& places,

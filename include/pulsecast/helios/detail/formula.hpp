@@ -80,46 +80,33 @@ class Formula {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
   }
 
-  bool take(char c) {
+  /// Takes one of several characters; 0 if another one follows.
+  char take_any(std::string_view chars) {
     skip();
-    if (at_ == text_.size() || text_[at_] != c) return false;
-    ++at_;
-    return true;
+    return at_ < text_.size() && chars.find(text_[at_]) != chars.npos ? text_[at_++] : '\0';
   }
+  bool take(char c) { return take_any({&c, 1}) != '\0'; }
 
   void sum(int deep) {
     if (deep > 100) fail("is nested too deeply");
     product(deep);
-    for (;;) {
-      if (take('+')) {
-        product(deep);
-        apply([](double a, double b) { return a + b; });
-      } else if (take('-')) {
-        product(deep);
-        apply([](double a, double b) { return a - b; });
-      } else
-        return;
+    while (const char sign = take_any("+-")) {
+      product(deep);
+      apply(sign == '+' ? +[](double a, double b) { return a + b; } : +[](double a, double b) { return a - b; });
     }
   }
 
   void product(int deep) {
     signed_power(deep);
-    for (;;) {
-      if (take('*')) {
-        signed_power(deep);
-        apply([](double a, double b) { return a * b; });
-      } else if (take('/')) {
-        signed_power(deep);
-        apply([](double a, double b) { return a / b; });
-      } else
-        return;
+    while (const char sign = take_any("*/")) {
+      signed_power(deep);
+      apply(sign == '*' ? +[](double a, double b) { return a * b; } : +[](double a, double b) { return a / b; });
     }
   }
 
   void signed_power(int deep) {
     bool negative = false;
-    for (skip(); at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+'); skip())
-      negative ^= text_[at_++] == '-';
+    while (const char sign = take_any("+-")) negative ^= sign == '-';
     value(deep);
     while (take('^')) {
       const bool minus = take('-');

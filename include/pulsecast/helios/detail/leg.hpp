@@ -15,16 +15,13 @@
 #include <vector>
 
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/instrument.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
-#include <pulsecast/pulse_lanes.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {
@@ -54,7 +51,6 @@ struct SurveyPath {
     return detail::visit_path(path, [&](const auto& p) noexcept { return p.at(start + t); });
   }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     return detail::visit_path(path,
                               [&](const auto& p) noexcept { return find_poses(p, t + start, all_lanes(), poses); });
@@ -109,7 +105,6 @@ class SurveyLeg {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires.
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     auto out = truth_.pulse_lanes(i, count);
     for (std::size_t lane = 0; noisy_ && lane < out.size; ++lane) {
@@ -125,7 +120,6 @@ class SurveyLeg {
     return out;
   }
 
-  /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }

@@ -16,20 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 #include <pulsecast/helios/detail/survey_options.hpp>
 #include <pulsecast/helios/detail/trajectory_format.hpp>
-#include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/platform/ground_vehicle.hpp>
-#include <pulsecast/platform/multicopter.hpp>
-#include <pulsecast/platform/platform.hpp>
-#include <pulsecast/platform/straight_line.hpp>
-#include <pulsecast/platform/tripod.hpp>
-#include <pulsecast/platform/waypoints.hpp>
 
 /// Paths of the legs of a survey document.
 namespace PULSECAST_NAMESPACE::helios {
@@ -57,20 +47,14 @@ class LegPaths {
   [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Number for messages, rounded to three digits after the point.
-  [[nodiscard]] static std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
-
   /// True if a leg continues the plan of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
-    const auto shares = [&]<class Plan>(const std::shared_ptr<const Plan>& plan) {
+    const auto shared = [&]<class Plan>(const std::shared_ptr<const Plan>* plan) {
       const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);
-      return before && *before == plan;
+      return plan && before && *before == *plan;
     };
-    const auto* const flight =
-        k > 0 ? std::get_if<std::shared_ptr<const MulticopterFlight>>(&paths_[k].path.path) : nullptr;
-    const auto* const drive =
-        k > 0 ? std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path) : nullptr;
-    return (flight && shares(*flight)) || (drive && shares(*drive));
+    return k > 0 && (shared(std::get_if<std::shared_ptr<const MulticopterFlight>>(&paths_[k].path.path)) ||
+                     shared(std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path)));
   }
 
   /// Name of a leg for messages.
@@ -110,25 +94,13 @@ class LegPaths {
   }
 
   void plan_paths(const GroundHeight& ground) {
-    const std::size_t n = survey_.legs.size();
-    paths_.resize(n);
-    switch (survey_.platform.kind) {
-      case PlatformKind::stationary:
-        for (std::size_t k = 0; k < n; ++k) paths_[k].path.path = Tripod{places_[k]};
-        break;
-      case PlatformKind::linear_path:
-        fly_straight();
-        break;
-      case PlatformKind::multicopter:
-        fly();
-        break;
-      case PlatformKind::ground_vehicle:
-        drive(ground);
-        break;
-      case PlatformKind::interpolated:
-        follow();
-        break;
-    }
+    const PlatformKind kind = survey_.platform.kind;
+    paths_.resize(survey_.legs.size());
+    if (kind == PlatformKind::linear_path) return fly_straight();
+    if (kind == PlatformKind::multicopter) return fly();
+    if (kind == PlatformKind::ground_vehicle) return drive(ground);
+    if (kind == PlatformKind::interpolated) return follow();
+    for (std::size_t k = 0; k < paths_.size(); ++k) paths_[k].path.path = Tripod{places_[k]};
   }
 
   [[nodiscard]] double speed_of(std::size_t k) const {
@@ -200,8 +172,8 @@ class LegPaths {
       s.turn = p.smooth_turn ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn;
       s.yaw_rate = std::clamp(d.yaw_speed, 1e-3, 1e3);
       s.bank_max = std::clamp(d.pitch_offset, 1e-3, 1.5);
-      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + brief(degrees(s.yaw_rate)));
-      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + brief(degrees(s.bank_max)));
+      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + detail::brief(degrees(s.yaw_rate)));
+      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + detail::brief(degrees(s.bank_max)));
       s.departure_heading = heading;
       heading = heading_from(end - 1, heading);
       s.arrival_heading = heading_from(end, heading);
@@ -249,8 +221,8 @@ class LegPaths {
     const double way = std::hypot(places_[k + 1].x - places_[k].x, places_[k + 1].y - places_[k].y);
     const double expected = way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
     if (paths_[k].duration > 2 * expected)
-      warn(leg_name(k) + ": the vehicle takes " + brief(paths_[k].duration) + " s for " + brief(way) + " m at up to " +
-           brief(s.speed) + " m/s; turns and steep ground take time");
+      warn(leg_name(k) + ": the vehicle takes " + detail::brief(paths_[k].duration) + " s for " + detail::brief(way) +
+           " m at up to " + detail::brief(s.speed) + " m/s; turns and steep ground take time");
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.

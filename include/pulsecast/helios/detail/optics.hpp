@@ -12,18 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/fiber_array.hpp>
-#include <pulsecast/deflector/fixed_beam.hpp>
-#include <pulsecast/deflector/oscillating_mirror.hpp>
-#include <pulsecast/deflector/palmer_mirror.hpp>
-#include <pulsecast/deflector/polygon_mirror.hpp>
-#include <pulsecast/deflector/risley_prisms.hpp>
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/survey_optic.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/scanner/scanner.hpp>
 
 /// Converts the instrument of a survey document to stages of the library.
 namespace PULSECAST_NAMESPACE::helios {
@@ -110,13 +100,15 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
 
+/// Number for messages, rounded to three digits after the point.
+[[nodiscard]] inline std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
+
 /// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are
 /// those of the document.
 [[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
                                                           const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
   std::vector<std::string> notes;
-  const auto brief = [](double x) { return text::to_text(std::round(x * 1e3) / 1e3); };
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
@@ -153,12 +145,11 @@ struct OpticBuilder {
   const ChannelSettings& channel;
   const LegScannerSettings& leg;
   double pulse_rate;
-  double active;     ///< running time since the last start; optics that run on between legs continue from it [s]
-  double ahead = 0;  ///< result [s]
-  double tilt = 0;   ///< result [rad]
+  double active;          ///< running time since the last start; optics that run on between legs continue from it [s]
+  double ahead = active;  ///< result [s]
+  double tilt = 0;        ///< result [rad]
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
-    ahead = active;
     if (!(leg.scan_rate > 0))
       throw SettingError("scanFreq_hz", leg.scan_rate, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
@@ -170,6 +161,7 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
     const double sweep = channel.scan_angle_max, f = leg.scan_rate;
+    ahead = 0;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
     const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
@@ -179,7 +171,6 @@ struct OpticBuilder {
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
-    ahead = active;
     const double f = leg.scan_rate > 0 ? leg.scan_rate : channel.scan_rate_max;
     if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for a Palmer mirror");
     return PalmerMirror{.rotation_rate = f, .half_angle = scan_angle_of(channel, leg)};
@@ -187,7 +178,6 @@ struct OpticBuilder {
 
   /// Fibres divide the full scan angle evenly, each at the lower end of its share.
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const LineOptic& optic) {
-    ahead = active;
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
     tilt = optic.fibers > 1 ? -angle / n : 0;
     return FiberArray{.fibers = static_cast<std::uint32_t>(optic.fibers),
@@ -196,7 +186,6 @@ struct OpticBuilder {
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RisleyOptic& optic) {
-    ahead = active;
     RisleyPrisms out{.surrounding_index = optic.air_refractive_index, .incident = optic.incident_beam};
     for (const RisleyPrism& p : optic.prisms)
       if (std::fabs(p.angle) > radians(1e-6))

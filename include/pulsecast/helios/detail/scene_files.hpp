@@ -22,40 +22,26 @@ namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-template <class Source>
-concept WithMaterial = requires(Source source) {
-  source.material;
-};
-template <class Source>
-concept WithLeafAngles = requires(Source source) {
-  source.leaf_angles;
-};
-template <class Source>
-concept WithNameTable = requires(Source source) {
-  source.materials;
-};
-template <class Source>
-concept WithClasses = requires(Source source) {
-  source.classes;
-};
-
 /// Files in the settings of scenes.
 class SceneFiles {
  public:
   void add(const PartSource& source) {
-    std::visit(
-        [this](const auto& s) {
-          for (const std::filesystem::path& file : s.files) {
-            add(file);
-            if (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj")
-              objs.insert(file);
-          }
-          if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
-          if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
-          if constexpr (WithNameTable<decltype(s)>) add_material(s.materials);
-          if constexpr (WithClasses<decltype(s)>) add(s.classes);
-        },
-        source);
+    for (const std::filesystem::path& file : std::visit([](const auto& s) { return s.files; }, source)) {
+      add(file);
+      if (std::holds_alternative<ObjSource>(source) || text::lower(file.extension().string()) == ".obj")
+        objs.insert(file);
+    }
+    if (const auto* const raster = std::get_if<GeoTiffSource>(&source)) {
+      add_material(raster->material.file);
+      add(raster->classes);
+    } else if (const auto* const cloud = std::get_if<XyzSource>(&source)) {
+      add_material(cloud->material.file);
+    } else if (const auto* const voxels = std::get_if<VoxelSource>(&source)) {
+      add_material(voxels->material.file);
+      add(voxels->leaf_angles);
+    } else if (const auto* const mesh = std::get_if<MeshSource>(&source)) {
+      add_material(mesh->materials);
+    }
   }
 
   std::set<std::filesystem::path> all{}, objs{}, mtls{};  ///< OBJ and MTL files are among them

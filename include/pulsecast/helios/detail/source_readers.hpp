@@ -19,7 +19,6 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
@@ -28,14 +27,9 @@
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 #include <pulsecast/io/png_heights.hpp>
-#include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/vox.hpp>
 #include <pulsecast/io/world_file.hpp>
 #include <pulsecast/shape/class_materials.hpp>
-#include <pulsecast/shape/height_field.hpp>
-#include <pulsecast/shape/raster.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
-#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Reading of the sources of parts.
 namespace PULSECAST_NAMESPACE::helios {
@@ -48,10 +42,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
     warn(model.warnings);
     for (const io::MaterialPictures& pictures : model.pictures) pictures.append_to(model.files);
     add_files(model.files);
-    if (model.mesh.triangles.empty()) {
-      warn({file.string() + ": is left out"});
-      return;
-    }
+    if (model.mesh.triangles.empty()) return warn({file.string() + ": is left out"});
     all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads),
                    table(std::move(model.materials))});
   });
@@ -74,10 +65,9 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzS
       drop_bare(file, cloud);
     else
       warn(cloud.warnings);
-    if (cloud.voxels.cells.empty()) {
-      warn({file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
-      return;
-    }
+    if (cloud.voxels.cells.empty())
+      return warn(
+          {file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
     MaterialTable materials = assign_materials(source.material, cloud.voxels);
     all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
   });
@@ -116,13 +106,9 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     io::VoxelFile voxels = io::read_voxel_file(file, s);
     warn(voxels.warnings);
-    if (voxels.voxels.cells.empty()) {
-      warn({file.string() + ": holds no occupied voxel, and is left out"});
-      return;
-    }
+    if (voxels.voxels.cells.empty()) return warn({file.string() + ": holds no occupied voxel, and is left out"});
     MaterialTable materials = assign_materials(source.material, voxels.voxels);
-    if (!source.leaf_angles
-             .empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
+    if (!source.leaf_angles.empty())  // convention: a `ladlut` gives 2 pi times the extinction of unit density
       for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
     if (source.mode == VoxelMode::transmittive)
       all.push_back(

@@ -9,7 +9,6 @@
 #include <memory>
 #include <variant>
 
-#include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fiber_array.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
@@ -19,7 +18,6 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
-#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Optics of survey documents, as one type.
@@ -56,7 +54,6 @@ struct SurveyOptic {
     return exact(TickLanes(t), beam)[0] != 0;
   }
 
-  /// As the concept ForeseesOpening requires.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     const Tick now = t + ahead;
     const Tick opens = std::visit(
@@ -73,7 +70,6 @@ struct SurveyOptic {
   /// True pose of the beam, with the errors of deflection and head.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const simd::Mask open = exact(t, poses);
     if (deflection_error || head_error)

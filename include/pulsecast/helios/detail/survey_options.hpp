@@ -22,9 +22,9 @@ struct SurveyBuildOptions {
   std::uint64_t seed = 0;      ///< seed of leg offsets and noise
   bool platform_noise = true;  ///< true: platform noise as in the survey; false: none
   bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
-  std::vector<std::string>
-      leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty,
-                     ///< for settings of a program: then the notes of `read_survey` are given with the others
+  /// Place of each leg in its document, for messages: `survey.xml:12:5`. May be empty, for settings of a program: then
+  /// the notes of `read_survey` are given with the others.
+  std::vector<std::string> leg_places{};
 
   /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const {

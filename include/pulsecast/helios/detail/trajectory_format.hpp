@@ -23,8 +23,7 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
   for (const auto& [place, name] : columns) most = std::max(most, place);
   format.names = io::ColumnNames::nowhere;
   format.columns.clear();
-  for (int i = 0; i <= most; ++i) format.columns.push_back("column " + std::to_string(i));
-  for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
+  for (int i = 0; i <= most; ++i) format.columns.push_back("column_" + std::to_string(i));
   format.left_out = format.columns;
   for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
   std::erase_if(format.left_out,

@@ -91,7 +91,12 @@ class MpiGroup {
   /// Begins a run, whose messages go to `handler`. Other processes may be in the next run already: their messages are
   /// kept for it.
   using Handler = void (*)(void* run, int from, int kind, MpiMessage message);
-  void begin(void* run, Handler handler);
+  void begin(void* run, Handler handler) {
+    run_ = run;
+    handler_ = handler;
+    parity_ = 1 - parity_;
+    for (Early& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
+  }
   void end() noexcept { handler_ = nullptr; }
   /// Sends a message to the same run on another process; `kind` is from 0 to 7.
   void send(int to, int kind, MpiMessage message) {
@@ -142,7 +147,6 @@ class MpiPiece {
   /// Resets the piece, keeping its memory.
   virtual void clear() = 0;
   virtual void operator()(const EchoBatch& batch) = 0;  ///< adds a batch, in pulse order
-  /// As the concept ChoosesShots describes.
   [[nodiscard]] virtual bool reads_empty_shots() const noexcept { return true; }
   /// Size of the piece, after the last batch.
   [[nodiscard]] virtual MpiExtent extent() = 0;
@@ -241,13 +245,6 @@ class MpiOutput {
   std::uint32_t number_;
   std::vector<std::unique_ptr<MpiPiece>> spare_;
 };
-
-inline void MpiGroup::begin(void* run, Handler handler) {
-  run_ = run;
-  handler_ = handler;
-  parity_ = 1 - parity_;
-  for (Early& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
-}
 
 inline bool MpiGroup::serve() {
   return channel_.poll([this](int from, int kind, MpiChannel::Bytes bytes) {

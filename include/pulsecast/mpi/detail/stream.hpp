@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/echo.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
@@ -26,7 +24,6 @@ class MpiBatchWriter {
   explicit MpiBatchWriter(io::OutputFile file, bool empty_shots = true)
       : file_(std::move(file)), empty_shots_(empty_shots) {}
 
-  /// As the concept ChoosesShots describes.
   [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
 
   void operator()(const EchoBatch& batch) {

@@ -221,12 +221,11 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 ///     {"count":N,"columns":[{"name":"x","kind":"linear","offset":0,"step":0.001,"differences":true,"planes":2},...]}
 ///
 /// The deflated bytes are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1)
-/// step, offset exp((code
-/// - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the previous code, doubled,
-/// less one if negative. `per_pulse`, times the pulse's number, is added to a value. Values are exact to half a step.
-/// Positions have that of the settings, also the origins of pulses (`from_x` and so on). Steps of others: time 0.1 us,
-/// scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width 1 ps. Amplitudes are exact to 1 %, integers
-/// exactly. A colour is the number 65536 red + 256 green + blue.
+/// step, offset exp((code - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the
+/// previous code, doubled, less one if negative. `per_pulse`, times the pulse's number, is added to a value. Values are
+/// exact to half a step. Positions have that of the settings, also the origins of pulses (`from_x` and so on). Steps of
+/// others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width 1 ps. Amplitudes are exact to
+/// 1 %, integers exactly. A colour is the number 65536 red + 256 green + blue.
 [[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points,
                                               const PageColumnSettings& settings = {}) {
   settings.validate();

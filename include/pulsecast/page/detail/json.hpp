@@ -65,20 +65,16 @@ class JsonWriter {
     if (!text_.empty() && none_after.find(text_.back()) == std::string_view::npos) text_ += ',';
   }
 
-  JsonWriter& open(char bracket) {
-    separate();
-    text_ += bracket;
-    return *this;
-  }
+  JsonWriter& open(char bracket) { return token({&bracket, 1}); }
 
   JsonWriter& close(char bracket) {
     text_ += bracket;
     return *this;
   }
 
-  JsonWriter& token(std::string_view digits) {
+  JsonWriter& token(std::string_view text) {
     separate();
-    text_ += digits;
+    text_ += text;
     return *this;
   }
 

@@ -52,10 +52,7 @@ class BufferedExchange final : public httplib::Stream {
     response.append(from, size);
     return static_cast<ssize_t>(size);
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const override {
-    ip = "127.0.0.1";
-    port = 0;
-  }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { get_local_ip_and_port(ip, port); }
   void get_local_ip_and_port(std::string& ip, int& port) const override {
     ip = "127.0.0.1";
     port = 0;

@@ -44,10 +44,8 @@ struct RotationList {
     Rotation all = no_rotation;  // as `extrinsic` and `intrinsic` do, but documents may have many turns
     for (const AxisTurn& turn : turns) {
       require_finite("angle_deg", degrees(turn.angle), "deg");
-      const Rotation next = rotation_about(turn.axis == Axis::x   ? axis::right
-                                           : turn.axis == Axis::y ? axis::forward
-                                                                  : axis::up,
-                                           turn.angle);
+      const Vec3 about = turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up;
+      const Rotation next = rotation_about(about, turn.angle);
       all = local ? all * next : next * all;
     }
     return normalize(all);

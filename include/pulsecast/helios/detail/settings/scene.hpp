@@ -10,11 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/part_source.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/part.hpp>
@@ -169,26 +164,14 @@ enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, sno
 
 namespace detail {
 
-/// Medium of a visibility [m], or of a rate [mm/h], for light of a wavelength [m]. @throws SettingError for values out
-/// of its range
+/// Medium of a preset other than none, by its visibility [m] or rate [mm/h], for light of a wavelength [m].
+/// @throws SettingError for values out of its range
 [[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
-  switch (preset) {
-    case MediumPreset::fog:
-      return {.medium = fog(visibility, wavelength)};
-    case MediumPreset::haze:
-      return {.medium = haze(visibility, wavelength)};
-    case MediumPreset::dust:
-      return {.medium = dust(visibility, wavelength)};
-    case MediumPreset::smoke:
-      return {.medium = smoke(visibility, wavelength)};
-    case MediumPreset::rain:
-      return MediumRegion::of(rain(rate, wavelength));
-    case MediumPreset::snow:
-      return MediumRegion::of(snow(rate, wavelength));
-    case MediumPreset::none:
-      break;
-  }
-  return {};
+  if (preset == MediumPreset::fog) return {.medium = fog(visibility, wavelength)};
+  if (preset == MediumPreset::haze) return {.medium = haze(visibility, wavelength)};
+  if (preset == MediumPreset::dust) return {.medium = dust(visibility, wavelength)};
+  if (preset == MediumPreset::smoke) return {.medium = smoke(visibility, wavelength)};
+  return MediumRegion::of(preset == MediumPreset::rain ? rain(rate, wavelength) : snow(rate, wavelength));
 }
 
 }  // namespace detail

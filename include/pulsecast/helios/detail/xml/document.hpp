@@ -16,7 +16,6 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/detail/xml/encoding.hpp>
 #include <pulsecast/io/input_file.hpp>
 
@@ -204,14 +203,8 @@ class XmlDocument {
   }
 
   [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
-    switch (status) {
-      case pugi::status_end_element_mismatch:
-        return " (this end tag does not match the last start tag)";
-      case pugi::status_no_document_element:
-        return " (no element)";
-      default:
-        return "";
-    }
+    if (status == pugi::status_end_element_mismatch) return " (this end tag does not match the last start tag)";
+    return status == pugi::status_no_document_element ? " (no element)" : "";
   }
 
   /// Offset of the byte after the `<` of an element.

@@ -20,11 +20,8 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 
 /// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and
@@ -82,12 +79,8 @@ class XmlInput {
   /// Text of an attribute, if it is given.
   [[nodiscard]] std::optional<std::string> given(const char* name) {
     if (!knows(name)) known_.emplace_back(name);
-    if (params_) {
-      const pugi::xml_node found = param(name);
-      return found ? std::optional<std::string>(found.attribute("value").value()) : std::nullopt;
-    }
-    const pugi::xml_attribute found = node_.attribute(name);
-    return found ? std::optional<std::string>(found.value()) : std::nullopt;
+    if (!has(name)) return std::nullopt;
+    return params_ ? param(name).attribute("value").value() : node_.attribute(name).value();
   }
 
   /// Text of an attribute; none if it is empty.

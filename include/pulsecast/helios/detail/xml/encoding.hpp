@@ -36,12 +36,8 @@ namespace PULSECAST_NAMESPACE::helios::xml {
                              : lead >= 0xE0 && lead < 0xF0 ? 2
                              : lead >= 0xF0 && lead < 0xF5 ? 3
                                                            : 9;
-    const unsigned least = lead == 0xE0   ? 0xA0
-                           : lead == 0xF0 ? 0x90
-                                          : 0x80,
-                   most = lead == 0xED   ? 0x9F
-                          : lead == 0xF4 ? 0x8F
-                                         : 0xBF;
+    const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+    const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
     if (more == 9 || (more > 0 && (byte(i + 1) < least || byte(i + 1) > most))) return i;
     for (std::size_t k = 2; k <= more; ++k)
       if ((byte(i + k) & 0xC0) != 0x80) return i;

@@ -14,7 +14,6 @@
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -30,8 +29,7 @@ class LegChecks {
   void check_platform(Io& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
     const LegPlatformSettings& platform = settings.platform;
-    const bool follows = survey_.platform.kind == PlatformKind::interpolated;
-    if (follows) {
+    if (survey_.platform.kind == PlatformKind::interpolated) {
       if (!platform.trajectory || platform.trajectory->file.empty())
         io.fault("trajectory",
                  "<platformSettings> has no attribute 'trajectory', which platform=\"interpolated\" follows");
@@ -102,11 +100,9 @@ class LegChecks {
     const double pulse_rate = pulse_rate_of(survey_.scanner, s);
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
     const auto limit = [&](const char* expected, const char* name, double frequency) {
-      if (resolution == 0) {
-        io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_rate) + ": expected " + expected + " the scanner's " +
-                                    name + ", " + hertz(frequency));
-        return;
-      }
+      if (resolution == 0)
+        return io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_rate) + ": expected " + expected +
+                                           " the scanner's " + name + ", " + hertz(frequency));
       io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " +
                                              brief(s.scan_rate) + " lines a second at " + hertz(pulse_rate) +
                                              ": expected " + expected + ' ' +

@@ -13,14 +13,10 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
-#include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 
@@ -172,10 +168,8 @@ class LegReader {
       inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();
-        if (content.find_first_not_of(" \t\r\n") == std::string::npos) {
-          report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
-          return;
-        }
+        if (content.find_first_not_of(" \t\r\n") == std::string::npos)
+          return report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
         const auto seconds = number_of(content);
         if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
           report_.fault(text.place(),

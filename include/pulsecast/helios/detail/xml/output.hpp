@@ -17,9 +17,6 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -61,11 +58,8 @@ class XmlOutput {
 
   template <class Value>
   void choice(const char* name, const Value& value, XmlWords<Value> words) {
-    for (const auto& [word, meaning] : words) {
-      if (meaning != value) continue;
-      put(name, "string", std::string(word));
-      return;
-    }
+    for (const auto& [word, meaning] : words)
+      if (meaning == value) return put(name, "string", std::string(word));
   }
 
   void vector(const char* name, const Vec3& value, double size_max) {
@@ -132,10 +126,7 @@ class XmlOutput {
   }
 
   void put(const char* name, const char* type, const std::string& value) {
-    if (!params_) {
-      node_.append_attribute(name).set_value(value.c_str());
-      return;
-    }
+    if (!params_) return void(node_.append_attribute(name).set_value(value.c_str()));
     pugi::xml_node param = node_.append_child("param");
     param.append_attribute("type").set_value(type);
     param.append_attribute("key").set_value(name);

@@ -6,9 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<platform>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {
@@ -57,20 +55,14 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
   io.require({"id", "type"});
   io.text("id", platform.id);
   io.text("name", platform.name);
-  if constexpr (Io::reads) {
-    io.choice("type", platform.kind,
-              {{"static", PlatformKind::stationary},
-               {"linearpath", PlatformKind::linear_path},
-               {"multicopter", PlatformKind::multicopter},
-               {"groundvehicle", PlatformKind::ground_vehicle}});
-  } else {  // the base of an interpolated platform has no effect
-    io.choice("type", platform.kind,
-              {{"static", PlatformKind::stationary},
-               {"linearpath", PlatformKind::linear_path},
-               {"multicopter", PlatformKind::multicopter},
-               {"groundvehicle", PlatformKind::ground_vehicle},
-               {"static", PlatformKind::interpolated}});
-  }
+  PlatformKind kind = platform.kind;
+  if (!Io::reads && kind == PlatformKind::interpolated) kind = PlatformKind::stationary;  // its base has no effect
+  io.choice("type", kind,
+            {{"static", PlatformKind::stationary},
+             {"linearpath", PlatformKind::linear_path},
+             {"multicopter", PlatformKind::multicopter},
+             {"groundvehicle", PlatformKind::ground_vehicle}});
+  if constexpr (Io::reads) platform.kind = kind;
   io.child("scannerMount", [&](auto& inner) { fields(inner, platform.mount); });
   noise_fields(io, platform);
   if (platform.kind == PlatformKind::multicopter)

@@ -15,11 +15,8 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<scanner>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {
@@ -233,23 +230,18 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
     for (std::string_view rest = *text;;) {
       const std::size_t end = rest.find(',');
       const std::string_view one = rest.substr(0, end);
+      const bool is_last = end == std::string_view::npos;
       const auto rate = number_of(one);
-      if (one.find_first_not_of(" \t\r\n") == std::string_view::npos &&
-          (end != std::string_view::npos || !rates.empty())) {
+      if (one.find_first_not_of(" \t\r\n") == std::string_view::npos && !(is_last && rates.empty()))
         io.warn("pulseFreqs_Hz",
                 XmlInput::said("pulseFreqs_Hz", *text) + ": there is no number between two commas or at the end");
-        if (end == std::string_view::npos) return;
-        rest.remove_prefix(end + 1);
-        continue;
-      }
-      if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates) {
-        io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
-                                      xml_number(least_rate) + " to " + xml_number(most_rate) +
-                                      " Hz, with commas between");
-        return;
-      }
-      rates.push_back(*rate);
-      if (end == std::string_view::npos) return;
+      else if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates)
+        return io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
+                                             xml_number(least_rate) + " to " + xml_number(most_rate) +
+                                             " Hz, with commas between");
+      else
+        rates.push_back(*rate);
+      if (is_last) return;
       rest.remove_prefix(end + 1);
     }
   } else {

@@ -17,11 +17,7 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
-#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
-#include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
@@ -109,10 +105,7 @@ class SurveyReader {
   void seed(XmlInput& io) {
     const auto text = io.value("seed");
     if (!text || *text == "AUTO" || *text == "auto") return;
-    if (const auto whole = text::number_in<std::uint64_t>(*text)) {
-      survey_.seed = *whole;
-      return;
-    }
+    if (const auto whole = text::number_in<std::uint64_t>(*text)) return void(survey_.seed = *whole);
     // YYYY-MM-DD hh:mm:ss
     static constexpr std::array<std::uint64_t, 6> seconds{31'104'000, 2'592'000, 86'400, 3600, 60, 1};
     static constexpr std::array<std::uint64_t, 6> first{1970, 0, 0, 0, 0, 0};
