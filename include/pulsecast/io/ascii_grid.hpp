@@ -65,8 +65,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Words of a file, between blanks and line ends. Unlike lines, they may be any distance apart: a grid may be one long
-/// line.
+/// Words of a file, between blanks and line ends. They may be any distance apart: a grid may be one long line.
 class FileWords {
  public:
   FileWords(const std::filesystem::path& path, std::string_view expected) : file_(path, expected) {
@@ -137,19 +136,7 @@ class AsciiGridReader {
   }
 
  private:
-  enum Key : std::size_t {
-    ncols,
-    nrows,
-    xllcorner,
-    xllcenter,
-    yllcorner,
-    yllcenter,
-    cellsize,
-    dx,
-    dy,
-    nodata_value,
-    keys
-  };
+  enum Key { ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, cellsize, dx, dy, nodata_value, keys };
 
   struct Entry {
     double value = 0;

@@ -19,8 +19,7 @@ namespace PULSECAST_NAMESPACE::io {
 struct CityGmlSettings {
   unsigned max_lod = 4;   ///< highest level of detail; of each object, its highest up to this one is read
   bool interior = false;  ///< true: rooms, their surfaces and furniture, too
-  /// MTL file whose materials replace those of the same names, as `RoofSurface`, with their spectra and classes; empty:
-  /// none.
+  /// MTL file whose materials replace those of the same names, as `RoofSurface`, with spectra and classes; empty: none
   std::filesystem::path materials{};
   SpectralLibrary spectra{};  ///< spectra for `helios_spectra` in that file
   bool isolated = false;      ///< true: libcitygml runs in a child process, whose death is a `FileError`
@@ -42,10 +41,9 @@ struct CityGml {
   std::optional<std::uint16_t> epsg{};  ///< code of the reference system, if any; coordinates are those of the file
 };
 
-/// Reads the surfaces of a CityGML file, in metres. Polygons are triangulated. Closure surfaces are left out, and so
-/// are textures. Throws a `FileError` for a file that is missing or damaged, has coordinates in degrees or a document
-/// type; a `SettingError` for settings out of range. Source: OGC City Geography Markup Language 2.0 (12-019); LAS 1.4
-/// R15, table 17.
+/// Reads the surfaces of a CityGML file, in metres. Polygons are triangulated. Closure surfaces and textures are left
+/// out. Throws a `FileError` for a missing or damaged file, coordinates in degrees or a document type; a `SettingError`
+/// for settings out of range. Source: OGC City Geography Markup Language 2.0 (12-019); LAS 1.4 R15, table 17.
 [[nodiscard]] CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings = {},
                                    const Workers& workers = {});
 

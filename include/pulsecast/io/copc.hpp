@@ -91,8 +91,7 @@ class CopcRecords {
   [[nodiscard]] LasExtendedRecords extended() const noexcept { return extended_; }
 
  private:
-  static constexpr std::size_t info_size = 160, info_at = 375,
-                               extended_header_size = 60;  // [byte]; info_at: after the header
+  static constexpr std::size_t info_size = 160, info_at = 375, extended_header_size = 60;  // 375: of the header [byte]
 
   void write_hierarchy(OutputFile& file, const LasEncoder& encoder, const CopcRoot& root,
                        std::vector<CopcEntry> entries) {

@@ -37,9 +37,8 @@ struct GeoJsonSettings {
 
 namespace detail {
 
-/// Convex hull of points in the plane, anticlockwise from the lowest x, without points on its edges.
-/// Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions. Exact if the products of
-/// differences are.
+/// Convex hull of points in the plane, anticlockwise from the lowest x, without points on its edges. Exact if the
+/// products of differences are. Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions.
 [[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   std::ranges::sort(points, [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -159,8 +158,7 @@ class GeoJsonWriter {
     std::uint64_t points = 0;
   };
 
-  /// Point in whole millimetres, so that hulls are exact up to some 90 km and remain convex as written; empty if not
-  /// finite.
+  /// Point in whole millimetres: hulls are exact up to some 90 km, and remain convex as written. Empty if not finite.
   [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
     const Vec3 scaled = point * per_metre;
     if (!finite(scaled)) return std::nullopt;

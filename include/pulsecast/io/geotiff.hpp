@@ -19,8 +19,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings for GeoTIFF files.
 struct GeoTiffSettings {
   std::uint16_t band = 1;  ///< band of the heights, from 1
-  /// Metres per unit of the numbers; by default unit, scale and offset of the file: of its keys, vertical system and
-  /// GDAL's metadata.
+  /// Metres per unit of the numbers; by default those of the file's keys, vertical system and GDAL metadata.
   std::optional<double> vertical_scale = std::nullopt;
   std::optional<double> missing = std::nullopt;  ///< value of missing heights; by default from the file (GDAL_NODATA)
   bool packed = false;  ///< whole numbers of 8 and 16 bits as `Raster::packed`, if it can hold them
@@ -119,8 +118,7 @@ class GeoTiffReader {
     return std::nullopt;
   }
 
-  /// Notes what a file says of its pixels that has no effect. Source: TIFF 6.0, PhotometricInterpretation and
-  /// ExtraSamples.
+  /// Notes tags of pixels that have no effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
   void note_picture() {
     const auto meaning = file_.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_PALETTE)

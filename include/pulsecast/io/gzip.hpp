@@ -71,8 +71,7 @@ class GzipEncoder final : public OutputEncoder {
 ///
 ///     XyzWriter writer(gzip_file("points.xyz.gz"));
 ///
-/// Limits: compression uses one thread. Text takes three times as long at level 1, and twelve times at 6, for a file a
-/// tenth smaller.
+/// Limits: one thread. Text takes three times as long at level 1, and twelve times at 6, for a file a tenth smaller.
 [[nodiscard]] inline OutputFile gzip_file(std::filesystem::path path, const GzipSettings& settings = {}) {
   return OutputFile(std::move(path), std::make_unique<detail::GzipEncoder>(validated(settings).level));
 }

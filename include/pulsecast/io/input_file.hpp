@@ -32,8 +32,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// File read from beginning to end in blocks, as bytes or as lines; memory is independent of its size.
 class InputFile {
  public:
-  static constexpr std::size_t block_size = std::size_t{1}
-                                            << 20;  ///< upper limit of a line, and of bytes taken at once [byte]
+  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< limit of a line, and of one `take` [byte]
 
   /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it
   /// is empty.
@@ -53,8 +52,7 @@ class InputFile {
     seek(0);
   }
 
-  /// Path, for messages.
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }     ///< path, for messages
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
   [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< number of the line taken last, from 1
@@ -168,8 +166,7 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
-  /// Content of the file.
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }  ///< content of the file
 
  private:
   struct Descriptor {

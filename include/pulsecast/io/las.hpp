@@ -24,9 +24,8 @@ namespace detail {
 class LasRecords {
  public:
   static constexpr std::uint8_t format_bits = 0;  ///< flags in the header's point format
-  static constexpr std::uint32_t first_descriptor_count = 0,
-                                 descriptor_count = 0;  ///< variable-length records about the points
-  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }  ///< those before all others
+  static constexpr std::uint32_t first_descriptor_count = 0, descriptor_count = 0;  ///< of records about the points
+  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }    ///< those before all others
   [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& /*layout*/) { return {}; }
 
   /// Begins the points at the file's position; `changed` says if `change` will be called.
@@ -56,12 +55,10 @@ class LasRecords {
 
 }  // namespace detail
 
-/// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter`. Memory is independent of the
-/// number of points.
+/// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter`. Memory does not grow with them.
 class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
  public:
-  /// @throws SettingError for settings out of range
-  /// @throws FileError if the file cannot be made
+  /// @throws SettingError for settings out of range @throws FileError if the file cannot be made
   explicit LasWriter(std::filesystem::path path, LasSettings settings = {})
       : LasFileWriter(std::move(path), std::move(settings), {}) {}
 };

@@ -39,10 +39,9 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
     std::size_t size;
   };
   std::vector<Item> items{{10, laz_point_size}};  // POINT14
-  if (layout.colour_size > 0)
-    items.push_back(
-        {layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});  // RGB14, RGBNIR14
-  items.push_back({14, layout.record() - layout.extras});                                        // BYTE14
+  if (layout.colour_size > 0)                     // RGB14, RGBNIR14
+    items.push_back({layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});
+  items.push_back({14, layout.record() - layout.extras});  // BYTE14
   LasBytes<34> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
   d.put(4, std::uint8_t{3});   // version 3.4, revision 3, that of LASzip

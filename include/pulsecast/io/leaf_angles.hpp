@@ -15,8 +15,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// angles need equal G. Gaps between rows are at most 10 degrees.
 ///
 /// G times the plant area density is the extinction coefficient: 1/2 for spherical leaf angles (Ross 1981). Tables of
-/// HELIOS++ hold this G; its further division by 2 pi is not repeated. Throws a `FileError` with path and line at the
-/// first error, or for a gap.
+/// HELIOS++ hold this G; its division by 2 pi is not repeated. Throws a `FileError` with path and line, or for a gap.
 [[nodiscard]] LeafAngles read_leaf_angles(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io

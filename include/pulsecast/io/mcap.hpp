@@ -28,9 +28,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of an MCAP file.
 struct McapSettings {
   std::string profile = "ros2";  ///< requirements that the channels meet; "ros2": all are of ROS 2; empty: none
-  std::size_t chunk_size =
-      std::size_t{1}
-      << 20;  ///< length that messages fill a chunk up to, from 1 to 2^30; a longer one is alone in its chunk [byte]
+  /// Length that messages fill a chunk up to, from 1 to 2^30; a longer one is alone in its chunk [byte]
+  std::size_t chunk_size = std::size_t{1} << 20;
 
   /// @throws SettingError for settings out of range
   void validate() const {
@@ -45,8 +44,7 @@ struct McapChannel {
   std::string schema_encoding = "ros2msg";  ///< language of the schema
   std::string schema{};                     ///< definition of the type
   std::string message_encoding = "cdr";     ///< encoding of the messages
-  /// Further texts by their keys. The profile "ros2" requires the quality of service, in YAML; empty: that of the
-  /// player
+  /// Further texts by their keys. The profile "ros2" requires the quality of service, in YAML; empty: the player's
   std::map<std::string, std::string> metadata{{"offered_qos_profiles", ""}};
 };
 
@@ -70,11 +68,9 @@ enum class McapOpcode : std::uint8_t {
   data_end = 0x0F
 };
 
-inline constexpr std::size_t mcap_record_head = 1 + 8;  ///< opcode, length [byte]
-inline constexpr std::size_t mcap_chunk_head =
-    mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< chunk record without its records [byte]
-inline constexpr std::uint32_t mcap_no_crc =
-    0;  ///< absent checksum, of which the format has several. Source: mcap.dev/spec
+inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length [byte]
+inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< head of a chunk [byte]
+inline constexpr std::uint32_t mcap_no_crc = 0;  ///< absent checksum. Source: mcap.dev/spec
 
 /// Record under construction: opcode, length of the content, content. Source: mcap.dev/spec, Records and Serialization.
 class McapRecord {
@@ -199,8 +195,7 @@ class McapWriter {
 
   struct Channel {
     McapChannel settings;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>>
-        index;  // times and positions of its messages in the open chunk
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // times and positions in the open chunk
     std::uint64_t messages;
     std::uint16_t schema;  // number of the schema; 0: none
   };
@@ -208,9 +203,8 @@ class McapWriter {
   struct Chunk {
     std::uint64_t start = 0, size = 0;  // position in the file; length of its records [byte]
     Times times{};
-    std::vector<std::pair<std::uint16_t, std::uint64_t>>
-        indexes{};                   // channel and position of each message index [byte]
-    std::uint64_t indexes_size = 0;  // length of these records [byte]
+    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes{};  // channels and positions [byte]
+    std::uint64_t indexes_size = 0;                                  // length of these records [byte]
 
     [[nodiscard]] std::uint64_t records() const noexcept { return start + detail::mcap_chunk_head; }
   };

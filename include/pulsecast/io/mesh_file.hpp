@@ -12,8 +12,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
-/// Meshes of PLY, glTF, GLB, STL, DAE and FBX files, by assimp. OBJ files are read by `read_obj`. Other formats of
-/// assimp are untested.
+/// Meshes of PLY, glTF, GLB, STL, DAE and FBX files, by assimp. `read_obj` reads OBJ files. Other formats are untested.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Reads a mesh file. Nodes that show the same mesh share it, where their transforms differ by rotation, uniform scale
@@ -29,9 +28,8 @@ namespace PULSECAST_NAMESPACE::io {
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 
-/// Parts of a scene: one a placement, named as it, with object ids from `first_object` on. Parts of one mesh share
-/// geometry and materials.
-/// @throws SettingError as `TriangleMesh`
+/// Parts of a scene: one a placement, named as it, with object ids from `first_object` on. Those of one mesh share
+/// geometry and materials. @throws SettingError as `TriangleMesh`
 [[nodiscard]] std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object = 0,
                                                          const Workers& workers = {});
 

@@ -70,8 +70,7 @@ concept ClosableSink = requires(S& sink) {
   sink.close();
 };
 
-/// Sink around another, which gets a point for each pulse without echoes, too: see `MissPoints`. `Sink` may be a
-/// reference.
+/// Sink around another, which gets points for pulses without echoes, too: see `MissPoints`. `Sink` may be a reference.
 template <class Sink>
 requires EchoSink<std::remove_reference_t<Sink>>
 class WithMisses {
@@ -81,12 +80,9 @@ class WithMisses {
       : sink_(std::forward<Sink>(sink)), points_(settings) {}
 
   void operator()(const EchoBatch& batch) { sink_(points_(batch)); }
-
   [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< as the concept ChoosesShots describes
 
-  /// Closes the other sink.
-  void close() requires ClosableSink<std::remove_reference_t<Sink>> { sink_.close(); }
-
+  void close() requires ClosableSink<std::remove_reference_t<Sink>> { sink_.close(); }        ///< closes the other sink
   [[nodiscard]] const std::remove_reference_t<Sink>& sink() const noexcept { return sink_; }  ///< the other sink
 
  private:
@@ -107,8 +103,7 @@ WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
   return names[static_cast<std::size_t>(fate)];
 }
 
-/// Writes the pulses that were sent and gave no echo as text, one a line, in these columns, separated by blanks,
-/// without a header line:
+/// Writes pulses that were sent and gave no echo as text, one a line, in these columns, between blanks, no header:
 ///
 ///     pulseIndex time ox oy oz dx dy dz fate leg deviceIndex
 ///

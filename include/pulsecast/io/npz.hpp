@@ -41,8 +41,7 @@ class StoredZip {
     if (!archive_ || !entry_) throw std::bad_alloc();
     check(archive_write_set_format_zip(archive_.get()));
     check(archive_write_zip_set_compression_store(archive_.get()));
-    check(archive_write_set_bytes_per_block(archive_.get(),
-                                            0));  // unbuffered: the file has a buffer, and a last block is not padded
+    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // the file has a buffer; no padding
     check(archive_write_open(archive_.get(), this, nullptr, write_some, nullptr));
   }
   StoredZip(const StoredZip&) = delete;
@@ -60,7 +59,6 @@ class StoredZip {
     put(body);
   }
 
-  /// Appends the table of members.
   void close() { check(archive_write_close(archive_.get())); }
 
  private:
@@ -105,8 +103,7 @@ class StoredZip {
   std::unique_ptr<archive_entry, Free> entry_;
 };
 
-/// Header of an array of one dimension. Source: NumPy, numpy.lib.format, version 1.0: a length of 16 bits, padded to 64
-/// bytes in all.
+/// Header of an array of one dimension, padded to 64 bytes in all. Source: NumPy, numpy.lib.format, version 1.0.
 [[nodiscard]] inline std::string npy_header(FieldType type, std::uint64_t count) {
   constexpr std::array<std::string_view, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
   std::string text = text::joined({"{'descr': '", types[static_cast<std::size_t>(type)],

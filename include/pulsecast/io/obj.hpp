@@ -32,11 +32,10 @@ struct ObjModel {
   std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, those that are missing, too
 };
 
-/// Reads an OBJ file and its MTL files. Polygons, concave ones included, are triangulated. Warns if no face has an
-/// area, or an MTL file is missing; its materials become `undescribed`. Holds some megabytes of the file at most.
-/// Throws a `FileError` with path and line at the first error. Limits: faces refer to vertices above them and have at
-/// most 4096 corners; coordinates stay within 1e12, where a double resolves 0.1 mm, and are accurate to some units in
-/// the last place.
+/// Reads an OBJ file and its MTL files. Polygons, also concave ones, are triangulated. Warns if no face has an area, or
+/// an MTL file is missing; its materials become `undescribed`. Holds some megabytes at most. Throws a `FileError` with
+/// path and line at the first error. Limits: faces refer to vertices above them and have at most 4096 corners;
+/// coordinates stay within 1e12, where a double resolves 0.1 mm, and are accurate to some units in the last place.
 [[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {},
                                 const Workers& workers = {});
 

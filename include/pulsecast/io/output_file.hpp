@@ -27,8 +27,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file
-/// system has no locks.
+/// Locks an open file exclusively until it is closed; false if locked already. True where the file system has no locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno != EWOULDBLOCK;
@@ -79,8 +78,7 @@ class OutputFile {
     open_alone();
   }
 
-  /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for
-  /// messages.
+  /// Piece of a file that others assemble: appended to `piece` until `commit()`. Its name is for messages only.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
   /// Appends bytes.
@@ -99,8 +97,7 @@ class OutputFile {
     position_ += bytes.size();
   }
 
-  /// Appends text.
-  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }  ///< appends text
 
   /// Replaces bytes written before, from `position` [byte] on; writing then continues at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
@@ -111,8 +108,7 @@ class OutputFile {
       position += advance(bytes, ::pwrite(file_.number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
   }
 
-  /// Reads bytes written before, from `position` [byte] on; on several threads while none writes. It needs no name, see
-  /// `forget_name`.
+  /// Reads bytes written before, from `position` [byte] on, also without a name; on several threads while none writes.
   void read(std::uint64_t position, std::span<std::byte> bytes) const {
     PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
     require_open();
@@ -129,8 +125,7 @@ class OutputFile {
     if (!bytes.empty()) std::memcpy(bytes.data(), buffer_.data() + (position - passed_on), bytes.size());
   }
 
-  /// Removes the name of the temporary file, which lives on without one: for what this object alone reads again, and
-  /// never commits.
+  /// Removes the name of the temporary file, which lives on: for what this object alone reads again, and never commits.
   void forget_name() noexcept { file_.remove(); }
 
   /// Continues after bytes that others wrote to the temporary file; without an encoder.
@@ -150,9 +145,7 @@ class OutputFile {
 
   /// Number of bytes written, before any encoding: offset of the next one.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
-
-  /// Final name.
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }  ///< final name
 
   /// Completes the file under its final name, replacing any file of that name.
   void commit() {
@@ -211,15 +204,13 @@ class OutputFile {
     }
   };
 
-  static constexpr std::size_t capacity = std::size_t{1}
-                                          << 20;  // bytes forwarded at a time: the cost of calls is negligible
+  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes at a time: calls cost little then
 
   [[nodiscard]] static std::error_code system_error(int number) {
     return {number != 0 ? number : EIO, std::generic_category()};
   }
 
-  /// Opens the temporary file exclusively. Remains of a killed program are removed, not truncated: its processes may
-  /// still write to them.
+  /// Opens the temporary file exclusively. Removes what a killed program left: its processes may still write to that.
   void open_alone() {
     const char* const name = file_.name.c_str();
     for (int tries = 0; tries < 100; ++tries) {

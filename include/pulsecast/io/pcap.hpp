@@ -25,8 +25,7 @@ struct PcapSettings {
 
 namespace detail {
 
-/// Frame of a packet in a capture file: its record, and the headers of Ethernet, IPv4 and UDP. Numbers of the network
-/// are big-endian.
+/// Frame of a packet in a capture file: its record, and headers of Ethernet, IPv4 and UDP, which are big-endian.
 class PacketFrame {
  public:
   static constexpr std::size_t record = 16;       // header of a record. Source: IETF draft-ietf-opsawg-pcap, 5 [byte]
@@ -87,9 +86,8 @@ class PacketFrame {
 
 }  // namespace detail
 
-/// Writes packets to a capture file of the classic form, that of tcpdump: frames of Ethernet, IPv4 and UDP, each
-/// undivided whatever its length. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`. Source:
-/// IETF draft-ietf-opsawg-pcap, 4 and 5.
+/// Writes packets to a capture file of the classic form of tcpdump: undivided frames of Ethernet, IPv4 and UDP. Only
+/// `close()` completes the file: see `OutputFile`. Throws a `FileError`. Source: IETF draft-ietf-opsawg-pcap, 4 and 5.
 class PcapWriter {
  public:
   /// Opens the file. @throws FileError

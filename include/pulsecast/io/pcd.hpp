@@ -48,15 +48,13 @@ struct PcdSettings {
 
 namespace detail {
 
-/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: at most 104 % of the input; and some bytes that its checks
-/// keep free.
+/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: at most 104 % of the input; and bytes kept free by checks.
 [[nodiscard]] constexpr std::uint64_t lzf_room(std::uint64_t size) noexcept { return size + size / 25 + 16; }
 /// Greatest input of LZF: the sizes before and after are 32-bit numbers [byte].
 inline constexpr std::uint64_t lzf_size_max = 4'129'776'230;
 static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max());
 
-/// Bytes compressed by LZF, after their sizes with and without compression. Source: PCD file format 0.7,
-/// binary_compressed.
+/// Bytes compressed by LZF, after their sizes with and without it. Source: PCD file format 0.7, binary_compressed.
 [[nodiscard]] inline std::vector<std::byte> pcd_compressed(std::span<const std::byte> bytes) {
   std::array<std::uint32_t, 2> sizes{0, static_cast<std::uint32_t>(bytes.size())};
   const auto room = static_cast<std::uint32_t>(lzf_room(bytes.size()));
@@ -89,8 +87,7 @@ class PcdWriter {
   void operator()(const EchoBatch& batch) { write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
-  /// @throws FileError
+  /// Appends the points of a buffer, such as a scan. @throws SettingError for fields other than its @throws FileError
   void add(const PointBuffer& points) { write(points_.of(points)); }
 
   /// Compresses the points if so set, completes the header, and gives the file its name. Throws a `FileError`.

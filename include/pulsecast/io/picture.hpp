@@ -21,13 +21,11 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of `read_picture`.
 struct PictureSettings {
   std::size_t max_pixels = std::size_t{1} << 26;  ///< maximum number of pixels
-  /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For files that are
-  /// not trusted.
+  /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For untrusted files.
   bool isolated = false;
 };
 
-/// Reads a picture, of 16 bits a channel the upper eight. Throws a `FileError` for one that is missing, damaged, or too
-/// large.
+/// Reads a picture, of 16 bits a channel the upper eight. Throws a `FileError` if it is missing, damaged, or too large.
 [[nodiscard]] Image read_picture(const PictureSource& source, const PictureSettings& settings = {});
 
 /// Reads the pictures of the materials of a mesh, each once: colours and reflectances into the materials, outlines into

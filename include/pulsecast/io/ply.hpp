@@ -42,8 +42,7 @@ class PlyWriter {
   void operator()(const EchoBatch& batch) { file_.write(points_.of(batch)); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
-  /// @throws FileError
+  /// Appends the points of a buffer, such as a scan. @throws SettingError for fields other than its @throws FileError
   void add(const PointBuffer& points) { file_.write(points_.of(points)); }
 
   /// Completes the header, and gives the file its name. Throws a `FileError`.

@@ -22,8 +22,7 @@ struct PngHeightSettings {
   double vertical_offset = 0;              ///< height of grey 0, black [m]
   std::optional<std::uint16_t> missing{};  ///< grey of missing heights
   std::optional<Vec2> pixel{};  ///< spacing of the pixels, east and south [m]; by default from the world file
-  std::optional<Vec2>
-      first{};  ///< centre of the north-west pixel [m]; default: the world file's; (0, 0) beside `pixel`
+  std::optional<Vec2> first{};  ///< centre of the north-west pixel [m]; default: world file's; (0, 0) beside `pixel`
   std::size_t max_pixels = std::size_t{1} << 28;  ///< pixels at most
 
   void validate() const {
@@ -39,10 +38,8 @@ struct PngHeightSettings {
 /// Reads a raster of heights from a PNG file of grey, 8 or 16 bits, north up. Its heights are packed: two bytes a
 /// pixel. Coordinates are in metres; the place of pixels is that of the settings, or of a world file beside the picture
 /// (`world_file_of`). Memory is twice the raster, as far as the size of the file allows. Checksums of the file are not
-/// compared.
-/// @throws SettingError for settings out of range
-/// @throws FileError for a file that is damaged, coloured, transparent, of fewer bits, or too large, without a place,
-/// or without a height
+/// compared. @throws SettingError for settings out of range @throws FileError for a file that is damaged, coloured,
+/// transparent, of fewer bits, or too large, without a place, or without a height
 [[nodiscard]] Raster read_png_heights(const std::filesystem::path& path, const PngHeightSettings& settings = {});
 
 /// True for the extension `.png`, in any case.
@@ -115,8 +112,7 @@ class PngHeightReader {
   [[nodiscard]] const stbi_uc* data() const noexcept { return reinterpret_cast<const stbi_uc*>(file_.bytes().data()); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(file_.bytes().size()); }
 
-  /// Reads and checks the size and the kind of pixels. Source: Portable Network Graphics, second edition (ISO/IEC
-  /// 15948), 5.2 and 11.2.2.
+  /// Reads and checks the size and the kind of pixels. Source: PNG, second edition (ISO/IEC 15948), 5.2 and 11.2.2.
   void read_size() {
     constexpr std::array<stbi_uc, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     constexpr std::size_t depth = 24, colour = 25;  // bytes of the header

@@ -55,11 +55,10 @@ struct PointCloudSettings {
 
 /// Voxels occupied by the points of a cloud.
 struct PointCloud {
-  VoxelData voxels;  ///< with normals, if requested and available
-  std::vector<std::array<float, 3>>
-      colours{};                        ///< red, green, blue from 0 to 1 of each voxel, root mean square; or none
-  std::uint64_t points = 0;             ///< number of points read
-  std::vector<std::string> warnings{};  ///< oddities that could still be read
+  VoxelData voxels;                             ///< with normals, if requested and available
+  std::vector<std::array<float, 3>> colours{};  ///< red, green, blue from 0 to 1 of voxels, root mean square; or none
+  std::uint64_t points = 0;                     ///< number of points read
+  std::vector<std::string> warnings{};          ///< oddities that could still be read
 };
 
 /// Reads point clouds, text (see `TextPoints`) or LAS (see `LasPoints`) as detected, into one grid of voxels. Every

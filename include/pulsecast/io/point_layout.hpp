@@ -10,21 +10,11 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// Layouts of point records: of what fields, of what types, at what offsets. PCD, PLY, NPZ and PointCloud2 are headers
-/// for such records.
+/// Layouts of point records: fields, types and offsets. PCD, PLY, NPZ and PointCloud2 are headers for such records.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Number type of a field. The values are those of the data types of sensor_msgs/PointField.
-enum class FieldType : std::uint8_t {
-  int8 = 1,
-  uint8 = 2,
-  int16 = 3,
-  uint16 = 4,
-  int32 = 5,
-  uint32 = 6,
-  float32 = 7,
-  float64 = 8
-};
+enum class FieldType : std::uint8_t { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Size of a number [byte].
 [[nodiscard]] constexpr std::uint32_t size_of(FieldType type) noexcept {
@@ -151,8 +141,7 @@ namespace layouts {
   return PointLayout::packed(xyz_float()).with({{"intensity", FieldType::float32, PointQuantity::reflectivity}});
 }
 
-/// Fields of the ROS driver of Velodyne, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time since the
-/// scan's start [s].
+/// Fields of Velodyne's ROS driver, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time from scan start [s].
 [[nodiscard]] inline PointLayout velodyne() {
   return xyzi().with(
       {{"ring", FieldType::uint16, PointQuantity::ring}, {"time", FieldType::float32, PointQuantity::time}});
@@ -164,8 +153,7 @@ namespace layouts {
       {{"ring", FieldType::uint16, PointQuantity::ring}, {"timestamp", FieldType::float64, PointQuantity::clock}});
 }
 
-/// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns], in
-/// double precision.
+/// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns].
 [[nodiscard]] inline PointLayout livox() {
   return xyzi().with({{"tag", FieldType::uint8, PointQuantity::none},
                       {"line", FieldType::uint8, PointQuantity::ring},
@@ -237,8 +225,7 @@ namespace layouts {
   return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}};
 }
 
-/// Attributes of a point's object, a field each, to append to another layout: `ObjectAttributes::names`. NaN where an
-/// object has none, and 0 in integers.
+/// Attributes of a point's object, to append to a layout: `ObjectAttributes::names`. NaN if it has none, 0 in integers.
 [[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names,
                                                         FieldType type = FieldType::float64) {
   std::vector<PointField> fields;

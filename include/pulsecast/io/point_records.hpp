@@ -64,9 +64,8 @@ struct PointSettings {
   }
 };
 
-/// Reflectance as instruments encode it in a byte: percents from 0 to 100 for surfaces up to white ones; above, 10 a
-/// doubling, up to 255. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, for the first part and the limit;
-/// makers do not publish the second.
+/// Reflectance as instruments encode it in a byte: percents up to white surfaces; above, 10 a doubling, up to 255.
+/// Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, but for the doubling, which no maker publishes.
 [[nodiscard]] inline double reflectivity_byte(double reflectance) noexcept {
   if (!(reflectance > 0)) return 0;
   return std::min(255.0, reflectance <= 1 ? 100 * reflectance : 100 + 10 * std::log2(reflectance));
@@ -143,12 +142,9 @@ class PointEncoder {
     begin_scan({});
   }
 
-  /// Layout of the records.
-  [[nodiscard]] const PointLayout& layout() const noexcept { return layout_; }
-  /// Settings of the records.
+  [[nodiscard]] const PointLayout& layout() const noexcept { return layout_; }  ///< layout of the records
   [[nodiscard]] const PointSettings& settings() const noexcept { return settings_; }
-  /// Start of the scan.
-  [[nodiscard]] Tick scan_start() const noexcept { return start_; }
+  [[nodiscard]] Tick scan_start() const noexcept { return start_; }  ///< start of the scan
 
   /// Sets the start of the scan, from which its times count. Evaluates the sensor's pose for it now.
   void begin_scan(Tick start) {
@@ -309,7 +305,6 @@ class PointBuffer {
   explicit PointBuffer(PointLayout layout, PointSettings settings = {})
       : encoder_(std::move(layout), std::move(settings)) {}
 
-  /// Appends the points of a batch.
   void operator()(const EchoBatch& batch) { encoder_.encode(batch, records_); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
@@ -322,12 +317,9 @@ class PointBuffer {
   [[nodiscard]] std::size_t size() const noexcept { return records_.size() / layout().size; }
   /// Records, one after another.
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
-  /// Layout of the records.
-  [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }
-  /// Settings of the records.
+  [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }  ///< layout of the records
   [[nodiscard]] const PointSettings& settings() const noexcept { return encoder_.settings(); }
-  /// Start of the scan.
-  [[nodiscard]] Tick scan_start() const noexcept { return encoder_.scan_start(); }
+  [[nodiscard]] Tick scan_start() const noexcept { return encoder_.scan_start(); }  ///< start of the scan
 
   /// Number in a field of this layout of a point, as it is stored.
   [[nodiscard]] double number(std::size_t point, const PointField& field) const noexcept {

@@ -12,9 +12,8 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Divides the pulses of a run into scans of equal time, for formats with a file or message a scan. Scan n begins at
-/// tick n / `scan_rate`. Each scan with pulses is passed on once, in order, when the first pulse after it comes or at
-/// `close()`, even if it has no points.
+/// Divides pulses into scans of equal time, for formats with a file or message a scan. Scan n begins at tick n /
+/// `scan_rate`. Scans with pulses are passed on in order, even without points, when the next begins or at `close()`.
 class ScanSplitter {
  public:
   /// Takes the points of a scan, which are valid during the call.

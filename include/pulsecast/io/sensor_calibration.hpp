@@ -108,8 +108,7 @@ namespace detail {
 
 /// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without sections, which Ouster's
 /// software reads of all firmware. Angles of the azimuth are positive to the right, as the manual's formula has them.
-/// @throws SettingError for another sensor
-/// @throws FileError
+/// @throws SettingError for another sensor @throws FileError
 inline void write_ouster_metadata(const std::filesystem::path& path, const SpinningSensor& sensor,
                                   const PacketSettings& settings = {}) {
   sensor.validate();

@@ -83,8 +83,7 @@ class XyzWriter {
 };
 static_assert(EchoSink<XyzWriter>);
 
-/// Writes pulses as text, with or without echoes, one a line, in these columns, separated by blanks, without a header
-/// line:
+/// Writes pulses as text, with or without echoes, one a line, in these columns, between blanks, without a header:
 ///
 ///     ox oy oz dx dy dz time pulseIndex deviceIndex fate
 ///
@@ -92,9 +91,8 @@ static_assert(EchoSink<XyzWriter>);
 /// exact; pulseIndex: slot, the fullwaveIndex of points and waveforms; deviceIndex: emitter, from 0; fate: number of
 /// its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1)
 /// were never sent, and have no line. The first nine are the columns of HELIOS++ pulse files, so that their readers
-/// work. As there, time is in nanoseconds, unlike the seconds of all other files; pulseIndex counts from 0 and over all
-/// devices, and directions have more decimals. Only `close()` completes the file: see `OutputFile`. Throws a
-/// `FileError`.
+/// work. As there, time is in nanoseconds, unlike in all other files; pulseIndex counts from 0 and over all devices,
+/// and directions have more decimals. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PulseTextWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -122,8 +120,7 @@ class PulseTextWriter {
 };
 static_assert(EchoSink<PulseTextWriter>);
 
-/// Writes the hits of the subrays of a `WithSubrayRecord` footprint as text, one a line, with these columns and blanks
-/// between:
+/// Writes the hits of subrays of a `WithSubrayRecord` footprint as text, one a line, in these columns, between blanks:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
@@ -165,8 +162,7 @@ class SubrayTextWriter {
 };
 static_assert(EchoSink<SubrayTextWriter>);
 
-/// Writes waveforms as text, one a line, with or without echoes, in these columns, separated by blanks, without a
-/// header line:
+/// Writes waveforms as text, one a line, with or without echoes, in these columns, between blanks, without a header:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///

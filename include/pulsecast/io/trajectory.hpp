@@ -31,8 +31,7 @@ struct TrajectoryFileSettings {
   void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
-/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and the end,
-/// `duration`.
+/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and `duration`.
 template <class Record>
 void for_each_record(const Tick& duration, double interval, const Record& record) {
   const double end = duration.seconds();

@@ -28,8 +28,7 @@ struct UdpSettings {
   void validate() const { require_within("UdpSettings::pace", pace, 0, 1e6, ""); }
 };
 
-/// Sends packets by UDP to one port of a host, or of all hosts of a network, as sensors do. Throws a `FileError` that
-/// names the receiver.
+/// Sends packets by UDP to a port of a host, or of all of a network. Throws a `FileError` that names the receiver.
 class UdpSender {
  public:
   /// @throws SettingError for settings out of range @throws FileError without a socket

@@ -44,8 +44,7 @@ struct VelodyneFormat {
       const double hundredths = std::nearbyint(source.sensor.heading(start) * (36'000 / (2 * pi)));
       put(payload, block * block_size + 2, static_cast<std::uint16_t>(hundredths < 36'000 ? hundredths : 0));
     }
-    put(payload, 1200,
-        static_cast<std::uint32_t>(parts_of(source.clock(first), 1'000'000) % 3'600'000'000));  // since the hour [us]
+    put(payload, 1200, static_cast<std::uint32_t>(parts_of(source.clock(first), 1'000'000) % 3'600'000'000));  // [us]
     put(payload, 1204, mode(source.settings.returns));
     put(payload, 1205, is_vlp_16(source) ? std::uint8_t{0x22} : std::uint8_t{0x28});
   }
@@ -100,8 +99,7 @@ struct VelodyneFormat {
 /// `VelodynePackets packets(velodyne_vlp_16(), {.returns = PacketReturns::last}, std::ref(file))`. After construction,
 /// it allocates nothing. Of dual returns, even blocks hold the last and odd ones the strongest; the second strongest if
 /// the strongest is the last; the same if there is only one. Distances are from the sensor's axis; beyond what 16 bits
-/// hold, they are 0, as without a return. Decoders take the times of firings from the manual: a sensor with other rates
-/// or delays is decoded wrong.
+/// hold, they are 0, as without a return. Decoders take firing times from the manual: other rates are decoded wrong.
 using VelodynePackets = detail::PacketStream<detail::VelodyneFormat>;
 static_assert(EchoSink<VelodynePackets> && ChoosesShots<VelodynePackets>);
 

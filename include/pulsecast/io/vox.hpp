@@ -51,10 +51,9 @@ struct VoxelFile {
 /// - transmissive voxels of density 0, or, with a warning, NaN;
 /// - opaque and scaled voxels of transmittance 1 (fully transparent) or NaN (never observed);
 /// - scaled voxels of density 0, and so of size 0, or, with a warning, NaN.
-/// Shifts of scaled cubes are uniform within their cells, and depend on the seed and the cell alone.
-/// Throws a `FileError` with path and line at the first error, and if no voxel is left.
-/// Source of the format and of the three uses: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based
-/// tree models.
+/// Shifts of scaled cubes are uniform within their cells, and depend on the seed and the cell alone. Throws a
+/// `FileError` with path and line at the first error, and if no voxel is left. Source of the format and of the three
+/// uses: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
 [[nodiscard]] VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings = {});
 
 }  // namespace PULSECAST_NAMESPACE::io

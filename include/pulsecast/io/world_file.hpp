@@ -14,8 +14,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Placement of the pixels of a picture on the map.
 struct WorldFile {
   Vec2 first{};      ///< centre of the first pixel of the file [m east, m north]
-  Vec2 step{1, -1};  ///< step to the next column in the east, above 0, and to the next row in the north, below 0 for
-                     ///< rows to the south [m]
+  Vec2 step{1, -1};  ///< east step of a column, above 0, and north step of a row, below 0 for rows to the south [m]
 };
 
 /// Reads a world file: six lines with the east step of a column, its north step, the east step of a row, its north
@@ -24,9 +23,8 @@ struct WorldFile {
 /// `Raster`. Source: Esri, ArcGIS documentation, "World files for raster datasets".
 [[nodiscard]] WorldFile read_world_file(const std::filesystem::path& path);
 
-/// Paths of world files beside a picture, in the order in which they are looked for: the picture's path with the first
-/// and last letter of its extension and a `w`, as in `dem.pgw`, its whole extension and a `w`, or `.wld`; then in
-/// capitals.
+/// Paths of world files beside a picture, in the order of search: the picture's path with the first and last letter of
+/// its extension and a `w`, as in `dem.pgw`, its whole extension and a `w`, or `.wld`; then in capitals.
 [[nodiscard]] std::vector<std::filesystem::path> world_files_of(const std::filesystem::path& picture);
 
 /// The first of them that exists; empty if there is none.

@@ -26,8 +26,7 @@
 #include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-/// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their
-/// memory layout.
+/// Serialization of objects, whose arrays are used in place. For one program on one machine: arrays keep their layout.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Archive of other types, or inconsistent.
@@ -89,8 +88,7 @@ template <class Item, class Element>
   return mark;
 }
 
-/// Number of an empty shared pointer.
-inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};
+inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};  ///< number of an empty shared pointer
 
 }  // namespace detail
 
@@ -106,8 +104,7 @@ class ArchiveWriter {
     (put(items), ...);
   }
 
-  /// Digest of all bytes written so far.
-  [[nodiscard]] const Digest& digest() const noexcept { return digest_; }
+  [[nodiscard]] const Digest& digest() const noexcept { return digest_; }  ///< of all bytes written so far
 
  private:
   template <class Item, class Element>
@@ -234,8 +231,7 @@ class ArchiveReader {
     } else {
       std::uint64_t count = 0;
       take(count);
-      for (items.clear(); count > 0; --count)
-        take(items.emplace_back());  // each takes bytes, which bounds their number
+      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, which bounds the count
     }
   }
   template <class... Options>

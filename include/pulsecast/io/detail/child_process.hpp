@@ -125,8 +125,7 @@ class ChildOutput {
   std::vector<char> buffer_;
 };
 
-/// Reads the result of a child. Bytes are checked, as the child may have been damaged by what it read: errors are a
-/// `FileError`.
+/// Reads the result of a child. Errors are a `FileError`: the child may have been damaged by what it read.
 class ChildResult {
  public:
   ChildResult(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
@@ -200,8 +199,7 @@ class ChildProcess {
  public:
   using Work = std::function<void(ChildOutput&)>;
 
-  /// Calls `work` in a child and waits. Throws the `FileError` of `work`, or one of `path` that says how the child
-  /// died.
+  /// Calls `work` in a child and waits. Throws the `FileError` of `work`, or one of `path` about the child's death.
   [[nodiscard]] static ChildResult result(const std::string& path, const ChildLimits& limits, const Work& work) {
     const File file(path);
     std::fflush(nullptr);

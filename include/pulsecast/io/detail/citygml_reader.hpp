@@ -181,8 +181,7 @@ class CityGmlImport {
     if (depth > 200) fail("its objects are nested more than 200 deep");
   }
 
-  /// Highest level of detail of an object and those in it, up to the limit, which libcitygml does not keep for boundary
-  /// surfaces.
+  /// Highest level of detail of an object and those in it, to the limit, which libcitygml exceeds in boundary surfaces.
   void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) const {
     check_depth(depth);
     if (is_left_out(object)) return;

@@ -37,7 +37,6 @@ class Digest {
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
   /// Adds a number, as its eight bytes.
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
-  /// Adds a fingerprint.
   void add(const Fingerprint& other) {
     add(other.low);
     add(other.high);

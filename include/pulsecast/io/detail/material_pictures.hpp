@@ -41,7 +41,6 @@ struct MaterialPictures {
   double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
 
   [[nodiscard]] bool empty() const noexcept { return colour.empty() && opacity.empty() && reflectance.empty(); }
-  /// Appends the files.
   void append_to(std::vector<std::filesystem::path>& files) const {
     for (const PictureSource* const one : {&colour, &opacity, &reflectance})
       if (!one->empty() && !one->embedded) files.push_back(one->file);

@@ -21,8 +21,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
 
-/// Throws a `SettingError` for a layout or settings out of range, and unless the names of the layout are valid in the
-/// header of a file, and unique.
+/// Throws a `SettingError` for a layout or settings out of range, and unless names are unique, and valid in a header.
 inline void require_packable(const PointLayout& layout, const PointSettings& points) {
   layout.validate();
   points.validate();
@@ -44,7 +43,6 @@ class PackedPoints {
   PackedPoints(const PointLayout& layout, const PointSettings& settings)
       : encoder_(PointLayout::packed(layout.fields), settings) {}
 
-  /// Layout of the packed records.
   [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }
 
   /// Records of the echoes of a batch, valid until the next call. Times since a scan's start count from tick 0.
@@ -84,7 +82,6 @@ class FieldColumns {
  public:
   explicit FieldColumns(const PointLayout& packed) : columns_(packed.fields.size()), layout_(packed) {}
 
-  /// Appends records.
   void add(std::span<const std::byte> records) {
     const std::size_t count = records.size() / layout_.size;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -104,8 +101,7 @@ class FieldColumns {
   PointLayout layout_;
 };
 
-/// Text of a count, and of blanks that bring it to the length of the longest count: for headers that are written again
-/// with another count.
+/// Text of a count, and blanks up to the length of the longest: for headers that are written again with another count.
 struct CountText {
   std::string digits, blanks;
 

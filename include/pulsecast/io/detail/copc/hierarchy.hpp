@@ -25,8 +25,7 @@ struct CopcEntry {
 
 inline constexpr std::size_t copc_entry_size = 32;  ///< [byte]
 
-/// Hierarchy in pages. A page lists nodes of four levels, and of the subtrees below each that is small; other subtrees
-/// have their own pages after it.
+/// Hierarchy in pages. A page lists nodes of four levels and small subtrees below; others have pages after it.
 class CopcHierarchy {
  public:
   /// `page_nodes` of a subtree that has no page of its own; at least one entry.
@@ -78,8 +77,7 @@ class CopcHierarchy {
       const CopcEntry& entry = entries_[range.begin];
       std::size_t end = range.begin + 1;
       if (entry.key.level == below) {
-        while (end < range.end && entries_[end].key.level > below)
-          ++end;  // those after it, up to the next of its level
+        while (end < range.end && entries_[end].key.level > below) ++end;  // up to the next of its level
         if (end - range.begin > page_nodes_) {
           page.push_back({entry.key, ranges_.size(), 0, -1});  // the number of its page, for now
           ranges_.push_back({range.begin, end});

@@ -63,8 +63,7 @@ using CopcPlace = std::array<std::int64_t, 3>;
   return place;
 }
 
-inline constexpr unsigned copc_grid_bits =
-    7;  ///< a node has 128 cells along each axis, with at most one point each unless it is a leaf
+inline constexpr unsigned copc_grid_bits = 7;  ///< a node has 128 cells an axis, of at most a point each but in leaves
 inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Morton number
 
 /// Spreads the lowest 21 bits of a number: bit i becomes bit 3i.
@@ -127,8 +126,7 @@ struct CopcKey {
   }
 };
 
-/// True if a node comes before another from the root down: parents before children, and those in order of their Morton
-/// numbers.
+/// True if a node comes before another from the root down: parents before children, these by Morton numbers.
 [[nodiscard]] constexpr bool copc_before(const CopcKey& a, const CopcKey& b) noexcept {
   const std::int32_t level = a.level < b.level ? a.level : b.level;
   const CopcKey p = a.ancestor(level), q = b.ancestor(level);

@@ -33,8 +33,7 @@ struct CopcExtent {
 
 /// Point records on their way into the octree, in a temporary file. They are gathered to runs of some megabytes, and
 /// each run is sorted by cells: aligned cubes of 2^bits steps. So all points of a node are found in few pieces of the
-/// file, whatever order they came in, before its bounds are known. Cells are doubled whenever all runs together have
-/// too many.
+/// file, whatever order they came in, before its bounds are known. Cells double whenever all runs have too many.
 class CopcRuns {
  public:
   /// Records of `record` bytes, in runs of about `run_bytes`; `most_cells` counts those of all runs.

@@ -45,8 +45,7 @@ inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< 
   return otherwise;
 }
 
-/// EPSG code of the projected reference system, if any. Throws a `FileError` for another kind of system, or one in
-/// feet.
+/// EPSG code of the projected reference system, if any. Throws a `FileError` for another system, or in feet.
 [[nodiscard]] inline std::optional<std::uint16_t> projected_epsg(TiffFile& file) {
   const std::uint16_t model = geo_key(file, geotiff::model_type, 1), given = geo_key(file, geotiff::linear_unit, 0);
   const std::uint16_t unit = given == 0 ? geotiff::metre : given;

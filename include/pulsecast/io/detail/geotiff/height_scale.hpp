@@ -26,8 +26,7 @@ struct HeightScale {
 
 namespace geotiff {
 
-/// Unit of length by its EPSG code and its names in GDAL, between vertical bars. Source: EPSG registry 10.076; GDAL,
-/// GDALRasterBand::GetUnitType.
+/// Unit of length by EPSG code, and names between bars. Source: EPSG registry 10.076; GDALRasterBand::GetUnitType.
 struct LengthUnit {
   std::uint16_t code = metre;
   double metres = 1;
@@ -42,8 +41,7 @@ inline constexpr std::array<LengthUnit, 6> length_units{{
     {9095, 0.3048007491, "|british foot (1936)|"},
 }};
 
-/// Vertical systems in another unit than metres, or of depths. Source: EPSG registry 10.076, vertical systems and their
-/// axes.
+/// Vertical systems in other units than metres, or of depths. Source: EPSG registry 10.076, vertical systems and axes.
 inline constexpr std::array<std::uint16_t, 5> systems_in_feet{6130, 6131, 6132, 8050, 8228};
 inline constexpr std::array<std::uint16_t, 3> systems_in_us_feet{5702, 6360, 8052};
 inline constexpr std::uint16_t system_in_british_feet = 5754;
@@ -53,8 +51,7 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
 
 }  // namespace geotiff
 
-/// Text of an item of GDAL's metadata by its role, of a band from 1; empty without. Source: GDAL manual, GTiff driver,
-/// GDAL_METADATA.
+/// Text of an item of GDAL's metadata by role and band, from 1; or empty. Source: GDAL, GTiff driver, GDAL_METADATA.
 [[nodiscard]] inline std::string_view metadata_item(std::string_view all, std::string_view role, std::uint16_t band) {
   const auto attribute = [](std::string_view tag, std::string_view name) -> std::string_view {
     const std::size_t at = tag.find(std::string(name) + "=\"");
@@ -105,8 +102,7 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   return 1;
 }
 
-/// Heights of a band, counted from 1, by all tags of a file. @throws FileError for a scale that is no number, or 0, and
-/// as `metres_by_keys`
+/// Heights of a band, from 1, by all tags. @throws FileError for a scale of 0 or no number, and as `metres_by_keys`
 [[nodiscard]] inline HeightScale height_scale(TiffFile& file, std::uint16_t band) {
   const auto text = file.tags<char>(geotiff::metadata);
   const std::string_view all(text.data(), text.size());

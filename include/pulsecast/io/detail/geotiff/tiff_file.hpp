@@ -36,8 +36,7 @@ class TiffFile {
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }  ///< size of the file [byte]
 
-  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver,
-  /// internal masks.
+  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver.
   [[nodiscard]] bool has_mask() const noexcept { return has_mask_; }
 
   [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
@@ -107,12 +106,10 @@ class TiffFile {
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
-    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm",
-                            options.get()));  // not memory-mapped, as the file may be truncated meanwhile
+    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not mapped, as the file may be truncated
     if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
     look_for_mask(*tiff);
-    // libdeflate leaves the end of a strip or tile unread, without an error, if more is compressed than it needs; zlib
-    // reads all of it
+    // if a strip or tile has more than it needs, libdeflate leaves the end unread without an error; zlib reads all
     std::uint16_t scheme = COMPRESSION_NONE;
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &scheme);
     if (scheme == COMPRESSION_ADOBE_DEFLATE || scheme == COMPRESSION_DEFLATE)

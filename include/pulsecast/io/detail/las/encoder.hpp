@@ -189,23 +189,17 @@ class LasEncoder {
     }
   }
 
-  /// Settings, as given.
   [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
-  /// Layout of a point record.
   [[nodiscard]] const detail::LasLayout& layout() const noexcept { return layout_; }
-  /// Offset of the coordinates [m].
-  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
-  /// Statistics of the points located so far.
-  [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }
-  /// Statistics, for a sum over several encoders.
-  [[nodiscard]] LasTally& tally() noexcept { return tally_; }
+  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }    ///< of the coordinates [m]
+  [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }  ///< of the points located so far
+  [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< for a sum over several encoders
 
  private:
   static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20,
                                object_at = 28, kind_at = 32;
 
-  /// Writes the part of a wave packet common to all returns. Offsets from its first byte: LAS 1.4 R15, Point Data
-  /// Record Format 4.
+  /// Writes what all returns share of a wave packet. Offsets in it: LAS 1.4 R15, Point Data Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
     record.put(layout_.packet, packet.descriptor);
     record.put(layout_.packet + 1, packet.offset);

@@ -100,8 +100,7 @@ class LasPackets {
   }
 
   static constexpr double max_samples = 32768;  ///< samples of a waveform, at most
-  static constexpr unsigned size_classes = 23, gain_classes = 11,
-                            descriptor_count = size_classes * gain_classes;  ///< kinds of packets
+  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
 
  private:
   static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]

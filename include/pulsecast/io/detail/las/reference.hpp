@@ -53,8 +53,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return text::joined({name, geographic, projection, axes, code(std::to_string(epsg)), "]"});
 }
 
-/// GeoTIFF key directory: header and three keys (projected model, its code, metre as unit). Source: OGC
-/// GeoTIFF 1.1, 7.1.2 and annex B.
+/// GeoTIFF key directory: header and keys (projected model, its code, metre). Source: OGC GeoTIFF 1.1, 7.1.2, annex B.
 [[nodiscard]] constexpr std::array<std::uint16_t, 16> las_geo_keys(std::uint16_t epsg) noexcept {
   return {1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 3076, 0, 1, 9001};
 }

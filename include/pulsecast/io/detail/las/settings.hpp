@@ -46,8 +46,7 @@ inline constexpr std::size_t las_extras_size = [] {
   return size;
 }();
 
-/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, without a part of a UTF-8
-/// character.
+/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, of whole UTF-8 characters.
 [[nodiscard]] constexpr std::string_view las_extra_name(std::string_view name) noexcept {
   std::size_t size = name.size() > 31 ? 31 : name.size();
   while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;
@@ -62,16 +61,14 @@ namespace PULSECAST_NAMESPACE::io {
 enum class LasFormat : std::uint8_t {
   las_1_4,         ///< version 1.4, point format 6; 7 with colours, 8 with near infrared; 9 with waveforms
   las_1_4_legacy,  ///< version 1.4, point format 1, or 4 with waveforms: 5 returns, 32 classes, angles in whole degrees
-  las_1_0,  ///< version 1.0, point format 1, for old readers: as above, without waveforms, well-known text, and kind of
-            ///< GPS time
+  las_1_0,  ///< version 1.0, point format 1, for old readers: as above, but no waveforms, WKT and kind of GPS time
 };
 
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
   amplitude,    ///< received power of the echo, as most instruments report it
-  /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface
-  /// there, but for the air
+  /// Received power times the squared share of the range in `intensity_range`: as of the surface there, but for the air
   range_normalized,
 };
 
@@ -83,8 +80,7 @@ enum class GpsTime : std::uint16_t {
 
 /// Settings of a LAS or LAZ file.
 struct LasSettings {
-  /// Date of creation.
-  using Date = std::chrono::year_month_day;
+  using Date = std::chrono::year_month_day;  ///< date of creation
 
   LasFormat format = LasFormat::las_1_4;  ///< version and point format
   bool waveforms = false;                 ///< true to write waveforms to a .wdp file beside it
@@ -93,17 +89,15 @@ struct LasSettings {
   bool near_infrared = false;  ///< true to write the near infrared of the colours, too
   /// Attributes of objects, one extra value of a point for each name; NaN where unknown. Null for none.
   std::shared_ptr<const ObjectAttributes> attributes = nullptr;
-  double scale = 1e-4;  ///< step of the coordinates [m]
-  std::optional<Vec3> offset =
-      std::nullopt;        ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
-  std::string wkt = {};    ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
-  std::uint16_t epsg = 0;  ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
+  double scale = 1e-4;              ///< step of the coordinates [m]
+  std::optional<Vec3> offset = {};  ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  std::string wkt = {};             ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
+  std::uint16_t epsg = 0;           ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
   GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
-  std::optional<double> intensity_full_scale =
-      {};  ///< value stored as the maximum intensity, 65535, and clipped above; if empty, a reflectance of 1, or the
-           ///< maximum amplitude of the file [W]
+  /// Value stored as 65535, the maximum, and clipped above; if empty, a reflectance of 1, or the maximum amplitude [W]
+  std::optional<double> intensity_full_scale = {};
   double intensity_range = 1;                  ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;           ///< reference power of amplitudes in dB [W]
   std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0, for equal bytes of equal surveys
@@ -115,10 +109,8 @@ struct LasSettings {
     if (attributes) validate_attributes();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534,
-                   "bytes");  // with a terminator, counted by 16 bits
-    if (epsg != 0)
-      require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
+    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // and a terminator
+    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // EPSG codes; source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");
     if (intensity == LasIntensity::range_normalized && !intensity_full_scale)

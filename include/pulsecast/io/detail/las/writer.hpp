@@ -49,25 +49,21 @@ struct LasExtendedRecords {
 /// records, in pulse order or another, and may change them once all are known. Source of every field: ASPRS LAS
 /// Specification 1.4 R15. Choices that it leaves open:
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
-/// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200
-/// for zero;
+/// - intensity is linear in the quantity of `LasIntensity`; Amplitude and Reflectance are levels [dB], -200 for zero;
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last, see `pulses_cut`;
 /// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most
 /// 255, and scanner channel its lowest two bits: pulses of one GPS time differ in them;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
-/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear.
-/// The specification demands well-known text with point formats 6 to 9; a code is more useful than none. Legacy formats
-/// always take a code as keys;
-/// - colours are those of `LasSettings::colours`, black where unknown; attributes of objects are doubles, NaN where
-/// unknown;
+/// - a reference system given by its code alone, other than UTM, becomes GeoTIFF keys, with the WKT bit clear. The
+/// specification demands text with formats 6 to 9; a code is better than none. Legacy formats take any code as keys;
+/// - colours are those of `LasSettings::colours`, black if unknown; attributes of objects are doubles, NaN if unknown;
 /// - flags, scan direction and edge of flight line are 0, as echoes have no such fields.
 ///
 /// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point
 /// could refer to it. The return point waveform location L is the two-way time from the first sample to the echo [ps].
 /// The vector d points back to the instrument, with half the speed of light as length [m/ps]. Then, as in the
 /// specification, `P + L d` is the anchor, the origin of the first sample, and sample i is from `P + (L - i spacing)
-/// d`, for point P. Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed before the LAS
-/// file, so a LAS file always has it.
+/// d`, for point P. Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed first.
 template <class Records>
 class LasFileWriter {
  public:
@@ -87,8 +83,7 @@ class LasFileWriter {
     }
     file_.write(Records::descriptors(layout()));
     variable_records_ += Records::descriptor_count;
-    if (layout().start_signature != 0)
-      file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
+    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: as `LasLayout`
     points_at_ = file_.position();
     records_.begin(file_, layout(), encoder_.automatic_intensity());
     records_at_ = file_.position();
@@ -228,8 +223,7 @@ class LasFileWriter {
   void write_record_header(std::string_view user, std::uint16_t record, std::size_t size,
                            std::string_view description) {
     auto h = las_vlr_header(user, record, size, description);
-    if (layout().minor == 0)
-      h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Variable Length Records, Record Signature
+    if (layout().minor == 0) h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Record Signature
     file_.write(h);
     ++variable_records_;
   }

@@ -22,8 +22,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from its version 3 on. Each attribute
 /// is a layer, left out if constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension),
-/// specification document; files of it, items POINT14, RGB14, RGBNIR14 and BYTE14 in version 3, for details left open
-/// there.
+/// specification; files of it, items POINT14, RGB14, RGBNIR14 and BYTE14 in version 3, for details left open there.
 class LazChunk {
  public:
   /// One or more whole records of `record` bytes, contiguous; `colour` bytes of them are a colour: 0, 6 or 8.

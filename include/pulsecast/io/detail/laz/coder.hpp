@@ -14,9 +14,8 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// Arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and
-/// Practice, 2.2 and 3; of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files
-/// that LASzip writes.
+/// Arithmetic coder of LAZ. Source: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3; of
+/// the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and files of LASzip.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Adaptive frequency model of some symbols. Updates of the shares become rarer while coding.
@@ -114,8 +113,7 @@ class LazEncoder {
 
   /// Bytes of all coded symbols; bytes after them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
-    const std::uint32_t gap =
-        (0U - base_) & 0xFFFFFFU;  // the interval, at least 2^24 long, has a number that ends in 24 zeros
+    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // to 24 zeros at the end: the interval is at least 2^24 long
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);

@@ -12,9 +12,8 @@
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
-/// Coders of the colour of a point, byte by byte: which bytes differ from those of the colour before, and by how much.
-/// Source: LASzip for LAS 1.4 (native extension), specification document, RGB and NIR layers; for the prediction of
-/// blue, the decoder of laz-perf.
+/// Coders of a point's colour, byte by byte: which differ from those before, and by how much. Source: LASzip for LAS
+/// 1.4 (native extension), specification, RGB and NIR layers; for the prediction of blue, the decoder of laz-perf.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Low and high byte of a 16-bit number.

@@ -19,8 +19,7 @@
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the
-/// median. From then on it replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1
-/// (median of five).
+/// median. From then on it replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1.
 class LazMedian {
  public:
   [[nodiscard]] std::int32_t value() const noexcept { return sorted_[2]; }
@@ -43,9 +42,8 @@ class LazMedian {
   bool drop_greatest_ = true;
 };
 
-/// Coder of integers as corrections to a prediction. First comes the bit length of the correction, by a model for each
-/// context, then its rank among corrections of that length, with its highest eight bits modelled. Source: Isenburg
-/// 2013, LASzip, 4 (Entropy coding).
+/// Coder of integers as corrections to a prediction: first the bit length, by a model for each context, then the rank
+/// among those of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
 class LazIntegers {
  public:
   /// `bits` of the integers, 16 or 32; number of contexts.
@@ -63,9 +61,8 @@ class LazIntegers {
     length_ = static_cast<unsigned>(std::bit_width(size));
     encoder.encode(lengths_[context], length_);
     if (length_ == 0) return encoder.encode(zero_or_one_, correction == 1);
-    if (length_ == 32) return;  // a single one: -2^31
-    const std::uint32_t place =
-        correction > 0 ? size : (1U << length_) - 1 - size;  // index among those of its length, from 0
+    if (length_ == 32) return;                                                       // a single one: -2^31
+    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;  // among its length, from 0
     LazModel<>& model = corrections_[length_ - 1];
     if (length_ <= modelled_bits) return encoder.encode(model, place);
     const unsigned others = length_ - modelled_bits;

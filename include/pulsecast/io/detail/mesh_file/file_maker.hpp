@@ -140,8 +140,7 @@ class MeshFileMaker {
     }
   }
 
-  /// Notes coordinates that single precision rounds by more than a millimetre. Source: IEEE 754-2019, binary32, half a
-  /// unit of 24 bits.
+  /// Notes coordinates that single precision, of 24 bits, rounds by more than 1 mm. Source: IEEE 754-2019, binary32.
   void note_precision() {
     const double rounding = farthest_ * 0x1p-24;
     if (rounding > 1e-3)

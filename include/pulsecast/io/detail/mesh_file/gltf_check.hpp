@@ -95,8 +95,7 @@ void each_json(std::string_view value, const Visit& visit) {
 
 /// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not
 /// floating-point numbers, which it takes for such; notes extensions without effect that move or hide meshes. Source:
-/// glTF 2.0, 3.12 (a required extension must be supported) and 3.7.2.1 (meshes: positions are `float`); Khronos
-/// registry of extensions.
+/// glTF 2.0, 3.12 (required extensions) and 3.7.2.1 (positions are `float`); Khronos registry of extensions.
 inline void check_gltf(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   // tested, with those for materials, which move nothing
   static constexpr std::array<std::string_view, 3> known{"KHR_draco_mesh_compression", "KHR_lights_punctual",

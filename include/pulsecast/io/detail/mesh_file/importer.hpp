@@ -259,8 +259,7 @@ class MeshImport {
              ", expected less than the number of vertices, " + std::to_string(vertices));
   }
 
-  /// Writes the n - 2 triangles of a face; those that it does not need have no area. False for a fan, as its outline
-  /// crosses itself.
+  /// Writes the n - 2 triangles of a face; those not needed have no area. False for a fan: its outline crosses itself.
   [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
     const unsigned* const c = face.mIndices;
     const auto fan = [&] {

@@ -27,8 +27,7 @@ class MeshMaker {
   MeshMaker(std::string path, const RawScene& scene, const Workers& workers)
       : path_(std::move(path)), scene_(scene), workers_(workers) {}
 
-  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if no triangle
-  /// has an area.
+  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if all is flat.
   [[nodiscard]] MeshData operator()(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials,
                                     const Matrix3& shape) {
     MeshData made;

@@ -48,8 +48,7 @@ struct MeshFileSettings {
   bool texture = false;                ///< true to read texture coordinates also if no material has a picture
   bool pictures = true;                ///< false: pictures are listed, but not read
   bool files_elsewhere = false;        ///< true: buffers and pictures may lie outside the file's folder
-  /// True: assimp runs in a child process, whose death is a `FileError`. For files that are not trusted; OBJ files need
-  /// none.
+  /// True: assimp runs in a child process, whose death is a `FileError`. For untrusted files; OBJ files need none.
   bool isolated = false;
   ImportLimits limits{};  ///< of that process
 
@@ -59,8 +58,7 @@ struct MeshFileSettings {
   }
 };
 
-/// Mesh of a file, in its own frame. Coordinates are of single precision, as assimp has them: good to 6e-8 of the
-/// distance to the origin.
+/// Mesh of a file, in its own frame, with assimp's single precision: good to 6e-8 of the distance to the origin.
 struct FileMesh {
   MeshData mesh{};                         ///< triangles with an area; texture coordinates if a material has a picture
   std::vector<std::uint32_t> materials{};  ///< by material of the mesh: its number in `MeshFile::materials`

@@ -106,8 +106,7 @@ class MaterialImport {
 [[nodiscard]] inline std::vector<std::byte> embedded_picture(const aiTexture& texture) {
   const auto* const data = reinterpret_cast<const std::byte*>(texture.pcData);
   if (texture.mHeight == 0) return {data, data + texture.mWidth};
-  // pixels of blue, green, red and opacity become a Targa file. Source: Truevision TGA file format specification 2.0,
-  // 1991
+  // pixels of blue, green, red and opacity become a Targa file. Source: Truevision, TGA file format 2.0, 1991
   const std::size_t pixels = std::size_t{texture.mWidth} * texture.mHeight;
   std::vector<std::byte> file(18 + 4 * pixels);
   if (texture.mWidth > 65535 || texture.mHeight > 65535) return {};

@@ -81,8 +81,7 @@ void hand_over(Io& io, RawScene& scene) {
   return scene;
 }
 
-/// Result of an import of a file in a child process. It takes a function to call with the size of each further file
-/// [byte].
+/// Result of an import in a child process. It takes a function to call with the size of each further file [byte].
 template <class Import>
 [[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits,
                                       const Import& import) {

@@ -28,11 +28,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 static_assert(std::same_as<tinyobj::real_t, double>,
               "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
-inline constexpr double max_number =
-    1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
+inline constexpr double max_number = 1e12;  ///< in a file, so that products of a few numbers cannot overflow
 
-/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin
-/// with, and fails at very long ones.
+/// Number in a word, if tinyobjloader would read the same: others it reads in part, and it fails at long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
   const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
@@ -94,8 +92,7 @@ class StatementBuffer : public std::streambuf {
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
  protected:
-  /// Sets `ready`, empty at first, to the text for tinyobjloader for the current statement. Throws a `FileError` if it
-  /// is invalid.
+  /// Sets `ready`, empty at first, to the current statement for tinyobjloader. Throws a `FileError` if it is invalid.
   virtual void check(std::string& ready) = 0;
 
   [[nodiscard]] const std::string& path() const { return path_; }
@@ -136,8 +133,7 @@ class StatementBuffer : public std::streambuf {
     do {
       if (!take_statement()) return false;
     } while (statement_.empty() || statement_.starts_with('#'));
-    if (statement_.find('#') != statement_.npos &&
-        !keyword().ends_with("mtl"))  // names may contain it, as in `usemtl Material #25`
+    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // not in `usemtl Material #25`
       statement_.resize(std::min(statement_.find(" #"), statement_.size()));
     const std::string_view word = keyword(), after = rest();
     if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())

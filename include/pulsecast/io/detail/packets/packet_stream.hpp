@@ -74,8 +74,7 @@ concept PacketFormat = requires(const PacketSource& source, std::span<std::byte>
 };
 
 /// Sink that writes the echoes of a sensor as its packets. Packet n holds the same firing sequences, whatever the run
-/// begins with. The first packet is that of the first echo. From there on, all are passed on, in order, also those
-/// without echoes.
+/// begins with. From that of the first echo on, all are passed on, in order, also those without echoes.
 template <PacketFormat Format>
 class PacketStream {
  public:

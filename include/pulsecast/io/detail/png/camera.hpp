@@ -88,8 +88,7 @@ class Camera {
     s.eye ? stand(s, *s.eye) : frame(s, points);
   }
 
-  /// Column and row from the upper left corner of the picture [px], and depth along the view [m]. NaN behind the
-  /// camera.
+  /// Column and row from the upper left corner [px], and depth along the view [m]. NaN behind the camera.
   [[nodiscard]] Vec3 pixel(const ImagePoint& p) const {
     const Vec3 v = seen(p);
     return {shift_.x + scale_ * v.x, shift_.y - scale_ * v.y, v.z};

@@ -103,8 +103,7 @@ class TextOutput {
  public:
   explicit TextOutput(OutputFile file) : file_(std::move(file)) {}
 
-  /// Adds a position or direction. One that is not finite discards the table and throws a `FileError`; `what` names it
-  /// there.
+  /// Adds a position or direction. If it is not finite, discards the table and throws a `FileError` about `what`.
   TextOutput& vector(std::string_view what, const Vec3& v, int decimals) {
     if (!finite(v)) reject(what);
     return reals(decimals, v.x, v.y, v.z);
@@ -140,7 +139,6 @@ class TextOutput {
     return *this;
   }
 
-  /// Adds integers.
   template <std::integral... Integers>
   TextOutput& wholes(Integers... values) {
     (row_.add(values), ...);

@@ -29,8 +29,7 @@ class RowCells {
     for (const char c : separators) separates_[static_cast<unsigned char>(c)] = true;
   }
 
-  /// Splits a row into `max_cells` cells at most, without the blanks around them. Valid as long as the row, until the
-  /// next one.
+  /// Splits a row into `max_cells` cells at most, without blanks around them. Valid as long as the row, until the next.
   const std::vector<std::string_view>& split(std::string_view row,
                                              std::size_t max_cells = std::numeric_limits<std::size_t>::max()) {
     cells_.clear();

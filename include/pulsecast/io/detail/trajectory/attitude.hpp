@@ -60,8 +60,7 @@ inline const AngleConvention helios_arinc_705{
     .turns = {
         {{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
 
-/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes
-/// it.
+/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ writes this, its "CANONICAL".
 inline const AngleConvention helios_canonical{
     .turns = {
         {{&RollPitchYaw::roll, axis::right}, {&RollPitchYaw::pitch, axis::forward}, {&RollPitchYaw::yaw, axis::up}}}};
@@ -152,9 +151,7 @@ struct Axes {
   }
 
  private:
-  static Rotation down_from_up() noexcept {
-    return rotation_about(axis::right + axis::forward, pi);
-  }  // swaps x and y, and negates z
+  static Rotation down_from_up() noexcept { return rotation_about(axis::right + axis::forward, pi); }  // (y, x, -z)
 
   [[nodiscard]] Rotation of_world() const noexcept {
     return world == WorldAxes::east_north_up ? no_rotation : down_from_up();

@@ -101,8 +101,7 @@ inline constexpr auto units = std::to_array<Unit>({
     {"rad", Dimension::angle, 1},
 });
 
-/// Normal form of a name: small letters, and one underscore for each run of other characters: "Roll [deg]" becomes
-/// "roll_deg".
+/// Normal form of a name: small letters, and an underscore for each run of others: "Roll [deg]" becomes "roll_deg".
 [[nodiscard]] inline std::string plain(std::string_view name) {
   std::string result;
   for (const char c : text::lower(name)) {

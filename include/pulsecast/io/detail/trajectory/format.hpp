@@ -22,8 +22,7 @@ enum class ColumnNames : std::uint8_t {
   nowhere,     ///< nowhere, by agreement
 };
 
-/// Format of a trajectory file, for reading and writing. Names and units: see `trajectory_column`. Lines that begin
-/// with # are comments.
+/// Format of a trajectory file. Names and units: see `trajectory_column`. Lines that begin with # are comments.
 struct TrajectoryFormat {
   ColumnNames names = ColumnNames::first_line;  ///< place of the names
   /// Columns to write, in this order, and to read from a file without names.
