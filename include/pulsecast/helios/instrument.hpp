@@ -11,10 +11,12 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/channels.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
 /// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
@@ -94,6 +96,8 @@ template <EchoWidth Width = NoWidth>
 
 #if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
 #include <cmath>
+
+#include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -167,6 +167,7 @@ class Simulation {
 #include <algorithm>
 
 #include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

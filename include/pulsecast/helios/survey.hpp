@@ -49,7 +49,10 @@ struct CompiledSurvey {
 #include <utility>
 
 #include <pulsecast/helios/detail/leg_paths.hpp>
+#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/xml/writer.hpp>
+#include <pulsecast/helios/instrument.hpp>
+#include <pulsecast/platform/platform.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -18,6 +18,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/las.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

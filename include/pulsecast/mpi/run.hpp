@@ -16,6 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/mpi/detail/blocks.hpp>
+#include <pulsecast/mpi/detail/channel.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/detail/stream.hpp>
 #include <pulsecast/mpi/las.hpp>
 #include <pulsecast/mpi/laz.hpp>

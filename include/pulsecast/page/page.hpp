@@ -20,6 +20,8 @@
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/page/detail/columns.hpp>
+#include <pulsecast/page/detail/json.hpp>
+#include <pulsecast/page/detail/sample.hpp>
 #include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/version.hpp>
 

@@ -17,6 +17,8 @@
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/detail/point_columns.hpp>
+#include <pulsecast/python/detail/point_rows.hpp>
 #include <pulsecast/run.hpp>
 
 /// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs

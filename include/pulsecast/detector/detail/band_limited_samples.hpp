@@ -13,7 +13,9 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
+#include <pulsecast/detector/detail/filtered_noise.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>

@@ -9,6 +9,7 @@
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 

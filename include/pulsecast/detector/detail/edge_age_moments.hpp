@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -9,8 +9,10 @@
 #include <span>
 
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -11,6 +11,7 @@
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 

@@ -9,8 +9,11 @@
 #include <span>
 #include <vector>
 
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -12,8 +12,11 @@
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

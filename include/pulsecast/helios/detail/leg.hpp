@@ -15,13 +15,16 @@
 #include <vector>
 
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/instrument.hpp>
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {

@@ -16,10 +16,20 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 #include <pulsecast/helios/detail/survey_options.hpp>
 #include <pulsecast/helios/detail/trajectory_format.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/platform/ground_vehicle.hpp>
+#include <pulsecast/platform/multicopter.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/straight_line.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/platform/waypoints.hpp>
 
 /// Paths of the legs of a survey document.
 namespace PULSECAST_NAMESPACE::helios {

@@ -19,16 +19,21 @@
 #include <time.h>
 
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/helios/detail/any_survey.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
+#include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/survey.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 /// Surveys with their scenes, ready to run.

@@ -15,6 +15,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 

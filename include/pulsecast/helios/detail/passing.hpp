@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>

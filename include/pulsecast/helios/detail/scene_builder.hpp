@@ -16,9 +16,11 @@
 
 #include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/variation.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
 
 /// Conversion of the scene of a survey document to parts of the library.

@@ -19,6 +19,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
@@ -27,9 +28,14 @@
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 #include <pulsecast/io/png_heights.hpp>
+#include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/vox.hpp>
 #include <pulsecast/io/world_file.hpp>
 #include <pulsecast/shape/class_materials.hpp>
+#include <pulsecast/shape/height_field.hpp>
+#include <pulsecast/shape/raster.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Reading of the sources of parts.
 namespace PULSECAST_NAMESPACE::helios {

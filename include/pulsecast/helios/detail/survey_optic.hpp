@@ -9,6 +9,7 @@
 #include <memory>
 #include <variant>
 
+#include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fiber_array.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
@@ -18,6 +19,7 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Optics of survey documents, as one type.

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/echo.hpp>
+#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

@@ -16,6 +16,8 @@
 
 #include <pulsecast/python/detail/arrow.hpp>
 #include <pulsecast/python/detail/point_columns.hpp>
+#include <pulsecast/python/detail/point_rows.hpp>
+#include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/run.hpp>
 
 // hidden, as pybind11's own names, so that modules of different builds can coexist

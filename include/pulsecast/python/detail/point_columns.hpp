@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/python/detail/point_rows.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/object_attributes.hpp>

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
 /// Sources of the geometry of parts: loading filters.

@@ -10,6 +10,11 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/part_source.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/part.hpp>

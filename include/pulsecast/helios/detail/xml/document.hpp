@@ -16,6 +16,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/search.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/detail/xml/encoding.hpp>
 #include <pulsecast/io/input_file.hpp>
 

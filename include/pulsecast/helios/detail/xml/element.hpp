@@ -20,8 +20,11 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 
 /// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/settings.hpp>
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <utility>
 
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// `<platformSettings>` and `<scannerSettings>` of a leg, and the offsets of all.
 namespace PULSECAST_NAMESPACE::helios::xml {

@@ -14,6 +14,7 @@
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

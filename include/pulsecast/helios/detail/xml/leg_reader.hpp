@@ -13,10 +13,14 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 

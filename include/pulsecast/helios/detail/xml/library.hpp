@@ -14,6 +14,9 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/helios/detail/asset_search.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -7,8 +7,11 @@
 #include <string>
 #include <variant>
 
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/motion.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// `<dmotion>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

@@ -17,6 +17,9 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

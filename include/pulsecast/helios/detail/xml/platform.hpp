@@ -6,7 +6,9 @@
 #include <array>
 #include <cstddef>
 
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// `<platform>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

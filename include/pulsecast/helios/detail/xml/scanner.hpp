@@ -15,8 +15,11 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// `<scanner>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

@@ -16,8 +16,12 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/motion.hpp>
 #include <pulsecast/helios/detail/xml/source.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// `<scene>`, its parts, and their placing filters.
 namespace PULSECAST_NAMESPACE::helios::xml {

@@ -10,7 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/asset_search.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 /// Filters that load the geometry of a part.
 namespace PULSECAST_NAMESPACE::helios::xml {

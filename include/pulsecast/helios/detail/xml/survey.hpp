@@ -17,7 +17,11 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
+#include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
