@@ -753,7 +753,8 @@ TEST_CASE("a pose of a user's own type that is not finite ends a run at its puls
 TEST_CASE("NaN from a user's own map ends a run at its pulse, on any number of threads") {
   for (const Broken& map : {Broken{5000, true, false}, Broken{5000, false, true}})
     CHECK(message_of(Survey{Rain{.pulses = 20000}, RingFootprint{}, map, Receiver{}, FirstHit{}}, 5000) ==
-          "the map answered pulse 5000 at 0.05 s with NaN: check its ranges and backscatter");
+          "the map answered pulse 5000 at 0.05 s with NaN: check its ranges and backscatter, or the laws of its "
+          "materials");
   const Broken whole{0};
   CHECK(run(Survey{Rain{.pulses = 3000}, RingFootprint{}, whole, Receiver{}, FirstHit{}}, {}).echoes == 3000);
 }

@@ -122,7 +122,8 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
   const std::string pulse =
       text::joined({"pulse ", std::to_string(shot.index), " at ", text::to_text(shot.tick.seconds()), " s"});
   if (error == PulseError::map)
-    throw std::runtime_error(text::joined({"the map answered ", pulse, " with NaN: check its ranges and backscatter"}));
+    throw std::runtime_error(text::joined(
+        {"the map answered ", pulse, " with NaN: check its ranges and backscatter, or the laws of its materials"}));
   throw std::runtime_error(
       text::joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
 }

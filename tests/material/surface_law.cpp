@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/material/surface_law.hpp>
 
+#include <cmath>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -62,4 +63,19 @@ TEST_CASE("a run of hits has the backscatter and share of one by one, by every l
       }
     }
   }
+}
+
+TEST_CASE("a law that breaks its laws is refused when a material is made") {
+  struct Wrong {
+    double back, share;
+    double backscatter(double, double) const noexcept { return back; }
+    double scattered_share(double, double) const noexcept { return share; }
+  };
+  const double nan = std::nan("");
+  CHECK_NOTHROW(Material{.law = Wrong{0.5, 1}}.validate());
+  CHECK_THROWS_WITH_AS((Material{.law = Wrong{0.5, 1.7}}.validate()),
+                       doctest::Contains("Material::law (scattered_share) is 1.7"), SettingError);
+  CHECK_THROWS_AS((Material{.law = Wrong{0.5, nan}}.validate()), SettingError);
+  CHECK_THROWS_AS((Material{.law = Wrong{-1, 0.5}}.validate()), SettingError);
+  CHECK_THROWS_AS((Material{.law = Wrong{nan, 0.5}}.validate()), SettingError);
 }

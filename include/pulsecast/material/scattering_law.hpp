@@ -25,6 +25,22 @@ struct SurfaceLight {
       : wavelength(w), reflectance(r), relative_index(index) {}
 };
 
+namespace detail {
+template <class L>
+concept Backscatters = requires(const L law, double cosine, double wavelength) {
+  { law.backscatter(cosine, wavelength) } noexcept -> std::convertible_to<double>;
+};
+template <class L>
+concept TellsShare = requires(const L law, double cosine, double wavelength) {
+  { law.scattered_share(cosine, wavelength) } noexcept -> std::convertible_to<double>;
+};
+template <class L>
+concept BackscattersSurfaceLight = requires(const L law, const SurfaceLight& light) { law.backscatter(1.0, light); };
+/// Type with a member of a law, in any form: meant to be one.
+template <class L>
+concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_share; } || Backscatters<L> || TellsShare<L>;
+}  // namespace detail
+
 /// Law of the light that a surface scatters. `backscatter(cosine, wavelength)` is the light returned to its source at a
 /// cosine of incidence in [0, 1], by that of a white Lambertian surface at normal incidence;
 /// `scattered_share(cosine, wavelength)` is the share of the light that is scattered, into all directions. A law may
@@ -33,12 +49,9 @@ struct SurfaceLight {
 /// Law: pure; neither is negative; a share is at most 1.
 /// Not required: light into other directions, as of a law that `ScattersBetween`; `validate()`.
 template <class L>
-concept ScatteringLaw = std::copyable<L> && requires(const L law, double cosine, double wavelength) {
-  { law.backscatter(cosine, wavelength) } noexcept -> std::convertible_to<double>;
-  { law.scattered_share(cosine, wavelength) } noexcept -> std::convertible_to<double>;
-};
+concept ScatteringLaw = std::copyable<L> && detail::Backscatters<L> && detail::TellsShare<L>;
 
-/// Law that takes a `SurfaceLight`.
+/// Law that takes a `SurfaceLight`, in all its members.
 template <class L>
 concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
 
@@ -68,7 +81,7 @@ template <class L>
 concept ScattersBetween = ScatteringLaw<L> && requires(const L law, const Vec3& in, const Vec3& out, const Vec3& normal, double wavelength) {
   { law.scattered(in, out, normal, wavelength) } noexcept -> std::convertible_to<double>;
 };
-PULSECAST_OPTIONAL_MEMBER(ScattersBetween, "double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, double) const noexcept",
+PULSECAST_OPTIONAL_MEMBER(ScattersBetween, "double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, double or const SurfaceLight&) const noexcept",
                           scattered, (Vec3{}, Vec3{}, Vec3{}, 1.0))
 
 /// Direction drawn by a law, with its density.
@@ -83,7 +96,7 @@ template <class L>
 concept SamplesDirections = ScattersBetween<L> && requires(const L law, const Vec3& in, const Vec3& normal, double u, double v) {
   { law.sample(in, normal, u, v) } noexcept -> std::same_as<SampledDirection>;
 };
-PULSECAST_OPTIONAL_MEMBER(SamplesDirections, "SampledDirection sample(const Vec3& in, const Vec3& normal, double, double) const noexcept",
+PULSECAST_OPTIONAL_MEMBER(SamplesDirections, "SampledDirection sample(const Vec3& in, const Vec3& normal, double, double) const noexcept, beside scattered",
                           sample, (Vec3{}, Vec3{}, 1.0, 1.0))
 
 /// Law with light that returns to its source in a narrow cone, as of retroreflectors.

@@ -47,13 +47,18 @@ class SurfaceLaw {
   SurfaceLaw(Lambert) noexcept {}  // NOLINT(google-explicit-constructor): implicit by purpose, as the next two
   SurfaceLaw(DirectionIndependent) noexcept : cosine_(0), even_(1) {}  // NOLINT(google-explicit-constructor)
   template <class Law>
-  requires(!std::same_as<Law, SurfaceLaw> && ScatteringLaw<Law>)
+  requires(!std::same_as<Law, SurfaceLaw> && detail::MeantAsLaw<Law>)
       SurfaceLaw(Law law)  // NOLINT(google-explicit-constructor)
       : model_(std::make_shared<const ModelOf<Law>>(std::move(law))) {}
 
-  /// @throws SettingError as `validate()` of the law
+  /// @throws SettingError as `validate()` of the law, or if it breaks its laws at a white surface
   void validate() const {
-    if (model_) model_->validate();
+    if (!model_) return;
+    model_->validate();
+    for (const double cosine : {0.0, 0.5, 1.0}) {
+      require_not_negative("Material::law (backscatter)", model_->backscatter(cosine, 1e-6), "");
+      require_within("Material::law (scattered_share)", model_->scattered_share(cosine, 1e-6), 0, 1, "");
+    }
   }
 
   /// The law, if it is of a type; null otherwise.
@@ -83,8 +88,16 @@ class SurfaceLaw {
  private:
   template <class Law>
   struct ModelOf final : Model {
-    static_assert(detail::members_checked<Law, tag::ScattersInLanes, tag::ScattersBetween, tag::SamplesDirections,
-                                          tag::Retroreflects, tag::ReflectsInterface>);
+    static_assert(detail::Backscatters<Law>,
+                  "a law of scattered light needs the member: double backscatter(double cosine, "
+                  "double wavelength or const SurfaceLight&) const noexcept");
+    static_assert(detail::TellsShare<Law>,
+                  "a law of scattered light needs the member: double scattered_share(double cosine, "
+                  "double wavelength or const SurfaceLight&) const noexcept");
+    static_assert(detail::BackscattersSurfaceLight<Law> == TakesSurfaceLight<Law>,
+                  "backscatter and scattered_share of a law take the same: the wavelength, or a const SurfaceLight&");
+    static_assert(detail::members_checked<Law, tag::Validated, tag::ScattersInLanes, tag::ScattersBetween,
+                                          tag::SamplesDirections, tag::Retroreflects, tag::ReflectsInterface>);
     explicit ModelOf(Law l) : law(std::move(l)) {
       this->scatters_between = ScattersBetween<Law>;
       if constexpr (Retroreflects<Law>) {
