@@ -52,9 +52,8 @@ class XyzWriter {
       : settings_(validated(settings)), more_(std::move(more)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) {
+    for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) write(batch, shot, echo);
-    }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
@@ -182,9 +181,8 @@ class WaveformTextWriter {
       : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) {
+    for (const Shot& shot : batch.shots)
       if (shot.samples != 0) write(shot, batch);
-    }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
