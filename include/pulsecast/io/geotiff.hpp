@@ -95,15 +95,11 @@ class GeoTiffReader {
   }
 
   [[nodiscard]] GeoTiff read() {
-    switch (layout_.format) {
-      case SAMPLEFORMAT_IEEEFP:
-        if (layout_.bits == 16) return finished<Half>();
-        return layout_.bits == 32 ? finished<float>() : finished<double>();
-      case SAMPLEFORMAT_INT:
-        return whole<std::int8_t, std::int16_t, std::int32_t, std::int64_t>();
-      default:
-        return whole<std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t>();
-    }
+    if (layout_.format == SAMPLEFORMAT_INT) return whole<std::int8_t, std::int16_t, std::int32_t, std::int64_t>();
+    if (layout_.format != SAMPLEFORMAT_IEEEFP)
+      return whole<std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t>();
+    if (layout_.bits == 16) return finished<Half>();
+    return layout_.bits == 32 ? finished<float>() : finished<double>();
   }
 
  private:
@@ -139,16 +135,9 @@ class GeoTiffReader {
 
   template <class One, class Two, class Four, class Eight>
   [[nodiscard]] GeoTiff whole() {
-    switch (layout_.bits) {
-      case 8:
-        return finished<One>();
-      case 16:
-        return finished<Two>();
-      case 32:
-        return finished<Four>();
-      default:
-        return finished<Eight>();
-    }
+    if (layout_.bits == 8) return finished<One>();
+    if (layout_.bits == 16) return finished<Two>();
+    return layout_.bits == 32 ? finished<Four>() : finished<Eight>();
   }
 
   template <class Sample>

@@ -103,7 +103,7 @@ WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
   return names[static_cast<std::size_t>(fate)];
 }
 
-/// Writes pulses that were sent and gave no echo as text, one a line, in these columns, between blanks, no header:
+/// Writes pulses that were sent and gave no echo as text, one a line, in these blank-separated columns, no header:
 ///
 ///     pulseIndex time ox oy oz dx dy dz fate leg deviceIndex
 ///

@@ -52,9 +52,8 @@ class XyzWriter {
       : settings_(validated(settings)), more_(std::move(more)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) {
+    for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) write(batch, shot, echo);
-    }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
@@ -83,7 +82,7 @@ class XyzWriter {
 };
 static_assert(EchoSink<XyzWriter>);
 
-/// Writes pulses as text, with or without echoes, one a line, in these columns, between blanks, without a header:
+/// Writes pulses as text, with or without echoes, one a line, in these blank-separated columns, without a header:
 ///
 ///     ox oy oz dx dy dz time pulseIndex deviceIndex fate
 ///
@@ -120,7 +119,7 @@ class PulseTextWriter {
 };
 static_assert(EchoSink<PulseTextWriter>);
 
-/// Writes the hits of subrays of a `WithSubrayRecord` footprint as text, one a line, in these columns, between blanks:
+/// Writes the hits of subrays of a `WithSubrayRecord` footprint as text, one a line, in these blank-separated columns:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
@@ -162,7 +161,7 @@ class SubrayTextWriter {
 };
 static_assert(EchoSink<SubrayTextWriter>);
 
-/// Writes waveforms as text, one a line, with or without echoes, in these columns, between blanks, without a header:
+/// Writes waveforms as text, one a line, with or without echoes, in these blank-separated columns, without a header:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///
@@ -182,9 +181,8 @@ class WaveformTextWriter {
       : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) {
+    for (const Shot& shot : batch.shots)
       if (shot.samples != 0) write(shot, batch);
-    }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes

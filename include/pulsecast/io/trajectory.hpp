@@ -114,24 +114,9 @@ namespace detail {
   const Rotation q = format.axes.to_file(pose.rotation);
   const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, format.angles);
   const double turn = angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw;
-  QuantityValues values;
-  using enum Quantity;
-  values[time] = start_time + pose.time;
-  values[x] = in_file.x;
-  values[y] = in_file.y;
-  values[z] = in_file.z;
-  values[east] = p.x;
-  values[north] = p.y;
-  values[up] = p.z;
-  values[down] = -p.z;
-  values[roll] = angles.roll;
-  values[pitch] = angles.pitch;
-  values[yaw] = turn < 2 * pi ? turn : 0;
-  values[qx] = q.x;
-  values[qy] = q.y;
-  values[qz] = q.z;
-  values[qw] = q.w;
-  return values;
+  const double yaw = turn < 2 * pi ? turn : 0;
+  return {{start_time + pose.time, in_file.x, in_file.y, in_file.z, p.x, p.y, p.z, -p.z, angles.roll, angles.pitch, yaw,
+           q.x, q.y, q.z, q.w}};  // in the order of `Quantity`
 }
 
 }  // namespace detail

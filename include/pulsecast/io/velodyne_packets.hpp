@@ -82,14 +82,7 @@ struct VelodyneFormat {
     return block_points / source.sensor.lasers.size();
   }
   [[nodiscard]] static std::uint8_t mode(PacketReturns returns) noexcept {
-    switch (returns) {
-      case PacketReturns::strongest:
-        return 0x37;
-      case PacketReturns::last:
-        return 0x38;
-      default:
-        return 0x39;
-    }
+    return returns == PacketReturns::strongest ? 0x37 : returns == PacketReturns::last ? 0x38 : 0x39;
   }
 };
 

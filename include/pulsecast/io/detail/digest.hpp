@@ -11,7 +11,6 @@
 #include <ios>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>

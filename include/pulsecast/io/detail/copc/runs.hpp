@@ -9,11 +9,9 @@
 #include <cstring>
 #include <filesystem>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/output_file.hpp>

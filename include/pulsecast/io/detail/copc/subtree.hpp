@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

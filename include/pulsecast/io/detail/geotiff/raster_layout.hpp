@@ -14,7 +14,6 @@
 
 #include <tiffio.h>
 
-#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/shape/raster.hpp>
 

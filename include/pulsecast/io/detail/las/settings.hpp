@@ -14,7 +14,6 @@
 #include <string_view>
 #include <vector>
 
-#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/scene/object_attributes.hpp>

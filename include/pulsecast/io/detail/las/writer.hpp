@@ -90,9 +90,8 @@ class LasFileWriter {
   }
 
   void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) {
+    for (const Shot& shot : batch.shots)
       if (shot.echoes != 0) write(shot, batch);
-    }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -44,8 +45,8 @@ class LazChunk {
     layers.push_back(users());
     layers.push_back(sources());
     layers.push_back(times());
-    if (colour_ > 0) layers.push_back(layer_by_told<LazColours>(laz_point_size, 6));
-    if (colour_ > 6) layers.push_back(layer_by_told<LazNearInfrared>(laz_point_size + 6, 2));
+    if (colour_ > 0) layers.push_back(layer_at<LazColours>(laz_point_size));
+    if (colour_ > 6) layers.push_back(layer_at<LazNearInfrared>(laz_point_size + 6));
     add_extra_bytes(layers);
 
     std::vector<std::byte> bytes(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(record_));
@@ -265,47 +266,42 @@ class LazChunk {
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < extras; ++k)
         columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + begin + k]);
-    for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
+    for (std::size_t k = 0; k < extras; ++k)
+      layers.push_back(layer_by_told<ExtraByte>([&](std::size_t i) { return columns[k * count + i]; }));
   }
 
-  /// Encodes differences to the last byte. As in all files of version 3, after a change of the scanner channel the last
-  /// byte is still that of the channel before, and is stored there, unless the channel is new.
-  [[nodiscard]] std::vector<std::byte> extra_byte(std::span<const std::uint8_t> column) const {
-    if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column[0]; })) return {};
-    std::array<LazModel<>, 4> models;
-    std::array<std::uint8_t, 4> last{};
-    std::array<bool, 4> known{};
-    last[steps_[0].told] = column[0];
-    known[steps_[0].told] = true;
-    LazEncoder encoder;
-    for (std::size_t i = 1; i < column.size(); ++i) {
-      const std::size_t channel = steps_[i].told;
-      std::size_t kept = steps_[i - 1].told;
-      if (!known[channel]) {
-        known[channel] = true;
-        last[channel] = last[kept];
-        kept = channel;
-      }
-      encoder.encode(models[channel], static_cast<std::uint8_t>(column[i] - last[kept]));
-      last[kept] = column[i];
+  /// Coder of an extra byte as its difference to the last one.
+  struct ExtraByte {
+    using Value = std::uint8_t;
+
+    void encode(LazEncoder& encoder, Value before, Value now) {
+      encoder.encode(steps, static_cast<std::uint8_t>(now - before));
     }
-    return std::move(encoder).finish();
+    LazModel<> steps;
+  };
+
+  /// Encodes a layer of the values at offset `at` of each record, or nothing if they are constant.
+  template <class Models>
+  [[nodiscard]] std::vector<std::byte> layer_at(std::size_t at) const {
+    return layer_by_told<Models>([&](std::size_t i) {
+      typename Models::Value value{};
+      std::memcpy(&value, records_.data() + i * record_ + at, sizeof value);
+      return value;
+    });
   }
 
-  /// Encodes a layer of `size` bytes at offset `at` of each record, or nothing if they are constant. The value before
-  /// and the models are kept by channel as those of extra bytes are.
-  template <class Models>
-  [[nodiscard]] std::vector<std::byte> layer_by_told(std::size_t at, std::size_t size) const {
-    using Value = typename Models::Value;
-    const auto bytes = [&](std::size_t i) { return records_.subspan(i * record_ + at, size); };
-    const auto same = [&](const Step& step) {
-      return std::ranges::equal(bytes(static_cast<std::size_t>(&step - steps_.data())), bytes(0));
-    };
-    if (std::all_of(steps_.begin(), steps_.end(), same)) return {};
+  /// Encodes a layer of a value of each point, or nothing if they are constant. As in all files of version 3, after a
+  /// change of the scanner channel the last value is still that of the channel before, and is stored there, unless the
+  /// channel is new.
+  template <class Models, class ValueOf>
+  [[nodiscard]] std::vector<std::byte> layer_by_told(const ValueOf& value) const {
+    std::size_t same = 1;
+    while (same < points_.size() && value(same) == value(0)) ++same;
+    if (same == points_.size()) return {};
     std::array<std::unique_ptr<Models>, 4> models;
-    std::array<Value, 4> last{};
+    std::array<typename Models::Value, 4> last{};
     models[steps_[0].told] = std::make_unique<Models>();
-    last[steps_[0].told] = Models::value(bytes(0));
+    last[steps_[0].told] = value(0);
     LazEncoder encoder;
     for (std::size_t i = 1; i < points_.size(); ++i) {
       const std::size_t channel = steps_[i].told;
@@ -315,9 +311,9 @@ class LazChunk {
         last[channel] = last[kept];
         kept = channel;
       }
-      const Value value = Models::value(bytes(i));
-      models[channel]->encode(encoder, last[kept], value);
-      last[kept] = value;
+      const auto now = value(i);
+      models[channel]->encode(encoder, last[kept], now);
+      last[kept] = now;
     }
     return std::move(encoder).finish();
   }

@@ -7,8 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <span>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
@@ -25,12 +23,6 @@ namespace PULSECAST_NAMESPACE::io::detail {
 class LazColours {
  public:
   using Value = std::array<std::uint16_t, 3>;
-
-  [[nodiscard]] static Value value(std::span<const std::byte> bytes) noexcept {
-    Value value{};
-    std::memcpy(value.data(), bytes.data(), sizeof value);
-    return value;
-  }
 
   void encode(LazEncoder& encoder, const Value& before, const Value& now) {
     std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
@@ -70,12 +62,6 @@ class LazColours {
 class LazNearInfrared {
  public:
   using Value = std::uint16_t;
-
-  [[nodiscard]] static Value value(std::span<const std::byte> bytes) noexcept {
-    Value value{};
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
-  }
 
   void encode(LazEncoder& encoder, Value before, Value now) {
     const auto old = laz_halves(before), next = laz_halves(now);

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/io/detail/laz/coder.hpp>
 
 /// Coders of the numbers of a LAZ file.

@@ -20,7 +20,6 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
-#include <pulsecast/material/material.hpp>
 
 /// Statements of OBJ and MTL files.
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -10,8 +10,6 @@
 #include <string_view>
 
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
