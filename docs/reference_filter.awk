@@ -18,6 +18,8 @@ BEGIN {
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
   of["reflections"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
   of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
+  of["backscatter"] = of["scattered_share"] = "ScatteringLaw"; of["scattered"] = "ScattersBetween"; of["sample"] = "SamplesDirections"
+  of["returned_share"] = of["returned_half_angle"] = "Retroreflects"
   of["draw_for_leg"] = "DrawsByLeg"; of["power"] = "PulseForm"; of["min_share"] = "TruncatedWidthMeasure"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."

@@ -276,11 +276,12 @@ TEST_CASE("standard keys are limited or ignored with a note, and never refuse a 
                                          {"map_Kd", "names no picture"},
                                          {"map_d", "names no picture"}}) {
     CAPTURE(c.statement);
-    const MaterialLibrary library = mtl("newmtl a\n" + c.statement + "\n");
+    const MaterialLibrary library = mtl("newmtl a\nKs 1 1 1\n" + c.statement + "\n");
     REQUIRE(library.warnings.size() == 1);
     CHECK(contains(library.warnings[0], c.note));
     CHECK(contains(library.warnings[0], ", line "));
     CHECK(max_norm(library.materials.at("a").colour - c.colour) < 1e-12);
+    REQUIRE(library.materials.at("a").law.get<Phong>());
     CHECK(library.materials.at("a").law.get<Phong>()->exponent == c.exponent);
     CHECK(library.pictures.empty());
     CHECK_NOTHROW(library.materials.at("a").validate());

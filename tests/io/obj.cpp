@@ -434,7 +434,7 @@ TEST_CASE(
   CHECK(contains(model.warnings[1], "line 7: no MTL file describes the material 'a'"));
   REQUIRE(model.materials.size() == 2);
   CHECK(model.materials[0].name == "a");
-  CHECK(model.materials[0].scattering == undescribed("a").scattering);
+  CHECK(model.materials[0].law.get<DirectionIndependent>());
   CHECK(model.materials[0].reflectance == undescribed("a").reflectance);
   CHECK(model.materials[1].reflectance == 0.3);
 }

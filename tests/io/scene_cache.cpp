@@ -67,11 +67,7 @@ MaterialTable some_materials() {
   const auto spectrum =
       std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1e-6, 0.4}, {2e-6, 0.2}});
   return material_table({{.name = "bark", .spectrum = spectrum},
-                         {.name = "leaf",
-                          .reflectance = 0.7,
-                          .scattering = Scattering::phong,
-                          .specular_share = 0.2,
-                          .classification = 5},
+                         {.name = "leaf", .reflectance = 0.7, .law = Phong{0.2, 10}, .classification = 5},
                          {.name = "moss", .ground = true, .spectrum = spectrum}});
 }
 
@@ -201,9 +197,8 @@ TEST_CASE("every word about a part comes back, for several shapes in one scene")
       const Material &a = (*was.materials)[m], &b = (*is.materials)[m];
       CHECK(b.name == a.name);
       CHECK(b.reflectance == a.reflectance);
-      CHECK(b.scattering == a.scattering);
-      CHECK(b.specular_share == a.specular_share);
-      CHECK(b.specular_exponent == a.specular_exponent);
+      REQUIRE((b.law.get<Phong>() == nullptr) == (a.law.get<Phong>() == nullptr));
+      if (a.law.get<Phong>()) CHECK(b.law.get<Phong>()->share == a.law.get<Phong>()->share);
       CHECK(b.classification == a.classification);
       CHECK(b.ground == a.ground);
       REQUIRE((b.spectrum == nullptr) == (a.spectrum == nullptr));
@@ -252,6 +247,33 @@ TEST_CASE("height fields and grids of voxels come back, too") {
   CHECK(differences(scene, *opened.scene, met) == 0);
   CHECK(met > 10'000);
   CHECK(opened.scene->bounds() == scene.bounds());
+}
+
+TEST_CASE("every law of the library comes back") {
+  using S = Scene<TriangleMesh<>>;
+  const SurfaceLaw laws[]{Lambert{},
+                          DirectionIndependent{},
+                          Phong{0.2, 12},
+                          NormalizedPhong{0.3, 15},
+                          Microfacet{0.4},
+                          Retroreflector<Beads>{70, 0.01, {0.4}},
+                          Retroreflector<CubeCorners>{300, 0, {1.5}},
+                          Tabulated{SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}};
+  std::vector<Material> materials;
+  for (const SurfaceLaw& law : laws) materials.push_back({.reflectance = 0.3, .law = law});
+  const S scene({{.geometry = shared<TriangleMesh<>>(some_mesh(1, 10)), .materials = material_table(materials)}});
+  save_scene(folder / "laws.cache", scene, {});
+  const OpenedScene<S> opened = open_scene<S>(folder / "laws.cache", {});
+  REQUIRE(opened.scene);
+  const std::vector<Material>& back = *opened.scene->parts()[0].materials;
+  REQUIRE(back.size() == std::size(laws));
+  for (std::size_t k = 0; k < back.size(); ++k) {
+    CAPTURE(k);
+    for (const double cosine : {0.0, 0.3, 0.95, 1.0}) {
+      CHECK(back[k].backscatter(cosine, 1e-6) == materials[k].backscatter(cosine, 1e-6));
+      CHECK(back[k].scattered_share(1e-6, cosine) == materials[k].scattered_share(1e-6, cosine));
+    }
+  }
 }
 
 TEST_CASE("laws and maps of reflectances of one's own are refused by name") {

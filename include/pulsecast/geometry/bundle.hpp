@@ -70,8 +70,9 @@ struct RayBundle : BundleOrigin {
   }
   /// Range that ray j has to be beyond to count [m].
   [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
+  /// Bounds of the k-th component of the directions.
   [[nodiscard]] double direction_min(int k) const noexcept { return directions_min[k]; }
-  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }
+  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }  ///< as above
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {

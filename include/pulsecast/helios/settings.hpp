@@ -93,8 +93,8 @@ struct LegScannerSettings {
 struct LegSettings {
   std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
   std::optional<double> duration_max{};  ///< upper limit of its duration; `maxDuration_s` of leg or scannerSettings [s]
-  LegPlatformSettings platform{};
-  LegScannerSettings scanner{};
+  LegPlatformSettings platform{};        ///< `platformSettings` of the leg
+  LegScannerSettings scanner{};          ///< `scannerSettings` of the leg
 
   void validate() const {
     if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");

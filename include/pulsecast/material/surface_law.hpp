@@ -33,6 +33,7 @@ class SurfaceLaw {
     virtual void validate() const {}
     virtual double backscatter(double cosine, const SurfaceLight& light) const noexcept = 0;
     virtual double scattered_share(double cosine, const SurfaceLight& light) const noexcept = 0;
+    /// Sets what hits whose cosine is set scatter.
     virtual void scatter_at(std::span<Hit> hits, const SurfaceLight& light) const noexcept = 0;
     virtual double scattered(const Vec3&, const Vec3&, const Vec3&, const SurfaceLight&) const noexcept { return 0; }
     virtual std::optional<SampledDirection> sample(const Vec3&, const Vec3&, double, double) const noexcept {
@@ -44,8 +45,11 @@ class SurfaceLaw {
   };
 
   SurfaceLaw() = default;
+  /// Takes a law, as all constructors.
   SurfaceLaw(Lambert) noexcept {}  // NOLINT(google-explicit-constructor): implicit by purpose, as the next two
+  /// As above.
   SurfaceLaw(DirectionIndependent) noexcept : cosine_(0), even_(1) {}  // NOLINT(google-explicit-constructor)
+  /// As above; one that is not a `ScatteringLaw` is an error that names the member.
   template <class Law>
   requires(!std::same_as<Law, SurfaceLaw> && detail::MeantAsLaw<Law>)
       SurfaceLaw(Law law)  // NOLINT(google-explicit-constructor)

@@ -40,6 +40,7 @@ namespace [[gnu::visibility("hidden")]] python {
 /// meanwhile.
 class InterruptWatch {
  public:
+  /// Will ask `stopping` for the end of the work.
   explicit InterruptWatch(std::stop_source stopping) : stopping_(std::move(stopping)) {
     const pybind11::module_ threading = pybind11::module_::import("threading");
     on_main_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
