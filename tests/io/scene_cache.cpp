@@ -284,7 +284,7 @@ TEST_CASE("laws and maps of reflectances of one's own are refused by name") {
   struct OwnMap final : ReflectanceByTexture {
     void validate() const override {}
     const Image* picture() const noexcept override { return nullptr; }
-    double reflectance(double, const Vec2& texture, double) const noexcept override { return texture.x; }
+    double reflectance(double, Vec2 texture, double) const noexcept override { return texture.x; }
   };
   using S = Scene<TriangleMesh<>>;
   for (const Material& own : {Material{.name = "snow", .law = OwnLaw{}},

@@ -27,7 +27,7 @@ struct ReflectanceByTexture {
   /// Picture that it is read from; null without.
   [[nodiscard]] virtual const Image* picture() const noexcept = 0;
   /// Reflectance at a wavelength [m], where that of the material is `even`.
-  [[nodiscard]] virtual double reflectance(double wavelength, const Vec2& texture, double even) const noexcept = 0;
+  [[nodiscard]] virtual double reflectance(double wavelength, Vec2 texture, double even) const noexcept = 0;
 };
 
 /// Surface material.

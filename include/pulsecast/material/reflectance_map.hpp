@@ -69,7 +69,7 @@ struct ReflectanceMap final : ReflectanceByTexture {
 
   [[nodiscard]] const Image* picture() const noexcept override { return &image; }
   /// Reflectance at a wavelength [m] and texture coordinates, where that of the material is `even`.
-  [[nodiscard]] double reflectance(double wavelength, const Vec2& texture, double even) const noexcept override {
+  [[nodiscard]] double reflectance(double wavelength, Vec2 texture, double even) const noexcept override {
     const auto pixel = image.at(texture);
     const auto at = [&](std::size_t k) noexcept {
       const double share = linear_share(pixel[channel(k)]);
