@@ -16,7 +16,7 @@
 // error: 'identity' has another form here. it must be: std::shared_ptr<const void> identity.. const noexcept
 // error: 'misses_cone' has another form here. it must be: bool misses_cone.const RayCone&. const noexcept
 // error: 'is_consistent' has another form here. it must be: bool is_consistent.. const
-// error: 'scattered' has another form here. it must be: double scattered.const Vec3& in, .*, double. const noexcept
+// error: 'scattered' has another form here. it must be: double scattered.const Vec3& in, .*, double or const SurfaceLight&. const noexcept
 // error: 'next_open' is promised .* is missing. it must be: Tick next_open.Tick. const noexcept
 // error: 'validate' is promised .* is missing. it must be: void validate.. const
 // error: 'slot_from' is promised .* is missing. it must be: PulseIndex slot_from.Tick. const noexcept
@@ -110,7 +110,7 @@ struct WideShape : LeastGeometry {
 };
 struct OwnLaw : Lambert {
   using refinements = refines<tag::SamplesDirections>;
-  double scattered(const Vec3&, const Vec3&, const Vec3&, double) const NAME(noexcept, ) { return 0; }
+  double scattered(const Vec3&, const Vec3&, const Vec3&, const SurfaceLight&) const NAME(noexcept, ) { return 0; }
   SampledDirection NAME(sample, draw)(const Vec3&, const Vec3&, double, double) const noexcept { return {}; }
 };
 struct OwnTest {

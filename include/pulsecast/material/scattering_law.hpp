@@ -36,6 +36,8 @@ concept TellsShare = requires(const L law, double cosine, double wavelength) {
 };
 template <class L>
 concept BackscattersSurfaceLight = requires(const L law, const SurfaceLight& light) { law.backscatter(1.0, light); };
+template <class L>
+concept ScattersSurfaceLight = requires(const L law, const Vec3& v, const SurfaceLight& light) { law.scattered(v, v, v, light); };
 /// Type with a member of a law, in any form: meant to be one.
 template <class L>
 concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_share; } || Backscatters<L> || TellsShare<L>;

@@ -98,8 +98,9 @@ class SurfaceLaw {
     static_assert(detail::TellsShare<Law>,
                   "a law of scattered light needs the member: double scattered_share(double cosine, "
                   "double wavelength or const SurfaceLight&) const noexcept");
-    static_assert(detail::BackscattersSurfaceLight<Law> == TakesSurfaceLight<Law>,
-                  "backscatter and scattered_share of a law take the same: the wavelength, or a const SurfaceLight&");
+    static_assert(detail::BackscattersSurfaceLight<Law> == TakesSurfaceLight<Law> &&
+                      (!ScattersBetween<Law> || detail::ScattersSurfaceLight<Law> == TakesSurfaceLight<Law>),
+                  "all members of a law take the same: the wavelength, or a const SurfaceLight&");
     static_assert(detail::members_checked<Law, tag::Validated, tag::ScattersInLanes, tag::ScattersBetween,
                                           tag::SamplesDirections, tag::Retroreflects, tag::ReflectsInterface>);
     explicit ModelOf(Law l) : law(std::move(l)) {
