@@ -60,7 +60,7 @@ void amplitude(const char* name, const Pattern& footprint) {
 }
 
 /// The integral of a record by all the power that came in [s].
-template <template <class> class D>
+template <template <class...> class D>
 double recorded() {
   const D<NoWidth> detector(WaveformSettings{.record_length = 1000e-9});
   std::vector<Reflection> reflections;
