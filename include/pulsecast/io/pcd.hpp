@@ -107,10 +107,15 @@ class PcdWriter {
  private:
   void write(std::span<const std::byte> records) {
     count_ += records.size() / points_.layout().size;
-    if (encoding_ == PcdEncoding::ascii) return write_rows(records);
-    if (encoding_ == PcdEncoding::binary) return file_.write(records);
-    if (count_ * points_.layout().size > detail::lzf_size_max) refuse();
-    columns_.add(records);
+    switch (encoding_) {
+      case PcdEncoding::ascii:
+        return write_rows(records);
+      case PcdEncoding::binary:
+        return file_.write(records);
+      case PcdEncoding::binary_compressed:
+        if (count_ * points_.layout().size > detail::lzf_size_max) refuse();
+        columns_.add(records);
+    }
   }
 
   void write_rows(std::span<const std::byte> records) {

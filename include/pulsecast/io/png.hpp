@@ -153,21 +153,31 @@ class Canvas {
   [[nodiscard]] std::vector<Colour> point_colours() const {
     const auto by_height = [](const ImagePoint& p) { return static_cast<double>(p.z); };
     const auto by_value = [](const ImagePoint& p) { return static_cast<double>(p.value); };
-    const ColourBy by = settings_.colour_by;
-    const auto [low, high] =
-        by == ColourBy::height ? percentiles(points_, 0.005, by_height) : percentiles(points_, 0.02, by_value);
-    const double first = low, range = std::max(high - low, 1e-9);
-    const auto colour_of = [&](const ImagePoint& p) {
-      if (by == ColourBy::height) return along(viridis, (p.z - first) / range);
-      if (by == ColourBy::intensity) return along(greys, (p.value - first) / range);
-      if (by == ColourBy::object) return of_hue(p.value);
-      if (by == ColourBy::classification) return from_srgb(of_class(static_cast<std::uint16_t>(p.value)));
-      if (by == ColourBy::kind) return from_srgb(kind_colours[static_cast<std::size_t>(p.value)]);
-      return from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]);
-    };
+    const bool height = settings_.colour_by == ColourBy::height;
+    const auto [low, high] = height ? percentiles(points_, 0.005, by_height) : percentiles(points_, 0.02, by_value);
+    const double range = std::max(high - low, 1e-9);
     std::vector<Colour> colours;
     colours.reserve(points_.size());
-    for (const ImagePoint& p : points_) colours.push_back(colour_of(p));
+    for (const ImagePoint& p : points_) switch (settings_.colour_by) {
+        case ColourBy::height:
+          colours.push_back(along(viridis, (p.z - low) / range));
+          break;
+        case ColourBy::intensity:
+          colours.push_back(along(greys, (p.value - low) / range));
+          break;
+        case ColourBy::object:
+          colours.push_back(of_hue(p.value));
+          break;
+        case ColourBy::classification:
+          colours.push_back(from_srgb(of_class(static_cast<std::uint16_t>(p.value))));
+          break;
+        case ColourBy::return_number:
+          colours.push_back(
+              from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
+          break;
+        case ColourBy::kind:
+          colours.push_back(from_srgb(kind_colours[static_cast<std::size_t>(p.value)]));
+      }
     return colours;
   }
 
@@ -272,14 +282,22 @@ class ImageWriter {
   }
 
   [[nodiscard]] float value(const Echo& echo) const {
-    const ColourBy by = settings_.colour_by;
-    if (by == ColourBy::intensity) return static_cast<float>(echo.reflectance);
-    if (by == ColourBy::classification) return echo.classification;
-    if (by == ColourBy::return_number) return echo.number;
-    if (by == ColourBy::kind) return static_cast<float>(echo.kind);
-    if (by == ColourBy::height) return 0;
-    // the golden ratio spreads the hues of consecutive numbers; 0 is olive, as it often is the ground
-    return static_cast<float>(std::fmod(0.3 + echo.object * (std::numbers::phi - 1), 1.0));
+    switch (settings_.colour_by) {
+      case ColourBy::intensity:
+        return static_cast<float>(echo.reflectance);
+      case ColourBy::classification:
+        return echo.classification;
+      case ColourBy::return_number:
+        return echo.number;
+      case ColourBy::kind:
+        return static_cast<float>(echo.kind);
+      // the golden ratio spreads the hues of consecutive numbers; 0 is olive, as it often is the ground
+      case ColourBy::object:
+        return static_cast<float>(std::fmod(0.3 + echo.object * (std::numbers::phi - 1), 1.0));
+      case ColourBy::height:
+        break;
+    }
+    return 0;
   }
 
   /// Drops every other point, and halves the share of points kept from now on.

@@ -11,7 +11,6 @@
 #include <string>
 
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/image.hpp>
 #include <pulsecast/material/smooth_interface.hpp>

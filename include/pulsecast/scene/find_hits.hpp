@@ -4,13 +4,11 @@
 #define PULSECAST_SCENE_FIND_HITS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
 
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>
 

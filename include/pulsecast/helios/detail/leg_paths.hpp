@@ -104,13 +104,25 @@ class LegPaths {
   }
 
   void plan_paths(const GroundHeight& ground) {
-    const PlatformKind kind = survey_.platform.kind;
-    paths_.resize(survey_.legs.size());
-    if (kind == PlatformKind::linear_path) return fly_straight();
-    if (kind == PlatformKind::multicopter) return fly();
-    if (kind == PlatformKind::ground_vehicle) return drive(ground);
-    if (kind == PlatformKind::interpolated) return follow();
-    for (std::size_t k = 0; k < paths_.size(); ++k) paths_[k].path.path = Tripod{places_[k]};
+    const std::size_t n = survey_.legs.size();
+    paths_.resize(n);
+    switch (survey_.platform.kind) {
+      case PlatformKind::stationary:
+        for (std::size_t k = 0; k < n; ++k) paths_[k].path.path = Tripod{places_[k]};
+        break;
+      case PlatformKind::linear_path:
+        fly_straight();
+        break;
+      case PlatformKind::multicopter:
+        fly();
+        break;
+      case PlatformKind::ground_vehicle:
+        drive(ground);
+        break;
+      case PlatformKind::interpolated:
+        follow();
+        break;
+    }
   }
 
   [[nodiscard]] double speed_of(std::size_t k) const {

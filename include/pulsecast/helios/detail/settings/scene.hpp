@@ -172,11 +172,23 @@ namespace detail {
 /// Medium of a preset other than none, by its visibility [m] or rate [mm/h], for light of a wavelength [m].
 /// @throws SettingError for values out of its range
 [[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
-  if (preset == MediumPreset::fog) return {.medium = fog(visibility, wavelength)};
-  if (preset == MediumPreset::haze) return {.medium = haze(visibility, wavelength)};
-  if (preset == MediumPreset::dust) return {.medium = dust(visibility, wavelength)};
-  if (preset == MediumPreset::smoke) return {.medium = smoke(visibility, wavelength)};
-  return MediumRegion::of(preset == MediumPreset::rain ? rain(rate, wavelength) : snow(rate, wavelength));
+  switch (preset) {
+    case MediumPreset::fog:
+      return {.medium = fog(visibility, wavelength)};
+    case MediumPreset::haze:
+      return {.medium = haze(visibility, wavelength)};
+    case MediumPreset::dust:
+      return {.medium = dust(visibility, wavelength)};
+    case MediumPreset::smoke:
+      return {.medium = smoke(visibility, wavelength)};
+    case MediumPreset::rain:
+      return MediumRegion::of(rain(rate, wavelength));
+    case MediumPreset::snow:
+      return MediumRegion::of(snow(rate, wavelength));
+    case MediumPreset::none:
+      break;
+  }
+  return {};
 }
 
 }  // namespace detail
