@@ -122,7 +122,7 @@ int main(int count, char** words) {
       io::MeshFile file;
       reading = std::min(reading, seconds([&] { file = io::read_mesh_file(folder / name); }));
       scene = std::min(scene, seconds([&] {
-                         const Scene<TriangleMesh<>> made(io::parts_of(std::move(file)));
+                         const Scene<MaskedMesh<>> made(io::parts_of(std::move(file)));
                          if (made.memory() == 0) std::exit(1);
                        }));
       file = {};

@@ -141,7 +141,7 @@ extern "C" {
   to = Movers(std::move(parts), {.to = 10}, 1);
 }
 
-[[gnu::noinline]] void update_mesh(DeformingMesh& mesh, const std::vector<Vec3>& vertices) { mesh.refit(vertices, 1); }
+[[gnu::noinline]] void update_mesh(DeformingMesh<>& mesh, const std::vector<Vec3>& vertices) { mesh.refit(vertices, 1); }
 
 [[gnu::noinline]] double update_trace_movers(const Movers& movers, double seconds) {
   return sum_of_ranges(movers, 500, seconds);

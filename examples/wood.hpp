@@ -174,7 +174,7 @@ class Terrain {
   return mesh;
 }
 
-using Mesh = pulsecast::TriangleMesh<>;
+using Mesh = pulsecast::MaskedMesh<>;
 using Scene = pulsecast::Scene<Mesh>;
 
 /// The parts planted so far.

@@ -110,8 +110,8 @@ std::filesystem::path exported(const std::filesystem::path& from, const std::fil
   return to;
 }
 
-Cloud scan(std::vector<Part<TriangleMesh<>>> parts) {
-  const Scene<TriangleMesh<>> scene(std::move(parts));
+Cloud scan(std::vector<Part<MaskedMesh<>>> parts) {
+  const Scene<MaskedMesh<>> scene(std::move(parts));
   const Deflector sweeping{PolygonMirror{.line_rate = 200_Hz}, Scanner{.pulse_rate = 20_kHz, .pulses = 20'000}};
   const Platform platform{Tripod{.position = {0, 0, 0}}, Mount{},
                           Deflector{RotatingHead{.angular_rate = 360_deg}, sweeping}};
@@ -225,7 +225,7 @@ TEST_CASE("instances share a mesh: a thousand trees take the memory of one") {
   REQUIRE(thousand.placements.size() == 1000);
   CHECK(thousand.placements[999].name == "tree_999");
   CHECK(thousand.triangle_count() == 1'000'000);
-  const Scene<TriangleMesh<>> small(parts_of(std::move(one))), large(parts_of(std::move(thousand), 5));
+  const Scene<MaskedMesh<>> small(parts_of(std::move(one))), large(parts_of(std::move(thousand), 5));
   CHECK(large.parts()[999].object == 1004);
   CHECK(large.parts()[0].geometry == large.parts()[999].geometry);
   CHECK(large.parts()[0].materials == large.parts()[999].materials);

@@ -53,8 +53,8 @@ MeshData cut(double height, const Mask& mask) {
   return data;
 }
 
-Scene<TriangleMesh<>> scene_of(const MeshData& data) {
-  return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(data)}});
+Scene<MaskedMesh<>> scene_of(const MeshData& data) {
+  return Scene<MaskedMesh<>>({{.geometry = std::make_shared<const MaskedMesh<>>(data)}});
 }
 
 }  // namespace
@@ -95,8 +95,8 @@ TEST_CASE("light goes on through the holes of a mask, and meets what is behind")
   for (const auto& [a, b, c] : floor.triangles) data.triangles.push_back({a + 4, b + 4, c + 4});
   data.materials = {0, 0, 1, 1};
   data.texture.insert(data.texture.end(), floor.texture.begin(), floor.texture.end());
-  const TriangleMesh<> mesh(data);
-  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+  const MaskedMesh<> mesh(data);
+  const Scene<MaskedMesh<>> scene({{.geometry = std::make_shared<const MaskedMesh<>>(mesh),
                                       .materials = material_table(std::vector<Material>(2))}});
   const auto range = [&](double x) {
     return scene.closest_hit(Ray{.origin = {x, 0.3, 5}, .direction = -axis::up})->range;
@@ -128,7 +128,7 @@ TEST_CASE("masked leaves are met as the same leaves cut out, by bundles of any s
     };
     add(masked, card(0, mask));
     add(solid, cut(0, mask));
-    const TriangleMesh<> with_masks(masked), with_cuts(solid);
+    const MaskedMesh<> with_masks(masked), with_cuts(solid);
     const auto of_masks = scene_of(masked), of_cuts = scene_of(solid);
     std::size_t met = 0;
     for (const std::size_t size : {std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{64}}) {

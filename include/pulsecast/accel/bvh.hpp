@@ -81,8 +81,6 @@ class Bvh {
     if (nodes_.empty()) return;
     if constexpr (Rays::capacity == 1)
       descend_alone(rays, test, nearest);
-    else if (rays.size == 1)
-      descend_alone(rays, test, nearest);
     else
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }

@@ -200,14 +200,14 @@ struct Closest {
   /// Largest range at which any ray can still find a closer hit [m]; minus infinity for NaN.
   template <class Rays>
   [[nodiscard]] double limit(const Rays& rays) const noexcept {
-    if constexpr (capacity > 1)
-      if (rays.size != 1) {
-        simd::Doubles last = simd::Doubles{} - std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
-          last = simd::max(simd::load<simd::Doubles>(range[j]), last);
-        return simd::max(last);
-      }
-    return detail::limit_of(range[0]);
+    if constexpr (capacity > 1) {
+      simd::Doubles last = simd::Doubles{} - std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
+        last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+      return simd::max(last);
+    } else {
+      return detail::limit_of(range[0]);
+    }
   }
 
  private:

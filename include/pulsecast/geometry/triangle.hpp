@@ -153,11 +153,6 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
     between_edges = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
                     ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
     may_meet = between_edges;
-  } else if (rays.size == 1) {
-    const auto side = [&](const Planes& p) noexcept { return p.x * rays.x[0] + p.y * rays.y[0] + p.z * rays.z[0]; };
-    const simd::Doubles u = side(ab), v = side(bc), w = side(ca),
-                        doubt = 4 * simd::max(ab.doubt, simd::max(bc.doubt, ca.doubt));
-    may_meet = (simd::min(u, simd::min(v, w)) >= -doubt) | (simd::max(u, simd::max(v, w)) <= doubt);
   } else {
     may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
                ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));

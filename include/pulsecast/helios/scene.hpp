@@ -29,9 +29,9 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Part with any shape of the document format.
 using SurveyPart =
-    Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+    Part<HeightField, MaskedMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
 /// Scene of such parts.
-using SurveyScene = MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>,
+using SurveyScene = MovingScene<HeightField, MaskedMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>,
                                 VoxelGrid<TransmissiveVoxels>>;
 
 /// Options for building a scene.

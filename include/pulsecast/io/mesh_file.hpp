@@ -30,7 +30,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Parts of a scene: one a placement, named as it, with object ids from `first_object` on. Those of one mesh share
 /// geometry and materials. @throws SettingError as `TriangleMesh`
-[[nodiscard]] std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object = 0,
+[[nodiscard]] std::vector<Part<MaskedMesh<>>> parts_of(MeshFile file, ObjectId first_object = 0,
                                                          const Workers& workers = {});
 
 /// True for a name that `read_mesh_file` is for: OBJ, PLY, glTF, GLB, STL, DAE and FBX, by the ending.
@@ -142,20 +142,20 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
   });
 }
 
-PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object,
+PULSECAST_INLINE std::vector<Part<MaskedMesh<>>> parts_of(MeshFile file, ObjectId first_object,
                                                             const Workers& workers) {
   struct Shared {
-    std::shared_ptr<const TriangleMesh<>> geometry;
+    std::shared_ptr<const MaskedMesh<>> geometry;
     MaterialTable materials;
   };
   std::vector<Shared> shared;
   for (FileMesh& one : file.meshes) {
     std::vector<Material> table;
     for (const std::uint32_t number : one.materials) table.push_back(file.materials[number]);
-    shared.push_back({std::make_shared<const TriangleMesh<>>(std::exchange(one.mesh, {}), workers),
+    shared.push_back({std::make_shared<const MaskedMesh<>>(std::exchange(one.mesh, {}), workers),
                       material_table(std::move(table))});
   }
-  std::vector<Part<TriangleMesh<>>> parts;
+  std::vector<Part<MaskedMesh<>>> parts;
   parts.reserve(file.placements.size());
   for (MeshPlacement& one : file.placements)
     parts.push_back({.geometry = shared[one.mesh].geometry,

@@ -24,10 +24,10 @@ namespace PULSECAST_NAMESPACE {
 /// their SAH cost exceeds `BvhRefit::max_growth` times that of the last build. The meshes are immutable, and may be
 /// used as long as they are held. Takes 4 bytes a corner of a block beside the mesh, some 3 to 12 a triangle, and from
 /// the second refit on the vertices and nodes of a second mesh.
+template <class MeshType = TriangleMesh<>>
 class DeformingMesh {
  public:
-  /// Type of the meshes.
-  using Mesh = TriangleMesh<>;
+  using Mesh = MeshType;  ///< type of the meshes: a `TriangleMesh` or a `MaskedMesh`
 
   /// `workers` build the index; the mesh is the same for any. @throws SettingError as `TriangleMesh`
   explicit DeformingMesh(const MeshData& data, const Workers& workers = {})
@@ -110,7 +110,7 @@ class DeformingMesh {
     std::vector<Last> last(data.vertices.size());
     std::vector<std::uint32_t> sources;
     const SharedBuffer<std::uint64_t> first_corners(mesh->first_corners_.size());
-    const SharedBuffer<Mesh::Corners> triangles(order.size());
+    const SharedBuffer<typename Mesh::Corners> triangles(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
       const std::size_t block = place / detail::chunk_size;
       if (place % detail::chunk_size == 0) first_corners[block] = sources.size();

@@ -105,6 +105,20 @@ class MaskTable {
   SharedArray<std::uint64_t> bits_;  ///< of all masks
 };
 
+/// Masks of a mesh without any.
+struct NoMasks {
+  NoMasks() = default;
+  /// @throws SettingError for any
+  explicit NoMasks(std::span<const Mask> masks) {
+    if (!masks.empty())
+      throw_setting_error("MeshData::masks (number)", static_cast<double>(masks.size()), "",
+                          "0 in a TriangleMesh; a MaskedMesh has holes");
+  }
+  void archive(auto&) {}
+  [[nodiscard]] static constexpr std::size_t memory() noexcept { return 0; }
+  [[nodiscard]] static constexpr bool empty() noexcept { return true; }  ///< nothing has holes
+};
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -24,6 +24,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
+template <class Mesh>
 class DeformingMesh;
 
 namespace detail {
@@ -38,16 +39,17 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 /// never hit, nor those so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their
 /// numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle
 /// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray
-/// passes the holes of a mask; meshes without masks pay nothing for them. `Bvh<float>` is Pareto-optimal in
-/// docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
-template <Accelerator Index = Bvh<float>>
+/// passes the holes of the masks of a `MaskedMesh`. `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the
+/// hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
+template <Accelerator Index = Bvh<float>, class Masks = NoMasks>
 class TriangleMesh {
  public:
   using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
-  /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
+  /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, for coordinates beyond 1e18 m, or
+  /// for masks unless this is a `MaskedMesh`
   explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
     arrange(data, workers);
     for (const std::uint32_t m : data.materials)
@@ -57,7 +59,7 @@ class TriangleMesh {
     else if (material_count_ > 1)
       materials8_ = numbers<std::uint8_t>(data.materials);
     if (!data.texture.empty()) texture_ = texture_of(data);
-    masks_ = MaskTable(data.masks);
+    masks_ = Masks(data.masks);
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
@@ -143,6 +145,7 @@ class TriangleMesh {
   }
 
  private:
+  template <class Mesh>
   friend class DeformingMesh;
 
   [[nodiscard]] std::uint32_t material(PrimitiveIndex i) const noexcept {
@@ -171,36 +174,37 @@ class TriangleMesh {
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
-    LineTest line;  ///< of a single ray
+    LineTest line{};  ///< of a single ray
 
     Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept
-        : mesh(of), rays(by), nearest(found), line(alone() ? LineTest(by, of.bounds()) : LineTest()) {}
-
-    [[nodiscard]] bool alone() const noexcept {
-      if constexpr (Rays::capacity == 1)
-        return true;
-      else
-        return rays.size == 1;
+        : mesh(of), rays(by), nearest(found) {
+      if constexpr (alone) line = LineTest(by, of.bounds());
     }
 
+    static constexpr bool alone = Rays::capacity == 1;
+
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
-      const std::size_t place = place_of(primitives), room = alone() ? simd::lane_count : primitives.size();
+      const std::size_t place = place_of(primitives), room = alone ? simd::lane_count : primitives.size();
       if (primitives.size() - 1 >= std::min(room, detail::chunk_size - place % detail::chunk_size)) [[unlikely]]
         return in_blocks(primitives, room);  // or none
       const Vec3* const corners = mesh.block_corners(place);
       const Corners* const triangles = mesh.triangles_.data() + place;
       const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
-      if (!mesh.masks_.empty()) [[unlikely]]
-        return test(primitives, triangle_of,
-                    [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
+      if constexpr (std::is_same_v<Masks, MaskTable>)
+        if (!mesh.masks_.empty()) [[unlikely]]
+          return test(primitives, triangle_of,
+                      [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
       test(primitives, triangle_of, SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
     [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
                                      const auto& solid) const noexcept {
-      if (!alone()) return intersect(primitives, triangle_of, rays, nearest, solid);
-      const TrianglePacket packet(primitives.size(), triangle_of);
-      if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+      if constexpr (alone) {
+        const TrianglePacket packet(primitives.size(), triangle_of);
+        if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+      } else {
+        intersect(primitives, triangle_of, rays, nearest, solid);
+      }
     }
     /// Tests up to `room` primitives of one block at a time.
     [[gnu::noinline]] void in_blocks(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
@@ -311,10 +315,14 @@ class TriangleMesh {
   SharedArray<std::uint8_t> materials8_;  ///< material of each triangle; empty if all are 0, or if an index exceeds 255
   SharedArray<std::uint32_t> materials_;  ///< material of each triangle if an index exceeds 255, else empty
   SharedArray<TextureCorners> texture_;   ///< texture coordinates of each triangle's corners; empty without
-  MaskTable masks_;                       ///< holes by material
+  Masks masks_;                           ///< holes by material
   Index index_;
   std::size_t material_count_ = 1;
 };
+
+/// Mesh whose materials may have holes, as `MeshData::masks` says.
+template <Accelerator Index = Bvh<float>>
+using MaskedMesh = TriangleMesh<Index, MaskTable>;
 
 static_assert(Geometry<TriangleMesh<>>);
 

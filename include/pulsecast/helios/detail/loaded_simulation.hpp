@@ -157,7 +157,7 @@ class LoadedSimulation final : public Simulation {
                                 .city_models = settings.city_models}),
         limits_(survey, settings) {
     for (const Mesh& mesh : settings.meshes)
-      meshes_.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, settings.threads),
+      meshes_.push_back({.geometry = std::make_shared<const MaskedMesh<>>(mesh.data, settings.threads),
                          .materials = material_table({mesh.material}),
                          .object = mesh.object,
                          .attributes = mesh.attributes});
@@ -196,7 +196,7 @@ class LoadedSimulation final : public Simulation {
               .empty = s.bounds().empty()};
     for (const SurveyPart& part : s.parts()) {
       out.moving += part.motion ? 1 : 0;
-      if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh<>>>(&part.geometry))
+      if (const auto* mesh = std::get_if<std::shared_ptr<const MaskedMesh<>>>(&part.geometry))
         out.triangles += (*mesh)->size();
     }
     return out;

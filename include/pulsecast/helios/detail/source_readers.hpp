@@ -49,7 +49,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
     for (const io::MaterialPictures& pictures : model.pictures) pictures.append_to(model.files);
     add_files(model.files);
     if (model.mesh.triangles.empty()) return warn({file.string() + ": is left out"});
-    all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads),
+    all.push_back({std::make_shared<const MaskedMesh<>>(std::move(model.mesh), options_.threads),
                    table(std::move(model.materials))});
   });
 }
@@ -144,7 +144,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Mesh
     add_files(read.files);
     if (read.placements.empty()) warn({file.string() + ": is left out"});
     read.materials = *table(std::move(read.materials));
-    for (Part<TriangleMesh<>>& part : io::parts_of(std::move(read), 0, options_.threads))
+    for (Part<MaskedMesh<>>& part : io::parts_of(std::move(read), 0, options_.threads))
       all.push_back({std::move(part.geometry), std::move(part.materials), part.placement, std::move(part.name)});
   });
 }
