@@ -14,6 +14,8 @@
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
+
+static_assert(Accelerator<Bvh<float>> && MissesCones<Bvh<float>>);
 using namespace pulsecast::support;
 
 static_assert(Accelerator<Bvh<double>>);

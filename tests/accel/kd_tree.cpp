@@ -12,6 +12,8 @@
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
+
+static_assert(Accelerator<KdTree<float>>);
 using namespace pulsecast::support;
 
 static_assert(Accelerator<KdTree<double>>);

@@ -9,6 +9,8 @@
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
+
+static_assert(Accelerator<Linear<float>>);
 using namespace pulsecast::support;
 
 static_assert(Accelerator<Linear<double>>);

@@ -25,6 +25,8 @@
 
 using namespace pulsecast;
 
+static_assert(MemoryKeepingExecutor<ThreadPool>);
+
 TEST_CASE("a pool has as many threads as it is asked for, the caller's included") {
   CHECK(ThreadPool(1).threads() == 1);
   CHECK(ThreadPool(5).threads() == 5);

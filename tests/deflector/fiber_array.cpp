@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<FiberArray>);
+
 TEST_CASE("a fibre array draws equally spaced points from end to end, both ends included, and begins again") {
   const FiberArray array{.fibers = 11, .fiber_rate = 1e5, .half_angle = 20_deg};
   for (PulseIndex i = 0; i < 33; ++i) {

@@ -17,6 +17,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<FixedBeam> && MovesInLanes<FixedBeam>);
+
 TEST_CASE("a fixed beam leaves from its origin along its two angles, at any time") {
   const FixedBeam beam{aimed_at(90_deg, -30_deg, {0.01, 0.02, 0.03})};
   for (const Tick t : {Tick{0, 0}, Tick{1000000, 0.5}}) {

@@ -19,6 +19,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<OscillatingMirror> && MovesInLanes<OscillatingMirror>);
+
 namespace {
 /// Rounded triangle, plain triangle and sine, all at a cycle a second.
 std::array<OscillatingMirror, 3> mirrors() {

@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<PalmerMirror> && MovesInLanes<PalmerMirror>);
+
 TEST_CASE("a Palmer mirror draws a cone of its half angle, from up over right, once a turn") {
   const PalmerMirror mirror{.rotation_rate = 10, .half_angle = 20_deg};
   for (int k = 0; k < 1000; ++k) {

@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<PatternTable>);
+
 namespace {
 PatternTable some_table(std::uint64_t seed, std::size_t n, double rate) {
   support::Generator any(seed);

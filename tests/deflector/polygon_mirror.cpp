@@ -21,6 +21,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<PolygonMirror> && ForeseesOpening<PolygonMirror> && MovesInLanes<PolygonMirror>);
+
 TEST_CASE("a polygon mirror sweeps from low to high once per line and starts over") {
   const PolygonMirror mirror{.line_rate = 100, .sweep = 60_deg};
   CHECK(mirror.angle({0, 0}) == -60_deg);

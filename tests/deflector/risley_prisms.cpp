@@ -19,6 +19,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms> && MovesInLanes<RisleyPrisms>);
+
 namespace {
 
 /// Two wedges, as of a small mapping sensor.

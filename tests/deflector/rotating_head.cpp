@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Head<RotatingHead> && MovesInLanes<RotatingHead>);
+
 TEST_CASE("a head that turns at a positive rate turns left") {
   const RotatingHead head{.angular_rate = 90_deg};
   CHECK(length(head.at({0, 0}).direction(axis::forward) - axis::forward) < 1e-15);

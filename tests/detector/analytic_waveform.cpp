@@ -20,6 +20,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<AnalyticWaveform<>> && Detector<AnalyticWaveform<MomentWidth>>);
+
 namespace {
 
 const Laser laser{.pulse_length = 4e-9};

@@ -13,6 +13,8 @@
 
 using namespace pulsecast;
 
+static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
+
 TEST_CASE("no width is zero") { CHECK(NoWidth{}.width(std::vector<double>{1, 2, 1}, 1e-9) == 0); }
 
 TEST_CASE("the width by moments of a Gaussian is its standard deviation") {

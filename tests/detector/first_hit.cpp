@@ -13,6 +13,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<FirstHit>);
+
 TEST_CASE("the first hit is the nearest reflection, as it is") {
   const FirstHit detector;
   auto workspace = detector.workspace(3);

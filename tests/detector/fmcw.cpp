@@ -15,6 +15,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<Fmcw> && ReadsVelocity<Fmcw>);
+
 namespace {
 
 const Laser laser{.wavelength = 1.55e-6};

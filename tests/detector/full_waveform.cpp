@@ -18,6 +18,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<FullWaveform<>>);
+
 static_assert(Detector<FullWaveform<MomentWidth>>);
 
 namespace {

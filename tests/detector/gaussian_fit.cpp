@@ -19,6 +19,8 @@
 
 using namespace pulsecast;
 
+static_assert(EchoWidth<GaussianFit>);
+
 namespace {
 
 std::vector<double> planted(const Gaussian& g, std::size_t n) {

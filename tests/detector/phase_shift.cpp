@@ -17,6 +17,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<PhaseShift>);
+
 namespace {
 
 std::optional<Echo> echo(const PhaseShift& detector, std::vector<Reflection> reflections, std::uint64_t pulse = 0) {

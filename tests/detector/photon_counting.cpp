@@ -15,6 +15,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<PhotonCounting<>>);
+
 namespace {
 
 constexpr double geiger = std::numeric_limits<double>::infinity();

@@ -10,6 +10,9 @@
 
 using namespace pulsecast;
 
+static_assert(PulseForm<GammaPulse> && PulseForm<GaussianPulse> && PulseForm<RectangularPulse> &&
+              PulseForm<MeasuredPulse>);
+
 namespace {
 /// Times at which the power falls to half of the peak on either side, by bisection [s].
 template <PulseForm Form>

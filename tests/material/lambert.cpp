@@ -14,6 +14,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(ScattersBetween<Lambert> && ScattersBetween<DirectionIndependent>);
+
 namespace {
 constexpr double nir = 1.064e-6;
 }

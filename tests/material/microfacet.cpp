@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(ScattersBetween<Microfacet> && ReflectsInterface<Microfacet>);
+
 namespace {
 
 /// Integral over the hemisphere about z, of a function of a direction.

@@ -16,6 +16,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(ScattersBetween<Tabulated>);
+
 namespace {
 constexpr double nir = 1.064e-6;
 }

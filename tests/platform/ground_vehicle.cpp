@@ -18,6 +18,8 @@
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
+
+static_assert(Trajectory<GroundVehicleDrive>);
 using support::Generator;
 using support::relative;
 using support::detail::sentence;

@@ -16,6 +16,8 @@
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
+
+static_assert(Trajectory<MulticopterFlight>);
 using support::Generator;
 using support::relative;
 using support::detail::sentence;

@@ -17,6 +17,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Trajectory<StraightLine> && MovesInLanes<StraightLine>);
+
 namespace {
 const Vec3 utm{512345.678, 5403210.987, 1234.5};
 }

@@ -15,6 +15,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(Trajectory<Tripod> && MovesInLanes<Tripod>);
+
 TEST_CASE("a tripod stands where it stands and looks where a compass says") {
   const Vec3 utm{500000, 5400000, 300};
   const Tripod north{.position = utm}, east{.position = utm, .heading = 90_deg},

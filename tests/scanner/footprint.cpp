@@ -14,6 +14,10 @@
 
 using namespace pulsecast;
 
+static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> &&
+              Footprint<LatticeFootprint> && Footprint<WithSubrayRecord<RingFootprint>> &&
+              Footprint<TurnedFootprint<LatticeFootprint>>);
+
 namespace {
 
 double radius(const Vec2& offset) { return std::hypot(offset.x, offset.y); }

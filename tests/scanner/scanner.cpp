@@ -13,6 +13,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+static_assert(BeamSource<Scanner> && FindsSlots<Scanner> && MakesLanes<Scanner>);
+
 TEST_CASE("a scanner sends its pulses at a constant rate, forward, from its origin") {
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 1000000, .laser = {.wavelength = 1550_nm}};
   CHECK(scanner.size() == 1000000);

@@ -20,6 +20,8 @@
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
+
+static_assert(Geometry<HeightField>);
 using namespace pulsecast::support;
 
 static_assert(std::copyable<HeightField>);
@@ -299,7 +301,8 @@ TEST_CASE("packed heights give the hits of the same heights in floating point, t
       for (PrimitiveIndex i = 0; i < 2 * 60 * 46; ++i) {
         const Triangle a = field.triangle(i), b = reference.triangle(i);
         CHECK(std::memcmp(&a, &b, sizeof a) == 0);
-        CHECK(field.surface(i, bundle_of({}), 0).material_index == reference.surface(i, bundle_of({}), 0).material_index);
+        CHECK(field.surface(i, bundle_of({}), 0).material_index ==
+              reference.surface(i, bundle_of({}), 0).material_index);
       }
       const MeshData mesh = packed.mesh();
       CHECK(mesh.vertices == wide.mesh().vertices);

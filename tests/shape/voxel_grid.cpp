@@ -20,6 +20,8 @@
 #include "support/relative.hpp"
 
 using namespace pulsecast;
+
+static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>>);
 using namespace pulsecast::support;
 
 static_assert(std::copyable<VoxelGrid<>>);

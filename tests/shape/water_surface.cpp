@@ -21,6 +21,8 @@
 #include "support/relative.hpp"
 
 using namespace pulsecast;
+
+static_assert(TimeDependentGeometry<WaterSurface>);
 using namespace pulsecast::support;
 
 static_assert(std::copyable<WaterSurface> && !UniformGeometry<WaterSurface> && DeterministicGeometry<WaterSurface>);

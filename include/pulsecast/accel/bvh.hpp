@@ -332,8 +332,6 @@ class Bvh {
   std::size_t depth_ = 0;
 };
 
-static_assert(Accelerator<Bvh<float>> && MissesCones<Bvh<float>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

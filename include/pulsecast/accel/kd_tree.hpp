@@ -142,8 +142,6 @@ class KdTree {
   std::size_t depth_ = 0;
 };
 
-static_assert(Accelerator<KdTree<float>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -51,8 +51,6 @@ class Linear {
   SharedArray<PrimitiveIndex> primitives_;
 };
 
-static_assert(Accelerator<Linear<float>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -135,8 +135,6 @@ class ThreadPool {
   ScratchMemory memory_;
 };
 
-static_assert(MemoryKeepingExecutor<ThreadPool>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

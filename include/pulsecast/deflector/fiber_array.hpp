@@ -33,8 +33,6 @@ struct FiberArray {
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_above(angle(t)); }
 };
 
-static_assert(Optic<FiberArray>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

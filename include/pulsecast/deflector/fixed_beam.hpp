@@ -30,8 +30,6 @@ struct FixedBeam {
   }
 };
 
-static_assert(Optic<FixedBeam> && MovesInLanes<FixedBeam>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -54,8 +54,6 @@ struct OscillatingMirror {
   }
 };
 
-static_assert(Optic<OscillatingMirror> && MovesInLanes<OscillatingMirror>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -39,8 +39,6 @@ struct PalmerMirror {
   }
 };
 
-static_assert(Optic<PalmerMirror> && MovesInLanes<PalmerMirror>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

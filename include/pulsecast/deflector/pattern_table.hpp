@@ -41,8 +41,6 @@ struct PatternTable {
   }
 };
 
-static_assert(Optic<PatternTable>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -92,8 +92,6 @@ struct PolygonMirror {
   }
 };
 
-static_assert(Optic<PolygonMirror> && ForeseesOpening<PolygonMirror> && MovesInLanes<PolygonMirror>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

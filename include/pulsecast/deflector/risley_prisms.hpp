@@ -93,8 +93,6 @@ struct RisleyPrisms {
   }
 };
 
-static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms> && MovesInLanes<RisleyPrisms>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

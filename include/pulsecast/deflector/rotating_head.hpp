@@ -31,8 +31,6 @@ struct RotatingHead {
   }
 };
 
-static_assert(Head<RotatingHead> && MovesInLanes<RotatingHead>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -321,8 +321,6 @@ class AnalyticWaveform {
   Width width_;
 };
 
-static_assert(Detector<AnalyticWaveform<>> && Detector<AnalyticWaveform<MomentWidth>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -57,8 +57,6 @@ struct MomentWidth {
   [[nodiscard]] double width(const WaveformMoments& moments) const noexcept { return moments.deviation(); }
 };
 
-static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
-
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {

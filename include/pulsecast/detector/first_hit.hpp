@@ -36,8 +36,6 @@ struct FirstHit {
   }
 };
 
-static_assert(Detector<FirstHit>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

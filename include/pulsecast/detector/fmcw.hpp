@@ -317,8 +317,6 @@ class Fmcw {
   FmcwSettings s_;
 };
 
-static_assert(Detector<Fmcw> && ReadsVelocity<Fmcw>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -333,8 +333,6 @@ class FullWaveform {
   ByPulseLength<Correction> corrections_;
 };
 
-static_assert(Detector<FullWaveform<>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -170,8 +170,6 @@ struct GaussianFit {
   }
 };
 
-static_assert(EchoWidth<GaussianFit>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -139,8 +139,6 @@ class PhaseShift {
   PhaseShiftSettings s_;
 };
 
-static_assert(Detector<PhaseShift>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -303,8 +303,6 @@ class PhotonCounting {
   ByPulseLength<std::vector<double>> quantiles_;
 };
 
-static_assert(Detector<PhotonCounting<>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

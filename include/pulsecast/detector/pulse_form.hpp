@@ -95,9 +95,6 @@ class MeasuredPulse {
   std::vector<PulseSample> samples_;  ///< about the peak, relative to it
 };
 
-static_assert(PulseForm<GammaPulse> && PulseForm<GaussianPulse> && PulseForm<RectangularPulse> &&
-              PulseForm<MeasuredPulse>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

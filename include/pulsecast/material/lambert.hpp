@@ -18,7 +18,6 @@ struct Lambert {
     return scattered_share(1, light) * dot(out, normal);
   }
 };
-static_assert(ScattersBetween<Lambert>);
 
 /// Backscatter equal to the reflectance at any incidence. Light into other directions is that of Lambert's law.
 struct DirectionIndependent {
@@ -30,7 +29,6 @@ struct DirectionIndependent {
     return Lambert{}.scattered(in, out, normal, light);
   }
 };
-static_assert(ScattersBetween<DirectionIndependent>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -82,7 +82,6 @@ struct Microfacet {
            (1 - facets.reflected(dot(in, normal))) * Lambert{}.scattered(in, out, normal, light);
   }
 };
-static_assert(ScattersBetween<Microfacet> && ReflectsInterface<Microfacet>);
 
 }  // namespace PULSECAST_NAMESPACE
 

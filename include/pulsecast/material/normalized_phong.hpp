@@ -34,7 +34,6 @@ struct NormalizedPhong {
     return Lambert{}.scattered(in, out, normal, light);
   }
 };
-static_assert(ScattersBetween<NormalizedPhong>);
 
 }  // namespace PULSECAST_NAMESPACE
 

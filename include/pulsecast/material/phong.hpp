@@ -45,7 +45,6 @@ struct Phong {
     return Lambert{}.scattered(in, out, normal, light);
   }
 };
-static_assert(ScattersBetween<Phong>);
 
 }  // namespace PULSECAST_NAMESPACE
 

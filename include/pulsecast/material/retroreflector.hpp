@@ -68,7 +68,6 @@ struct Retroreflector {
   [[nodiscard]] double returned_share() const noexcept { return coefficient * pi / 2 * half_angle * half_angle; }
   [[nodiscard]] double returned_half_angle() const noexcept { return half_angle; }
 };
-static_assert(ScattersBetween<Retroreflector<>> && Retroreflects<Retroreflector<CubeCorners>>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -50,7 +50,6 @@ struct Tabulated {
     return Lambert{}.scattered(in, out, normal, light);
   }
 };
-static_assert(ScattersBetween<Tabulated>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -114,8 +114,6 @@ class GroundVehicleDrive {
   std::vector<std::string> warnings_;
 };
 
-static_assert(Trajectory<GroundVehicleDrive>);
-
 namespace detail {
 
 /// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers`

@@ -89,8 +89,6 @@ class MulticopterFlight {
   std::vector<Tick> passes_;
 };
 
-static_assert(Trajectory<MulticopterFlight>);
-
 namespace detail {
 
 /// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the

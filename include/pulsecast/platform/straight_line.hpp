@@ -44,8 +44,6 @@ struct StraightLine {
   }
 };
 
-static_assert(Trajectory<StraightLine> && MovesInLanes<StraightLine>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -29,8 +29,6 @@ struct Tripod {
   }
 };
 
-static_assert(Trajectory<Tripod> && MovesInLanes<Tripod>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

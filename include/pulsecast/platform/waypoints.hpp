@@ -149,8 +149,6 @@ class Waypoints {
   std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty for linear interpolation
 };
 
-static_assert(Trajectory<Waypoints> && MovesInLanes<Waypoints>);
-
 /// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal
 /// the direction in. At rest or in vertical motion the last heading is kept, or else the next one taken; without
 /// horizontal motion, north. A repeated time is a jump: neither side looks along it.

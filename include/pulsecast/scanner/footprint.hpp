@@ -208,9 +208,6 @@ class LatticeFootprint {
   std::vector<Vec2> offsets_;
 };
 
-static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> &&
-              Footprint<LatticeFootprint>);
-
 /// Footprint that forwards every subray with its hit to the sinks (`EchoBatch::subrays`), for studies of footprints:
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
@@ -220,8 +217,6 @@ struct WithSubrayRecord : Pattern {
   /// Takes a valid footprint.
   explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
 };
-
-static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
 /// Footprint that a survey turns about the axis of each pulse's beam, by a different angle for each pulse:
 /// `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge is then hit by different subrays from pulse to pulse, so
@@ -233,8 +228,6 @@ struct TurnedFootprint : Pattern {
   /// Takes a valid footprint.
   explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
 };
-
-static_assert(Footprint<TurnedFootprint<LatticeFootprint>>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -60,8 +60,6 @@ struct Scanner {
   [[nodiscard]] Emitter emitter() const noexcept { return {laser, footprint_scale, receiver}; }
 };
 
-static_assert(BeamSource<Scanner> && FindsSlots<Scanner> && MakesLanes<Scanner>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -325,8 +325,6 @@ class HeightField {
   detail::PackedNumbers materials_;  ///< of the pixels
 };
 
-static_assert(Geometry<HeightField>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

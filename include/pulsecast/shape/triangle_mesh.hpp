@@ -176,8 +176,7 @@ class TriangleMesh {
     Hits& nearest;
     LineTest line{};  ///< of a single ray
 
-    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept
-        : mesh(of), rays(by), nearest(found) {
+    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {
       if constexpr (alone) line = LineTest(by, of.bounds());
     }
 
@@ -323,8 +322,6 @@ class TriangleMesh {
 /// Mesh whose materials may have holes, as `MeshData::masks` says.
 template <Accelerator Index = Bvh<float>>
 using MaskedMesh = TriangleMesh<Index, MaskTable>;
-
-static_assert(Geometry<TriangleMesh<>>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -264,9 +264,6 @@ class VoxelGrid {
   std::uint64_t material_count_ = 1;
 };
 
-static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> &&
-              Geometry<VoxelGrid<TransmissiveVoxels>>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -189,8 +189,6 @@ class WaterSurface {
   Box bounds_;
 };
 
-static_assert(Geometry<WaterSurface> && TimeDependentGeometry<WaterSurface>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif
