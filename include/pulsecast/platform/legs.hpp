@@ -100,12 +100,13 @@ class Legs {
 
   /// Index of a leg's table in that of all legs, where it is appended unless an earlier leg has an equal one.
   std::uint16_t add_emitters(const std::vector<Emitter>& table) {
-    const auto known = std::search(emitters_.begin(), emitters_.end(), table.begin(), table.end());
-    const auto first = static_cast<std::uint16_t>(known - emitters_.begin());
-    if (known != emitters_.end()) return first;
-    require_within("Legs::legs (emitters)", static_cast<double>(emitters_.size() + table.size()), 0, max_emitters, "");
-    emitters_.insert(emitters_.end(), table.begin(), table.end());
-    return first;
+    const std::size_t size = emitters_.size();
+    for (std::size_t first = 0; first + table.size() <= size; ++first)
+      if (std::equal(table.begin(), table.end(), emitters_.begin() + static_cast<std::ptrdiff_t>(first)))
+        return static_cast<std::uint16_t>(first);
+    require_within("Legs::legs (emitters)", static_cast<double>(size + table.size()), 0, max_emitters, "");
+    for (const Emitter& emitter : table) emitters_.push_back(emitter);
+    return static_cast<std::uint16_t>(size);
   }
 
   static std::vector<Leg<P>> active(std::vector<P> platforms) {

@@ -57,7 +57,7 @@ class MovingScene {
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
-    detail::SharedMemorySum motions;
+    detail::SharedMemorySum<> motions;
     for (const Mover& mover : movers_) {
       const PartMotion* motion = parts()[mover.part].motion.get();
       motions.add(motion, motion->memory());

@@ -37,10 +37,11 @@ namespace detail {
   return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
 }
 
-/// Memory of objects, of which shared ones count once [byte].
+/// Memory of objects, of which shared ones count once [byte]. A template, so that only who asks compiles it.
+template <class Object = void>
 class SharedMemorySum {
  public:
-  void add(const void* object, std::size_t bytes) { objects_.emplace_back(object, bytes); }
+  void add(const Object* object, std::size_t bytes) { objects_.emplace_back(object, bytes); }
   [[nodiscard]] std::size_t sum() {
     std::sort(objects_.begin(), objects_.end());
     std::size_t bytes = 0;
@@ -50,7 +51,7 @@ class SharedMemorySum {
   }
 
  private:
-  std::vector<std::pair<const void*, std::size_t>> objects_{};
+  std::vector<std::pair<const Object*, std::size_t>> objects_{};
 };
 
 }  // namespace detail

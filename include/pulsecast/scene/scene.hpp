@@ -109,7 +109,7 @@ class Scene {
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes =
         index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
-    detail::SharedMemorySum shared;
+    detail::SharedMemorySum<> shared;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
       visit_shape([&](const auto& shape) { shared.add(shape.get(), shape->memory()); }, part.geometry);
