@@ -43,4 +43,8 @@
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/version.hpp>
 
+#if defined(PULSECAST_COMPILED)
+#include <pulsecast/detail/usual_types.hpp>
+#endif
+
 #endif

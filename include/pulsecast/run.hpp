@@ -4,20 +4,18 @@
 #define PULSECAST_RUN_HPP
 
 #include <algorithm>
-#include <condition_variable>  // includes the steady clock: <chrono> would add a calendar, a tenth of this header's cost
-#include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <stop_token>
-#include <string>
 #include <utility>
 
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/progress.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
-#include <pulsecast/detail/reorder_buffer.hpp>
+#include <pulsecast/detail/chunk_queue.hpp>
 #include <pulsecast/result_buffer.hpp>
 #include <pulsecast/survey.hpp>
 
@@ -117,16 +115,11 @@ void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIn
       add(survey(slots[n], workspace));
 }
 
-/// Reports a pulse with an error.
-[[noreturn]] inline void throw_pulse_error(PulseError error, const Shot& shot) {
-  const std::string pulse =
-      text::joined({"pulse ", std::to_string(shot.index), " at ", text::to_text(shot.tick.seconds()), " s"});
-  if (error == PulseError::map)
-    throw std::runtime_error(text::joined(
-        {"the map answered ", pulse, " with NaN: check its ranges and backscatter, or the laws of its materials"}));
-  throw std::runtime_error(
-      text::joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
-}
+/// Results of a run for its sinks, and chunks for its workers: what does not depend on the type of the survey.
+/// `work(queue)` is called by each worker.
+RunSummary run_chunks(const RunOptions& options, const RunSlots& slots, std::size_t recorded_subrays,
+                      const std::function<void(ChunkQueue&)>& work,
+                      const std::function<void(const ResultChunk&)>& deliver);
 
 }  // namespace detail
 
@@ -139,50 +132,27 @@ template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   static_assert(detail::members_checked<Survey, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>);
   const RunSlots slots = options.slots(survey.size());
-  const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
-  const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // few in a short run
-  const PulseIndex slots_per_chunk =
-      std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, most);
-  const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
-  const std::size_t workers = std::min<std::uint64_t>(options.workers().count(), std::max<std::uint64_t>(chunks, 1));
-  const auto began = std::chrono::steady_clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
-
   using Memory = detail::WorkspaceMemory<Survey>;
-  ScratchMemory* const kept = options.executor.memory();
-  if constexpr (IdentifiedSurvey<Survey>)
-    if (kept)
-      kept->provide<Memory>(options.workers().count(),
-                            survey);  // for all threads, as some may have their first work in a later run
+  ScratchMemory* const kept = IdentifiedSurvey<Survey> ? options.executor.memory() : nullptr;
+  if (kept)
+    kept->provide<Memory>(options.workers().count(),
+                          survey);  // for all threads, as some may have their first work in a later run
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
-  detail::ReorderBuffer buffer(kept, chunks, slots_per_chunk, workers, options.stop);
-  RunSummary summary;
+  const auto work = [&](detail::ChunkQueue& queue) {  // each worker runs until no chunk is left
+    detail::ResultChunk* chunk = queue.next();
+    if (!chunk) return;
+    const Borrowed<Memory> memory(kept, survey);
+    for (; chunk; chunk = queue.next()) {
+      detail::simulate(survey, slots, chunk->begin, chunk->end, memory->workspace, empty_shots, *chunk);
+      queue.finish(*chunk);
+    }
+  };
   const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
-    summary.add(chunk.counts);
-    if (chunk.error != PulseError::none) detail::throw_pulse_error(chunk.error, chunk.wrong);
-    if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
-  for_each_index(workers, options.workers(), [&](std::size_t) noexcept {  // each worker runs until no chunk is left
-    try {
-      detail::ResultChunk* chunk = buffer.next();
-      if (!chunk) return;
-      const Borrowed<Memory> memory(IdentifiedSurvey<Survey> ? kept : nullptr, survey);
-      for (; chunk; chunk = buffer.next()) {
-        const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
-        detail::simulate(survey, slots, from, to, memory->workspace, empty_shots, *chunk);
-        buffer.finish(*chunk, deliver);
-      }
-    } catch (...) {
-      buffer.fail(std::current_exception());
-    }
-  });
-  if (buffer.failure()) std::rethrow_exception(buffer.failure());
-  if (kept) buffer.make_room();
+  RunSummary summary = detail::run_chunks(options, slots, survey.recorded_subrays(), std::ref(work), std::ref(deliver));
   summary.rays = summary.pulses() * survey.subrays();
-  summary.seconds = elapsed();
-  summary.complete = summary.slots == slots.count;
   return summary;
 }
 
@@ -198,5 +168,9 @@ requires(!PulseSurvey<Survey> || !(EchoSink<Sinks> && ...)) RunSummary
 }
 
 }  // namespace PULSECAST_NAMESPACE
+
+#if PULSECAST_DEFINES(RUN)
+#include <pulsecast/detail/run_chunks.hpp>
+#endif
 
 #endif

@@ -15,34 +15,22 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
-#include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
-#include <pulsecast/transport/transport_input.hpp>
+#include <pulsecast/transport/echo_simulator.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Receiving half of a device, for the emitters with its index as their `Emitter::receiver`.
-template <Footprint Footprint, Detector Detector>
-struct ReceiverUnit {
-  Footprint footprint;  ///< sampling of the beams
-  Receiver receiver;    ///< aperture, range gate and range errors
-  Detector detector;    ///< detector
-};
 
 /// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order
 /// and from any number of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector,
           Transport<Target> Transport = DirectLight>
-class Survey {
-  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
-                detail::detector_checked<Detector>);
-  static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
-                "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
-                "DirectLight has");
+class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
+  using Echoes = EchoSimulator<Footprint, Target, Detector, Transport>;
 
  public:
+  using typename Echoes::Workspace;
+
   /// Survey with one receiver for all emitters.
   /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the
   /// detector refuses
@@ -64,14 +52,7 @@ class Survey {
       : Survey(std::move(source), std::move(receivers), target, Transport{}, seed) {}
   /// As above, with a transport other than `DirectLight`.
   Survey(Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target,
-         Transport transport, std::uint64_t seed = 0)
-      : source_(validated(std::move(source))),
-        target_(&target),
-        transport_(validated(std::move(transport))),
-        receivers_(std::move(receivers)),
-        seed_(seed) {
-    prepare();
-  }
+         Transport transport, std::uint64_t seed = 0);
 
   // a temporary map would dangle
   Survey(Source, Footprint, const Target&&, Receiver, Detector, std::uint64_t = 0) = delete;
@@ -79,48 +60,9 @@ class Survey {
   Survey(Source, std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, std::uint64_t = 0) = delete;
   Survey(Source, std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, Transport, std::uint64_t = 0) = delete;
 
-  /// Scratch memory of one worker.
-  struct Workspace {
-    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< workspace of the transport
-    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
-    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
-    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< workspace of each receiver's
-    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
-    WhiteTarget white_target{};                                                     ///< white target of that emitter
-  };
-
-  /// Scratch memory for one worker.
-  [[nodiscard]] Workspace workspace() const {
-    std::size_t most = 0;
-    for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
-    Workspace w{transport_.workspace(most),
-                room_for(transport_.reflections(most), most),
-                std::vector<SubrayRecord>(recorded_subrays()),
-                {}};
-    for (const Unit& unit : receivers_)
-      w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
-    return w;
-  }
-
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
-  /// Subrays of a pulse: the mean over the emitters, if their receivers differ.
-  [[nodiscard]] std::size_t subrays() const noexcept {
-    if (receivers_.size() == 1 || emitters_.empty()) return receivers_.front().footprint.size();
-    std::size_t sum = 0;
-    for (const EmitterConstants& e : emitters_) sum += receivers_[e.emitter.receiver].footprint.size();
-    return sum / emitters_.size();
-  }
-  /// Subrays passed to the sinks with each pulse.
-  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }
   /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
-  /// Receivers.
-  [[nodiscard]] std::span<const ReceiverUnit<Footprint, Detector>> receivers() const noexcept { return receivers_; }
-  /// Sample spacing of a waveform; 0 if the detectors have none [s].
-  [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
-  /// Token that this survey shares with its copies alone: they may use each other's workspaces.
-  [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
-
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return source_.next_pulse(i);
@@ -128,14 +70,14 @@ class Survey {
 
   /// Simulates pulse i.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
-    return outcome(i, source_.pulse(i), w);
+    return Echoes::operator()(i, source_.pulse(i), w);
   }
 
   /// As the concept SimulatesInOrder requires: pulses are made by the register, which does not outlive the call.
   template <class Next>
   void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
     PulseLanes<frame::World> pulses;
-    for (PulseIndex first = i; i < end; i = next(outcome(i, pulses[i - first], w)))
+    for (PulseIndex first = i; i < end; i = next(Echoes::operator()(i, pulses[i - first], w)))
       if (i - first >= pulses.size) {
         first = i;
         pulses = find_pulses(source_, i, end - i < simd::lane_count ? end - i : simd::lane_count);
@@ -143,187 +85,23 @@ class Survey {
   }
 
  private:
-  using Unit = ReceiverUnit<Footprint, Detector>;
-
-  /// Result of slot i, whose pulse is empty if it is blocked.
-  [[nodiscard]] Outcome outcome(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse,
-                                Workspace& w) const noexcept {
-    Outcome out;
-    out.shot.index = i;
-    if (!pulse) {
-      out.shot.fate = Fate::blocked;
-      return out;
-    }
-    const Pose<frame::Beam, frame::World>& reported = pulse->reported ? *pulse->reported : pulse->pose;
-    out.shot.tick = pulse->tick;
-    out.shot.origin = reported.position;
-    out.shot.direction = reported.direction(axis::forward);
-    out.shot.scan_angle = pulse->scan_angle;
-    out.shot.leg = pulse->leg;
-    PULSECAST_ASSERT(pulse->emitter < emitters_.size());
-    const EmitterConstants& constants = emitters_[pulse->emitter];
-    const Emitter& emitter = constants.emitter;
-    const Unit& unit = receivers_[emitter.receiver];
-    out.shot.channel = emitter.channel;
-
-    if (pulse->emitter != w.emitter) {
-      w.emitter = pulse->emitter;
-      w.white_target = {};
-    }
-    const TransportResult result = [&] {
-      if constexpr (RotatesPerPulse<Footprint>)
-        return trace(turned(*pulse, i), i, constants, w);
-      else
-        return trace(*pulse, i, constants, w);
-    }();
-    out.energy = result.energy;
-    out.spread = result.spread;
-    out.unresolved = result.unresolved;
-    out.subrays = w.subrays;
-    if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
-    out.shot.fate = result.dark() ? result.fate : Fate::below_threshold;
-    if constexpr (!RunsWithoutReflections<Detector>)
-      if (result.dark()) return out;
-
-    const std::span<Reflection> reflections(w.reflections.data(), result.reflections);
-    const DetectorInput input{
-        emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, result.continuous};
-    const Detection detection = unit.detector.detect(input, w.detectors[emitter.receiver]);
-    const RangeErrors& errors = unit.receiver.range_errors;
-    bool all_inside = true;
-    for (Echo& echo : detection.echoes) {
-      echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-      if (constants.errs)
-        echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
-      all_inside &= input.gate.contains(echo.range);
-    }
-    const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(input.gate, detection.echoes);
-    if (constants.errs) detail::sort_by_range(echoes);
-    out.echoes = echoes;
-    out.waveform = detection.waveform;
-    out.shot.waveform_start = detection.waveform_start;
-    if (!echoes.empty()) out.shot.fate = Fate::returned;
-    return out;
-  }
-
-  /// Constants of an emitter, computed once for all pulses.
-  struct EmitterConstants {
-    Emitter emitter;
-    LinkBudget budget;      // link budget of its laser and receiver
-    SubrayDirections beam;  // subrays, shared with emitters of equal beams
-    bool errs = false;      // true if its receiver has range errors
-  };
-
-  /// Refuses a footprint whose shares do not sum to the whole beam.
-  static void require_whole_beam(const Footprint& footprint) {
-    double sum = 0;
-    for (std::size_t j = 0; j < footprint.size(); ++j) {
-      const double share = footprint.share(j);
-      require_not_negative("Footprint::share", share, "");
-      require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
-      sum += share;
-    }
-    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // rounding of a sum of a million
-  }
-
-  /// Refuses receivers whose results do not fit in one batch.
-  void require_alike() const {
-    const double interval = sample_interval(), subrays = static_cast<double>(receivers_.front().footprint.size());
-    for (const Unit& unit : receivers_) {
-      if (interval_of(unit) != interval)
-        throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
-      if (recorded)
-        require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
-    }
-  }
-
-  static double interval_of(const Unit& unit) noexcept {
-    if constexpr (SamplesWaveforms<Detector>) return unit.detector.sample_interval();
-    return 0;
-  }
-
-  /// Validates the receivers and emitters, and computes what depends on them alone.
-  void prepare() {
-    require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
-    for (Unit& unit : receivers_) {
-      validate_in_place(unit.footprint);
-      validate_in_place(unit.receiver);
-      validate_in_place(unit.detector);
-      require_whole_beam(unit.footprint);
-    }
-    require_alike();
-    if constexpr (ValidatesTarget<Transport, Target>) transport_.validate(*target_);
-    const std::vector<Emitter> emitters = source_.emitters();
-    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0,
+  static std::vector<Emitter> emitters_of(Source& source) {
+    validate_in_place(source);
+    std::vector<Emitter> emitters = source.emitters();
+    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), source.size() > 0 ? 1 : 0,
                    max_emitters, "");
-    const std::shared_ptr<EmitterConstants[]> constants = std::make_unique<EmitterConstants[]>(emitters.size());
-    EmitterConstants* next = constants.get();
-    for (const Emitter& emitter : emitters) set(next++, validated(emitter), constants.get());
-    emitters_ = {constants.get(), emitters.size()};
-    identity_ = constants;
-  }
-
-  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no
-  /// receiver, or if the detector refuses its laser.
-  void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
-    require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
-    Unit& unit = receivers_[emitter.receiver];
-    if constexpr (RotatesPerPulse<Footprint>)
-      require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
-    if constexpr (ValidatesLaser<Detector>) unit.detector.validate(emitter.laser);
-    if constexpr (PreparesForLasers<Detector>) unit.detector.prepare(emitter.laser);
-    const EmitterConstants* alike = first;
-    while (alike != constants &&
-           !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
-      ++alike;
-    *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
-                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam,
-                  !unit.receiver.range_errors.none()};
-  }
-
-  static constexpr bool recorded = RecordsSubrays<Footprint>;
-
-  /// Pulse i with its beam turned about its axis.
-  [[nodiscard]] Pulse<frame::World> turned(Pulse<frame::World> pulse, PulseIndex i) const noexcept {
-    const Rotation turn = rotation_about(axis::forward, 2 * pi * uniform({seed_, i, 0, Purpose::beam_turn}));
-    pulse.pose.rotation = pulse.pose.rotation * turn;
-    if (pulse.reported) pulse.reported->rotation = pulse.reported->rotation * turn;
-    return pulse;
-  }
-
-  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
-                                      Workspace& w) const noexcept {
-    const Unit& unit = receivers_[constants.emitter.receiver];
-    const TransportInput light{pulse,
-                               i,
-                               seed_,
-                               constants.emitter,
-                               constants.beam,
-                               unit.footprint.size(),
-                               constants.budget,
-                               w.white_target,
-                               unit.receiver.gate(),
-                               recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
-    if constexpr (ReadsVelocity<Detector>)
-      return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
-    else
-      return transport_.trace(*target_, light, w.transport, w.reflections);
-  }
-
-  /// Error of a pulse that may have one: light did not return, the map answered with NaN, or a pose is reported.
-  static PulseError error_of(const Pulse<frame::World>& pulse, bool nan_of_map) noexcept {
-    if (!pulse.pose.finite() || (pulse.reported && !pulse.reported->finite())) return PulseError::pose;
-    return nan_of_map ? PulseError::map : PulseError::none;
+    return emitters;
   }
 
   Source source_;
-  const Target* target_;
-  Transport transport_;
-  std::vector<Unit> receivers_;
-  std::uint64_t seed_;
-  std::span<const EmitterConstants> emitters_{};  // by number
-  std::shared_ptr<const void> identity_{};        // owner of the constants, shared with copies
 };
+
+template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
+Survey<Source, Footprint, Target, Detector, Transport>::Survey(
+    Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
+    std::uint64_t seed)
+    : Echoes(std::move(receivers), target, std::move(transport), emitters_of(source), seed),
+      source_(std::move(source)) {}
 
 /// Names the mistake in the arguments.
 template <class Source, class AnyFootprint, class AnyTarget, class AnyDetector>

@@ -7,54 +7,16 @@
 #include <bit>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stop_token>
 #include <utility>
 
 #include <pulsecast/base/scratch_memory.hpp>
-#include <pulsecast/result_buffer.hpp>
+#include <pulsecast/detail/chunk_queue.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
-
-/// Results of consecutive slots, in reused memory.
-struct ResultChunk : ResultBuffer {
-  std::uint64_t number = 0;
-  ResultChunk* next_free = nullptr;
-  PulseError error = PulseError::none;  ///< of the slot after the last; ends the run after all slots before it
-  Shot wrong{};                         ///< that slot
-
-  /// Appends the result of a slot, or notes its error.
-  void add(const Outcome& outcome, bool empty_shots) {
-    error = outcome.error;
-    if (error == PulseError::none)
-      append(outcome, empty_shots);
-    else
-      wrong = outcome.shot;
-  }
-
-  /// Makes at least as much room as another has.
-  void reserve_as(const ResultChunk& other) {
-    shots.reserve(other.shots.capacity());
-    echoes.reserve(other.echoes.capacity());
-    samples.reserve(other.samples.capacity());
-    subrays.reserve(other.subrays.capacity());
-  }
-
-  /// Memory of the results, and of the room for results [byte].
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return bytes_of([](const auto& results) { return results.size(); });
-  }
-  [[nodiscard]] std::size_t room() const noexcept {
-    return bytes_of([](const auto& results) { return results.capacity(); });
-  }
-
- private:
-  [[nodiscard]] std::size_t bytes_of(const auto& count) const noexcept {
-    return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) +
-           count(subrays) * sizeof(SubrayRecord);
-  }
-};
 
 /// Chunks of a reorder buffer, which an executor may keep for the next run.
 struct ChunkMemory : ScratchItem {
@@ -74,22 +36,27 @@ struct ChunkMemory : ScratchItem {
 /// so that none waits for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few
 /// megabytes, or at two chunks per worker if these are large. The chunk delivered last is reused first, as it is in the
 /// cache.
-class ReorderBuffer {
+class ReorderBuffer final : public ChunkQueue {
  public:
-  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers,
-                std::stop_token stop)
-      : chunks_(chunks),
+  /// Delivers chunks in order.
+  using Deliver = std::function<void(const ResultChunk&)>;
+
+  ReorderBuffer(ScratchMemory* kept, PulseIndex slots, PulseIndex slots_per_chunk, std::size_t workers,
+                std::stop_token stop, Deliver deliver)
+      : slots_(slots),
+        slots_per_chunk_(slots_per_chunk),
+        chunks_((slots + slots_per_chunk - 1) / slots_per_chunk),
         always_ahead_(2 * workers + 2),
         max_ahead_(16 * always_ahead_),
         memory_(kept, max_ahead_),
-        stop_(std::move(stop)) {
+        stop_(std::move(stop)),
+        deliver_(std::move(deliver)) {
     if (kept) make_room(std::bit_ceil(slots_per_chunk));  // steps of a loop differ by some slots
     for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
     std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
   }
 
-  /// Next empty chunk to work on; null at the end, or when the run is stopped.
-  [[nodiscard]] ResultChunk* next() {
+  [[nodiscard]] ResultChunk* next() override {
     std::unique_lock lock(mutex_);
     moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || may_go_ahead(); });
     if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return nullptr;
@@ -97,11 +64,12 @@ class ReorderBuffer {
     chunk->clear();
     chunk->error = PulseError::none;
     chunk->number = handed_out_++;
+    chunk->begin = chunk->number * slots_per_chunk_;
+    chunk->end = std::min(chunk->begin + slots_per_chunk_, slots_);
     return chunk;
   }
 
-  /// Takes back a finished chunk, and delivers all that are due unless another worker is delivering.
-  void finish(ResultChunk& chunk, const auto& deliver) {
+  void finish(ResultChunk& chunk) override {
     std::unique_lock lock(mutex_);
     finished_bytes_ += chunk.bytes();
     place(chunk.number) = &chunk;
@@ -110,7 +78,7 @@ class ReorderBuffer {
     while (!failure_ && place(delivered_)) {
       ResultChunk* const due = std::exchange(place(delivered_), nullptr);
       lock.unlock();
-      deliver(*due);
+      deliver_(*due);
       lock.lock();
       ++delivered_;
       finished_bytes_ -= due->bytes();
@@ -150,11 +118,13 @@ class ReorderBuffer {
   }
   [[nodiscard]] ResultChunk*& place(std::uint64_t number) noexcept { return memory_->finished[number % max_ahead_]; }
 
+  PulseIndex slots_, slots_per_chunk_;
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
   std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
   Borrowed<ChunkMemory> memory_;
   ResultChunk* free_ = nullptr;  // head of the free list
   std::stop_token stop_;
+  Deliver deliver_;
   bool delivering_ = false;
   std::exception_ptr failure_;
   std::mutex mutex_;

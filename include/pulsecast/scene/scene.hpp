@@ -48,8 +48,7 @@ class Scene {
   /// `workers` build the index over the parts; the scene is the same for any.
   /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of
   /// range
-  explicit Scene(std::vector<Part> parts, const Workers& workers = {})
-      : Scene(std::move(parts), Motions::refused, workers) {}
+  explicit Scene(std::vector<Part> parts, const Workers& workers = {});
 
   /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is
   /// refitted, and made anew where it would be too slow; hits are those of a scene made of these parts. @throws
@@ -344,6 +343,10 @@ class Scene {
   std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
   BvhRefit<float> refit_;
 };
+
+template <Geometry... Shapes>
+Scene<Shapes...>::Scene(std::vector<Part> parts, const Workers& workers)
+    : Scene(std::move(parts), Motions::refused, workers) {}
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -50,17 +50,7 @@ class TriangleMesh {
 
   /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, for coordinates beyond 1e18 m, or
   /// for masks unless this is a `MaskedMesh`
-  explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
-    arrange(data, workers);
-    for (const std::uint32_t m : data.materials)
-      material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
-    if (material_count_ > 256)
-      materials_ = numbers<std::uint32_t>(data.materials);
-    else if (material_count_ > 1)
-      materials8_ = numbers<std::uint8_t>(data.materials);
-    if (!data.texture.empty()) texture_ = texture_of(data);
-    masks_ = Masks(data.masks);
-  }
+  explicit TriangleMesh(MeshData data, const Workers& workers = {});
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   void archive(auto& a) {
@@ -318,6 +308,19 @@ class TriangleMesh {
   Index index_;
   std::size_t material_count_ = 1;
 };
+
+template <Accelerator Index, class Masks>
+TriangleMesh<Index, Masks>::TriangleMesh(MeshData data, const Workers& workers) : index_(built(data, workers)) {
+  arrange(data, workers);
+  for (const std::uint32_t m : data.materials)
+    material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
+  if (material_count_ > 256)
+    materials_ = numbers<std::uint32_t>(data.materials);
+  else if (material_count_ > 1)
+    materials8_ = numbers<std::uint8_t>(data.materials);
+  if (!data.texture.empty()) texture_ = texture_of(data);
+  masks_ = Masks(data.masks);
+}
 
 /// Mesh whose materials may have holes, as `MeshData::masks` says.
 template <Accelerator Index = Bvh<float>>

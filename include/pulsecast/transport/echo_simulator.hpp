@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
+#define PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/subray_directions.hpp>
+#include <pulsecast/transport/direct_light.hpp>
+#include <pulsecast/transport/transport_input.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Receiving half of a device, for the emitters with its index as their `Emitter::receiver`.
+template <Footprint Footprint, Detector Detector>
+struct ReceiverUnit {
+  Footprint footprint;  ///< sampling of the beams
+  Receiver receiver;    ///< aperture, range gate and range errors
+  Detector detector;    ///< detector
+};
+
+/// Echoes of pulses as a pure function: what light, receivers and detectors make of each. A `Survey` is this after a
+/// source of pulses. Immutable. Refers to the map, which must outlive it.
+template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport = DirectLight>
+class EchoSimulator {
+  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
+                detail::detector_checked<Detector>);
+  static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
+                "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
+                "DirectLight has");
+
+ public:
+  /// For pulses of `emitters`, by number, each of which has its receiver.
+  /// @throws SettingError for settings out of range, footprint shares that do not sum to one, an emitter without a
+  /// receiver, or a laser that the detector refuses
+  EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
+                const std::vector<Emitter>& emitters, std::uint64_t seed = 0);
+
+  /// Scratch memory of one worker.
+  struct Workspace {
+    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< workspace of the transport
+    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
+    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
+    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< workspace of each receiver's
+    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
+    WhiteTarget white_target{};                                                     ///< white target of that emitter
+  };
+
+  /// Scratch memory for one worker.
+  [[nodiscard]] Workspace workspace() const;
+
+  /// Subrays of a pulse: the mean over the emitters, if their receivers differ.
+  [[nodiscard]] std::size_t subrays() const noexcept {
+    if (receivers_.size() == 1 || emitters_.empty()) return receivers_.front().footprint.size();
+    std::size_t sum = 0;
+    for (const EmitterConstants& e : emitters_) sum += receivers_[e.emitter.receiver].footprint.size();
+    return sum / emitters_.size();
+  }
+  /// Subrays passed to the sinks with each pulse.
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }
+  /// Receivers.
+  [[nodiscard]] std::span<const ReceiverUnit<Footprint, Detector>> receivers() const noexcept { return receivers_; }
+  /// Sample spacing of a waveform; 0 if the detectors have none [s].
+  [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
+  /// Token that this survey shares with its copies alone: they may use each other's workspaces.
+  [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
+
+  /// Result of slot i, whose pulse is empty if it is blocked.
+  [[nodiscard]] Outcome operator()(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse,
+                                   Workspace& w) const noexcept;
+
+ private:
+  using Unit = ReceiverUnit<Footprint, Detector>;
+
+  /// Constants of an emitter, computed once for all pulses.
+  struct EmitterConstants {
+    Emitter emitter;
+    LinkBudget budget;      // link budget of its laser and receiver
+    SubrayDirections beam;  // subrays, shared with emitters of equal beams
+    bool errs = false;      // true if its receiver has range errors
+  };
+
+  /// Refuses a footprint whose shares do not sum to the whole beam.
+  static void require_whole_beam(const Footprint& footprint) {
+    double sum = 0;
+    for (std::size_t j = 0; j < footprint.size(); ++j) {
+      const double share = footprint.share(j);
+      require_not_negative("Footprint::share", share, "");
+      require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
+      sum += share;
+    }
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // rounding of a sum of a million
+  }
+
+  /// Refuses receivers whose results do not fit in one batch.
+  void require_alike() const {
+    const double interval = sample_interval(), subrays = static_cast<double>(receivers_.front().footprint.size());
+    for (const Unit& unit : receivers_) {
+      if (interval_of(unit) != interval)
+        throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
+      if (recorded)
+        require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
+    }
+  }
+
+  static double interval_of(const Unit& unit) noexcept {
+    if constexpr (SamplesWaveforms<Detector>) return unit.detector.sample_interval();
+    return 0;
+  }
+
+  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no
+  /// receiver, or if the detector refuses its laser.
+  void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
+    require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
+    Unit& unit = receivers_[emitter.receiver];
+    if constexpr (RotatesPerPulse<Footprint>)
+      require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
+    if constexpr (ValidatesLaser<Detector>) unit.detector.validate(emitter.laser);
+    if constexpr (PreparesForLasers<Detector>) unit.detector.prepare(emitter.laser);
+    const EmitterConstants* alike = first;
+    while (alike != constants &&
+           !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
+      ++alike;
+    *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
+                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam,
+                  !unit.receiver.range_errors.none()};
+  }
+
+  static constexpr bool recorded = RecordsSubrays<Footprint>;
+
+  /// Pulse i with its beam turned about its axis.
+  [[nodiscard]] Pulse<frame::World> turned(Pulse<frame::World> pulse, PulseIndex i) const noexcept {
+    const Rotation turn = rotation_about(axis::forward, 2 * pi * uniform({seed_, i, 0, Purpose::beam_turn}));
+    pulse.pose.rotation = pulse.pose.rotation * turn;
+    if (pulse.reported) pulse.reported->rotation = pulse.reported->rotation * turn;
+    return pulse;
+  }
+
+  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
+                                      Workspace& w) const noexcept {
+    const Unit& unit = receivers_[constants.emitter.receiver];
+    const TransportInput light{pulse,
+                               i,
+                               seed_,
+                               constants.emitter,
+                               constants.beam,
+                               unit.footprint.size(),
+                               constants.budget,
+                               w.white_target,
+                               unit.receiver.gate(),
+                               recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
+    if constexpr (ReadsVelocity<Detector>)
+      return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
+    else
+      return transport_.trace(*target_, light, w.transport, w.reflections);
+  }
+
+  /// Error of a pulse that may have one: light did not return, the map answered with NaN, or a pose is reported.
+  static PulseError error_of(const Pulse<frame::World>& pulse, bool nan_of_map) noexcept {
+    if (!pulse.pose.finite() || (pulse.reported && !pulse.reported->finite())) return PulseError::pose;
+    return nan_of_map ? PulseError::map : PulseError::none;
+  }
+
+  const Target* target_;
+  Transport transport_;
+  std::vector<Unit> receivers_;
+  std::uint64_t seed_;
+  std::span<const EmitterConstants> emitters_{};  // by number
+  std::shared_ptr<const void> identity_{};        // owner of the constants, shared with copies
+};
+
+template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
+EchoSimulator<Footprint, Target, Detector, Transport>::EchoSimulator(
+    std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
+    const std::vector<Emitter>& emitters, std::uint64_t seed)
+    : target_(&target), transport_(validated(std::move(transport))), receivers_(std::move(receivers)), seed_(seed) {
+  require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
+  for (Unit& unit : receivers_) {
+    validate_in_place(unit.footprint);
+    validate_in_place(unit.receiver);
+    validate_in_place(unit.detector);
+    require_whole_beam(unit.footprint);
+  }
+  require_alike();
+  if constexpr (ValidatesTarget<Transport, Target>) transport_.validate(*target_);
+  const std::shared_ptr<EmitterConstants[]> constants = std::make_unique<EmitterConstants[]>(emitters.size());
+  EmitterConstants* next = constants.get();
+  for (const Emitter& emitter : emitters) set(next++, validated(emitter), constants.get());
+  emitters_ = {constants.get(), emitters.size()};
+  identity_ = constants;
+}
+
+template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
+auto EchoSimulator<Footprint, Target, Detector, Transport>::workspace() const -> Workspace {
+  std::size_t most = 0;
+  for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
+  Workspace w{transport_.workspace(most),
+              room_for(transport_.reflections(most), most),
+              std::vector<SubrayRecord>(recorded_subrays()),
+              {}};
+  for (const Unit& unit : receivers_)
+    w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
+  return w;
+}
+
+template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
+Outcome EchoSimulator<Footprint, Target, Detector, Transport>::operator()(
+    PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w) const noexcept {
+  Outcome out;
+  out.shot.index = i;
+  if (!pulse) {
+    out.shot.fate = Fate::blocked;
+    return out;
+  }
+  const Pose<frame::Beam, frame::World>& reported = pulse->reported ? *pulse->reported : pulse->pose;
+  out.shot.tick = pulse->tick;
+  out.shot.origin = reported.position;
+  out.shot.direction = reported.direction(axis::forward);
+  out.shot.scan_angle = pulse->scan_angle;
+  out.shot.leg = pulse->leg;
+  PULSECAST_ASSERT(pulse->emitter < emitters_.size());
+  const EmitterConstants& constants = emitters_[pulse->emitter];
+  const Emitter& emitter = constants.emitter;
+  const Unit& unit = receivers_[emitter.receiver];
+  out.shot.channel = emitter.channel;
+
+  if (pulse->emitter != w.emitter) {
+    w.emitter = pulse->emitter;
+    w.white_target = {};
+  }
+  const TransportResult result = [&] {
+    if constexpr (RotatesPerPulse<Footprint>)
+      return trace(turned(*pulse, i), i, constants, w);
+    else
+      return trace(*pulse, i, constants, w);
+  }();
+  out.energy = result.energy;
+  out.spread = result.spread;
+  out.unresolved = result.unresolved;
+  out.subrays = w.subrays;
+  if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
+  out.shot.fate = result.dark() ? result.fate : Fate::below_threshold;
+  if constexpr (!RunsWithoutReflections<Detector>)
+    if (result.dark()) return out;
+
+  const std::span<Reflection> reflections(w.reflections.data(), result.reflections);
+  const DetectorInput input{emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, result.continuous};
+  const Detection detection = unit.detector.detect(input, w.detectors[emitter.receiver]);
+  const RangeErrors& errors = unit.receiver.range_errors;
+  bool all_inside = true;
+  for (Echo& echo : detection.echoes) {
+    echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
+    if (constants.errs)
+      echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+    all_inside &= input.gate.contains(echo.range);
+  }
+  const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(input.gate, detection.echoes);
+  if (constants.errs) detail::sort_by_range(echoes);
+  out.echoes = echoes;
+  out.waveform = detection.waveform;
+  out.shot.waveform_start = detection.waveform_start;
+  if (!echoes.empty()) out.shot.fate = Fate::returned;
+  return out;
+}
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
