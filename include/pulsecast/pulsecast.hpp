@@ -7,6 +7,7 @@
 /// lines, every footprint, two detectors, a cloud in memory. Include all else by name: other shapes, accelerators and
 /// optics, moving parts, trajectories by waypoints or by planners, pose errors, the analytic detector.
 
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/random.hpp>
@@ -41,10 +42,37 @@
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 #include <pulsecast/transport/direct_light.hpp>
+#include <pulsecast/transport/echo_simulator.hpp>
 #include <pulsecast/version.hpp>
 
+// Templates for usual arguments, which `pulsecast::compiled` has: a program that links it does not compile them.
 #if defined(PULSECAST_COMPILED)
-#include <pulsecast/detail/usual_types.hpp>
+#if PULSECAST_DEFINES(PULSECAST)
+#define PULSECAST_USUAL template
+#else
+#define PULSECAST_USUAL extern template
+#endif
+namespace PULSECAST_NAMESPACE {
+
+PULSECAST_USUAL class TriangleMesh<>;
+PULSECAST_USUAL class TriangleMesh<Bvh<float>, MaskTable>;
+PULSECAST_USUAL class Scene<TriangleMesh<>>;
+PULSECAST_USUAL class EchoSimulator<SingleRay, Scene<TriangleMesh<>>, FirstHit>;
+PULSECAST_USUAL class EchoSimulator<SingleRay, Scene<TriangleMesh<>>, FullWaveform<>>;
+PULSECAST_USUAL class EchoSimulator<LatticeFootprint, Scene<TriangleMesh<>>, FirstHit>;
+PULSECAST_USUAL class EchoSimulator<LatticeFootprint, Scene<TriangleMesh<>>, FullWaveform<>>;
+
+namespace detail {
+using TripodScanner = Platform<Tripod, Deflector<RotatingHead, Deflector<PolygonMirror, Scanner>>>;
+using TripodSurvey = Survey<TripodScanner, LatticeFootprint, Scene<TriangleMesh<>>, FullWaveform<>>;
+}  // namespace detail
+PULSECAST_USUAL class Platform<Tripod, Deflector<RotatingHead, Deflector<PolygonMirror, Scanner>>>;
+PULSECAST_USUAL class Survey<detail::TripodScanner, LatticeFootprint, Scene<TriangleMesh<>>, FullWaveform<>>;
+PULSECAST_USUAL RunSummary run(const detail::TripodSurvey&, const RunOptions&, Cloud&);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#undef PULSECAST_USUAL
 #endif
 
 #endif

@@ -15,7 +15,6 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/detail/reorder_buffer.hpp>
-#include <pulsecast/run.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

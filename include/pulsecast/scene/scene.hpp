@@ -181,8 +181,7 @@ class Scene {
       const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const Ray down{.origin = {at.x, at.y, bounds().max.z + 1}, .direction = -axis::up};
-    std::optional<double>
-        height;  // nearest so far; all hits are asked, as another part may lie on the ground, at the same range
+    std::optional<double> height;  // nearest so far; all hits are asked, as another part may lie on the ground
     all_hits(down, [&](const RayHit& hit) noexcept {
       if (!surface(hit, down).material->ground) return true;
       const double next = down.origin.z - hit.range;
@@ -201,7 +200,7 @@ class Scene {
 
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
-      : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), workers, 1) {
+      : parts_(std::move(parts)), index_(boxes(parts_, motions), workers, 1) {
     note_parts();
   }
 
@@ -215,15 +214,12 @@ class Scene {
                                  [&](const Part& part) { return visit_shape(deterministic, part.geometry); });
   }
 
-  static std::vector<Part> placed(std::vector<Part> parts) {
-    for (Part& part : parts) part.placement = validated(part.placement);
-    return parts;
-  }
-
-  static SharedBuffer<Box> boxes(const std::vector<Part>& parts, Motions motions) {
+  /// Boxes of parts, whose placements are validated.
+  static SharedBuffer<Box> boxes(std::vector<Part>& parts, Motions motions) {
     const SharedBuffer<Box> boxes(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Part& part = parts[i];
+      Part& part = parts[i];
+      validate_in_place(part.placement);
       if (part.motion && motions == Motions::refused)
         throw_setting_error("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
       const auto box_of = [&](const auto& shape) {

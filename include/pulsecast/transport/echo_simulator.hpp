@@ -46,6 +46,9 @@ class EchoSimulator {
   /// receiver, or a laser that the detector refuses
   EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
                 const std::vector<Emitter>& emitters, std::uint64_t seed = 0);
+  // a temporary map would dangle
+  EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, Transport, const std::vector<Emitter>&,
+                std::uint64_t = 0) = delete;
 
   /// Scratch memory of one worker.
   struct Workspace {
