@@ -94,7 +94,7 @@ class Survey {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
     Workspace w{transport_.workspace(most),
-                room_for(transport_.reflections(most), most),
+                detail::room_for(transport_.reflections(most), most),
                 std::vector<SubrayRecord>(recorded_subrays()),
                 {}};
     for (const Unit& unit : receivers_)
@@ -246,9 +246,9 @@ class Survey {
   void prepare() {
     require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
     for (Unit& unit : receivers_) {
-      validate_in_place(unit.footprint);
-      validate_in_place(unit.receiver);
-      validate_in_place(unit.detector);
+      detail::validate_in_place(unit.footprint);
+      detail::validate_in_place(unit.receiver);
+      detail::validate_in_place(unit.detector);
       require_whole_beam(unit.footprint);
     }
     require_alike();

@@ -53,6 +53,8 @@ concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_s
 template <class L>
 concept ScatteringLaw = std::copyable<L> && detail::Backscatters<L> && detail::TellsShare<L>;
 
+namespace detail {
+
 /// Law that takes a `SurfaceLight`, in all its members.
 template <class L>
 concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
@@ -64,10 +66,12 @@ template <ScatteringLaw L>
   else return light.wavelength;
 }
 
+}  // namespace detail
+
 /// Law that is evaluated in SIMD batches.
 template <class L>
 concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::Doubles& cosines, const SurfaceLight& light) {
-  { law.backscatter(cosines, taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
+  { law.backscatter(cosines, detail::taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
 };
 
 // each law has a `backscatter` of a cosine, too

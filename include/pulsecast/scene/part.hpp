@@ -165,6 +165,8 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
   return table;
 }
 
+namespace detail {
+
 /// Shared shape of one of several kinds.
 template <Geometry... Shapes>
 struct SharedShape {
@@ -177,6 +179,8 @@ struct SharedShape<Shape> {
   /// Shared pointer.
   using type = std::shared_ptr<const Shape>;
 };
+
+}  // namespace detail
 
 /// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
@@ -217,11 +221,12 @@ using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();      ///< materials by the shape's material index
-  Placement placement{};                           ///< placement in the world
-  ObjectId object = 0;                             ///< object id of its points
-  std::string name{};                              ///< user's name for it
+  typename detail::SharedShape<Shapes...>::type
+      geometry;                                ///< shared pointer to the shape; a variant of them for several kinds
+  MaterialTable materials = material_table();  ///< materials by the shape's material index
+  Placement placement{};                       ///< placement in the world
+  ObjectId object = 0;                         ///< object id of its points
+  std::string name{};                          ///< user's name for it
   std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
   Attributes attributes{};                     ///< what its points are told besides, as by `ObjectAttributes`
 };

@@ -50,6 +50,8 @@ struct Mask {
   }
 };
 
+namespace detail {
+
 /// Masks of the materials of a mesh, immutable.
 class MaskTable {
  public:
@@ -104,6 +106,8 @@ class MaskTable {
   SharedArray<Frame> frames_;        ///< by material; empty if no material has holes
   SharedArray<std::uint64_t> bits_;  ///< of all masks
 };
+
+}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE
 

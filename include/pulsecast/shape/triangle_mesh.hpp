@@ -57,7 +57,7 @@ class TriangleMesh {
     else if (material_count_ > 1)
       materials8_ = numbers<std::uint8_t>(data.materials);
     if (!data.texture.empty()) texture_ = texture_of(data);
-    masks_ = MaskTable(data.masks);
+    masks_ = detail::MaskTable(data.masks);
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
@@ -161,7 +161,7 @@ class TriangleMesh {
   [[nodiscard]] const Vec3* block_corners(std::size_t place) const noexcept {
     return corners_.data() + first_corners_[place / detail::chunk_size];
   }
-  [[nodiscard]] static TriangleRef triangle_in(const Vec3* corners, const Corners& triangle) noexcept {
+  [[nodiscard]] static detail::TriangleRef triangle_in(const Vec3* corners, const Corners& triangle) noexcept {
     return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
 
@@ -193,7 +193,7 @@ class TriangleMesh {
       if (!mesh.masks_.empty()) [[unlikely]]
         return test(primitives, triangle_of,
                     [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
-      test(primitives, triangle_of, SolidEverywhere{});
+      test(primitives, triangle_of, detail::SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
     [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
@@ -208,7 +208,7 @@ class TriangleMesh {
         const std::size_t count =
             std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
         (*this)(primitives.first(count));
-        if constexpr (EndsEarly<Hits>)
+        if constexpr (detail::EndsEarly<Hits>)
           if (nearest.done()) return;
         primitives = primitives.subspan(count);
       }
@@ -223,7 +223,7 @@ class TriangleMesh {
   };
 
   [[nodiscard]] Triangle triangle_at(std::size_t place) const noexcept {
-    const TriangleRef triangle = triangle_in(block_corners(place), triangles_[place]);
+    const detail::TriangleRef triangle = triangle_in(block_corners(place), triangles_[place]);
     return {triangle.a, triangle.b, triangle.c};
   }
 
@@ -311,7 +311,7 @@ class TriangleMesh {
   SharedArray<std::uint8_t> materials8_;  ///< material of each triangle; empty if all are 0, or if an index exceeds 255
   SharedArray<std::uint32_t> materials_;  ///< material of each triangle if an index exceeds 255, else empty
   SharedArray<TextureCorners> texture_;   ///< texture coordinates of each triangle's corners; empty without
-  MaskTable masks_;                       ///< holes by material
+  detail::MaskTable masks_;               ///< holes by material
   Index index_;
   std::size_t material_count_ = 1;
 };
