@@ -12,12 +12,6 @@
 /// tick or pose, so a motion's pose does not depend on the other lanes.
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
-
-/// One number in all lanes, with its sign if it is zero.
-[[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
-
-}  // namespace detail
 /// Mask of all lanes.
 [[nodiscard]] inline simd::Mask all_lanes() noexcept { return simd::Mask{} - 1; }
 /// Mask of the first n lanes.
@@ -28,6 +22,9 @@ namespace detail {
 }
 
 namespace detail {
+
+/// One number in all lanes, with its sign if it is zero.
+[[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
 
 /// Rounding error of a product, exact while products of halves neither overflow nor underflow. Source: Dekker 1971, A
 /// floating-point technique for extending the available precision, with the halves of Veltkamp.

@@ -40,6 +40,13 @@ struct RandomKey {
 
 namespace detail {
 
+/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
+template <class... Lower>
+[[nodiscard]] constexpr double polynomial(double x, double value, Lower... lower) noexcept {
+  ((value = value * x + lower), ...);
+  return value;
+}
+
 /// Philox4x32-10 generator: four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                                             std::array<std::uint32_t, 2> key) noexcept {
@@ -70,17 +77,6 @@ namespace detail {
   const std::uint64_t bits = (std::uint64_t{words[0]} << 20) | (words[1] >> 12);
   return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }
-
-namespace detail {
-
-/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
-template <class... Lower>
-[[nodiscard]] constexpr double polynomial(double x, double value, Lower... lower) noexcept {
-  ((value = value * x + lower), ...);
-  return value;
-}
-
-}  // namespace detail
 
 /// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source: Wichura 1988,
 /// algorithm AS 241 (PPND16).

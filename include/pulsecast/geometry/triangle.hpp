@@ -51,6 +51,18 @@ struct Triangle {
 
 namespace detail {
 
+/// Hits that may need no further test, as `AnyHit` does after the first.
+template <class Hits>
+concept EndsEarly = requires(const Hits& hits) {
+  { hits.done() }
+  noexcept->std::same_as<bool>;
+};
+
+/// Triangles without holes.
+struct SolidEverywhere {
+  bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
+};
+
 /// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate to where it is used.
 struct TriangleRef {
   const Vec3& a;  ///< first corner [m]
@@ -86,15 +98,6 @@ struct TrianglePacket {
     c = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.c; });
   }
 };
-
-namespace detail {
-
-/// Triangles without holes.
-struct SolidEverywhere {
-  bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
-};
-
-}  // namespace detail
 
 /// Intersects the triangles of these primitives with every ray of a bundle, or with a `SingleRayPacket`: the deciding
 /// test, always in double precision.
@@ -269,17 +272,6 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     }
   }
 }
-
-namespace detail {
-
-/// Hits that may need no further test, as `AnyHit` does after the first.
-template <class Hits>
-concept EndsEarly = requires(const Hits& hits) {
-  { hits.done() }
-  noexcept->std::same_as<bool>;
-};
-
-}  // namespace detail
 
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
 template <class TriangleOf, class Rays, class Hits, class Solid = detail::SolidEverywhere>

@@ -38,6 +38,16 @@ template <class L>
 concept BackscattersSurfaceLight = requires(const L law, const SurfaceLight& light) { law.backscatter(1.0, light); };
 template <class L>
 concept ScattersSurfaceLight = requires(const L law, const Vec3& v, const SurfaceLight& light) { law.scattered(v, v, v, light); };
+/// Law that takes a `SurfaceLight`, in all its members.
+template <class L>
+concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
+
+/// Light as a law takes it.
+template <class L>
+[[nodiscard]] const auto& taken_by(const SurfaceLight& light) noexcept {
+  if constexpr (TakesSurfaceLight<L>) return light;
+  else return light.wavelength;
+}
 /// Type with a member of a law, in any form: meant to be one.
 template <class L>
 concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_share; } || Backscatters<L> || TellsShare<L>;
@@ -52,21 +62,6 @@ concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_s
 /// Not required: light into other directions, as of a law that `ScattersBetween`; `validate()`.
 template <class L>
 concept ScatteringLaw = std::copyable<L> && detail::Backscatters<L> && detail::TellsShare<L>;
-
-namespace detail {
-
-/// Law that takes a `SurfaceLight`, in all its members.
-template <class L>
-concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
-
-/// Light as a law takes it.
-template <ScatteringLaw L>
-[[nodiscard]] const auto& taken_by(const SurfaceLight& light) noexcept {
-  if constexpr (TakesSurfaceLight<L>) return light;
-  else return light.wavelength;
-}
-
-}  // namespace detail
 
 /// Law that is evaluated in SIMD batches.
 template <class L>

@@ -129,6 +129,19 @@ struct Placement {
 
 namespace detail {
 
+/// Shared shape of one of several kinds.
+template <Geometry... Shapes>
+struct SharedShape {
+  /// Variant of shared pointers.
+  using type = std::variant<std::shared_ptr<const Shapes>...>;
+};
+/// Shared shape of the only kind. A variant of one takes g++ 12 some 60 ms more to compile.
+template <Geometry Shape>
+struct SharedShape<Shape> {
+  /// Shared pointer.
+  using type = std::shared_ptr<const Shape>;
+};
+
 /// Half sides of the box around a turned box of these half sides, in axes `turn` [m].
 /// Source: Arvo 1990, Transforming axis-aligned bounding boxes, Graphics Gems.
 [[nodiscard]] inline Vec3 reach_of(const Matrix3& turn, const Vec3& half) noexcept {
@@ -164,23 +177,6 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
   static const MaterialTable table = material_table(std::vector<Material>(1));
   return table;
 }
-
-namespace detail {
-
-/// Shared shape of one of several kinds.
-template <Geometry... Shapes>
-struct SharedShape {
-  /// Variant of shared pointers.
-  using type = std::variant<std::shared_ptr<const Shapes>...>;
-};
-/// Shared shape of the only kind. A variant of one takes g++ 12 some 60 ms more to compile.
-template <Geometry Shape>
-struct SharedShape<Shape> {
-  /// Shared pointer.
-  using type = std::shared_ptr<const Shape>;
-};
-
-}  // namespace detail
 
 /// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
