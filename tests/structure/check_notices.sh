@@ -12,7 +12,8 @@ tried=0
 
 fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
-  cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/docs" "$root/CMakeLists.txt" . || exit 2
+  cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
+  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
   cp "$root"/*.md "$root"/*.json . 2> /dev/null
 }
 
@@ -94,7 +95,7 @@ notices "$public" "echo '[[nodiscard]] inline std::array<int, 2> unmentioned(int
 notices "$public" "echo 'template <class T> inline constexpr bool unmentioned = true;' >> include/pulsecast/echo.hpp"
 notices "$public" "sed -i 's/LinkBudget//g' docs/*.md"
 links='every link of a page leads somewhere'
-notices "$links" 'rm docs/pictures/light_river.png'
+notices "$links" 'rm docs/tables/extremes.md'
 notices "$links" 'sed -i "s/^## Ray queries/## Queries/" docs/scenes.md && echo "[queries](docs/scenes.md#ray-queries)" >> README.md'
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
