@@ -2,20 +2,20 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Takes the figures of docs/performance.md anew: runs the benchmarks of a build and puts their tables between the marks there. Takes some ten
-# minutes; nothing else should run. Usage: figures.sh [BUILD [OBJ]]; build/release if not told, and no OBJ file besides the scenes made by code.
+# Writes docs/tables/performance.md anew from the benchmarks of a build. Takes some ten minutes; nothing else should run.
+# Usage: figures.sh [BUILD [OBJ]]; build/release by default, and no OBJ file besides the scenes made by code.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build/release}
 files=("${@:2}")
-page=docs/performance.md
+page=docs/tables/performance.md
 tables=$(mktemp)
 trap 'rm -f "$tables"' EXIT
 
 # take NAME ARGUMENTS...: the tables of bench_NAME under a heading.
 take() {
   echo "taking $1" >&2
-  printf '\n### %s\n\n' "$1" >> "$tables"
+  printf '\n## %s\n\n' "$1" >> "$tables"
   "$build/bench/bench_$1" --markdown "${@:2}" >> "$tables"
 }
 take trace --only '*/19/*' --only '*/incoherent/*' "${files[@]}"
@@ -26,11 +26,7 @@ take write
 take scale
 take short_cuts
 echo "taking needs" >&2
-printf '\n### needs\n\n' >> "$tables"
+printf '\n## needs\n\n' >> "$tables"
 bash bench/needs.sh "$build" >> "$tables"
-
-awk -v tables="$tables" '
-  /^<!-- figures: begin/ { print; while ((getline line < tables) > 0) print line; print ""; inside = 1 }
-  /^<!-- figures: end/ { inside = 0 }
-  !inside' "$page" > "$page.new"
+{ sed '/^## /Q' "$page" | sed '$d'; cat "$tables"; } > "$page.new"
 mv "$page.new" "$page"

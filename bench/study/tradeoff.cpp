@@ -4,7 +4,7 @@
 // Cost and errors of each setting: time, memory, and errors against a reference of 2,001 subrays, double precision and
 // the analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins.
 // Rows are named scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses.
-// `bench/study/tradeoff.sh` runs it, draws docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md.
+// `bench/study/tradeoff.sh` runs it, draws docs/pictures/tradeoff_*.svg, and writes docs/tables/tradeoff.md.
 // Files on the command line: where a CSV file of all settings, and one of footprints on edges and wires, are left.
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Takes the figures of docs/tradeoff.md anew: runs bench_tradeoff of a build, draws docs/pictures/tradeoff_*.svg with gnuplot (Debian package:
-# gnuplot-nox), and puts the tables between the marks of the page. Takes some five minutes; nothing else should run. Errors and their
+# Takes the figures of docs/tables/tradeoff.md anew: runs bench_tradeoff of a build, draws docs/pictures/tradeoff_*.svg with gnuplot (Debian package:
+# gnuplot-nox), and writes the page. Takes some five minutes; nothing else should run. Errors and their
 # intervals do not depend on the machine; `--rounds 1 --seconds 0` takes them without times worth looking at.
 # Usage: tradeoff.sh [BUILD [OPTION]...]; build/release if not told. Options go to bench_tradeoff, as `--only facade`, to try something out: then
 # the pictures are left in BUILD and the tables printed, and the page stays as it is.
@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:-build/release}
-page=docs/tradeoff.md pictures=docs/pictures
+page=docs/tables/tradeoff.md pictures=docs/pictures
 [ $# -le 1 ] || page="" pictures=$build
 command -v gnuplot > /dev/null || { echo "tradeoff.sh: gnuplot is not there (Debian package: gnuplot-nox)" >&2; exit 1; }
 [ -x "$build/bench/bench_tradeoff" ] || { echo "tradeoff.sh: there is no $build/bench/bench_tradeoff; build it first" >&2; exit 1; }
@@ -80,16 +80,16 @@ halves() {
 {
   head -n 1 "$work/rows"
   if has facade; then
-    printf '\n### Rings and lattices on the facade\n\n'
+    printf '\n## Rings and lattices on the facade\n\n'
     halves
   fi
-  printf '\n### Rankings\n\nErrors of a setting by those of another: intervals of 95 %%. One with 1 inside is no ranking.\n\n'
+  printf '\n## Rankings\n\nErrors of a setting by those of another: intervals of 95 %%. One with 1 inside is no ranking.\n\n'
   grep -m 1 -A 1 '^| | range, from' "$work/rows" || true
   grep '^| `[a-z_]*: ' "$work/rows" || true
-  awk '/^float against double/ { print "\n### Float against double\n"; inside = 1 } inside' "$work/rows"
+  awk '/^float against double/ { print "\n## Float against double\n"; inside = 1 } inside' "$work/rows"
   for scenario in terrain wood_tripod wood_drone street facade step; do
     has "$scenario" || continue
-    printf '\n### `%s`\n\n' "$scenario"
+    printf '\n## `%s`\n\n' "$scenario"
     table "$scenario"
   done
 } > "$work/tables"
@@ -97,9 +97,6 @@ if [ -z "$page" ]; then
   cat "$work/tables"
   exit
 fi
-awk -v tables="$work/tables" '
-  /^<!-- figures: begin/ { print; print ""; while ((getline line < tables) > 0) print line; print ""; inside = 1 }
-  /^<!-- figures: end/ { inside = 0 }
-  !inside' "$page" > "$work/page"
+{ sed '/^`tradeoff`/Q' "$page"; cat "$work/tables"; } > "$work/page"
 cat "$work/page" > "$page"
 echo "done: $page, docs/pictures/tradeoff_*.svg, $csv" >&2

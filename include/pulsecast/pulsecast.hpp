@@ -55,7 +55,7 @@
 namespace PULSECAST_NAMESPACE {
 
 PULSECAST_USUAL class TriangleMesh<>;
-PULSECAST_USUAL class TriangleMesh<Bvh<float>, MaskTable>;
+PULSECAST_USUAL class TriangleMesh<Bvh<float>, detail::MaskTable>;
 PULSECAST_USUAL class Scene<TriangleMesh<>>;
 PULSECAST_USUAL class EchoSimulator<SingleRay, Scene<TriangleMesh<>>, FirstHit>;
 PULSECAST_USUAL class EchoSimulator<SingleRay, Scene<TriangleMesh<>>, FullWaveform<>>;

@@ -86,7 +86,7 @@ class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
 
  private:
   static std::vector<Emitter> emitters_of(Source& source) {
-    validate_in_place(source);
+    detail::validate_in_place(source);
     std::vector<Emitter> emitters = source.emitters();
     require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), source.size() > 0 ? 1 : 0,
                    max_emitters, "");

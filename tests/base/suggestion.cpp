@@ -11,15 +11,15 @@
 using namespace pulsecast::text;
 
 TEST_CASE("letters put in, left out, changed and swapped are counted") {
-  CHECK(edit_distance("", "") == 0);
-  CHECK(edit_distance("", "abc") == 3);
-  CHECK(edit_distance("pulseFreq_Hz", "pulseFreq_hz") == 0);
-  CHECK(edit_distance("kitten", "sitting") == 3);  // Levenshtein's textbook pair
-  CHECK(edit_distance("abcd", "acbd") == 1);
-  CHECK(edit_distance("ca", "abc") == 3);  // of the restricted distance: no part is edited twice
+  CHECK(detail::edit_distance("", "") == 0);
+  CHECK(detail::edit_distance("", "abc") == 3);
+  CHECK(detail::edit_distance("pulseFreq_Hz", "pulseFreq_hz") == 0);
+  CHECK(detail::edit_distance("kitten", "sitting") == 3);  // Levenshtein's textbook pair
+  CHECK(detail::edit_distance("abcd", "acbd") == 1);
+  CHECK(detail::edit_distance("ca", "abc") == 3);  // of the restricted distance: no part is edited twice
   for (const auto& [a, b] : {std::pair("trajectory_seperator", "trajectory_separator"), std::pair("axis", "aixs")}) {
-    CHECK(edit_distance(a, b) == 1);
-    CHECK(edit_distance(b, a) == 1);
+    CHECK(detail::edit_distance(a, b) == 1);
+    CHECK(detail::edit_distance(b, a) == 1);
   }
 }
 

@@ -154,7 +154,7 @@ int main() {
   const LeastSource<frame::World> source;
   const Survey recording{source, OwnFootprint{}, map, Receiver{}, OwnDetector{}};
   const Survey turning{source, TurningFootprint{}, map, Receiver{}, ListeningDetector{}};
-  (void)tail_of(OwnWidth{});
+  (void)detail::tail_of(OwnWidth{});
   const Scene<OwnShape> scene(std::vector<Scene<OwnShape>::Part>{});
   const Scene<WideShape> wide(std::vector<Scene<WideShape>::Part>{});
   const SurfaceLaw law = OwnLaw{};

@@ -46,7 +46,7 @@ double off_forward(const Vec3& d) { return std::atan2(std::hypot(d.x, d.z), d.y)
 /// Unit direction of one refracted ray; empty where `refract` does not return its lane.
 std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) {
   Vec3Lanes light(direction);
-  if (refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
+  if (detail::refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
   return light[0];
 }
 

@@ -25,9 +25,9 @@ std::vector<double> gaussian(double place) {
 TEST_CASE("each timing finds its point of a Gaussian, between the samples") {
   for (const double place : {29.6, 29.9, 30.0, 30.3}) {
     const auto y = gaussian(place);
-    const Vertex top = vertex(&y[30]);
+    const detail::Vertex top = detail::vertex(&y[30]);
     CAPTURE(place);
-    const auto time = [&](EchoTiming timing) { return echo_time(timing, y, 30, top, 2, 0.5); };
+    const auto time = [&](EchoTiming timing) { return detail::echo_time(timing, y, 30, top, 2, 0.5); };
     CHECK(top.height == doctest::Approx(8).epsilon(1e-4));
     CHECK(std::fabs(time(EchoTiming::peak) - place) < 1e-3);
     CHECK(time(EchoTiming::true_range) == time(EchoTiming::peak));
@@ -54,7 +54,7 @@ TEST_CASE("a centroid is that of what exceeds the level") {
 
 TEST_CASE("a quartic without a maximum gives the parabola's vertex") {
   const std::vector<double> y{5, 0, 1, 0, 5};
-  const Vertex top = vertex(&y[2]);
+  const detail::Vertex top = detail::vertex(&y[2]);
   CHECK(top.offset == 0);
   CHECK(top.height == 1);
 }

@@ -15,7 +15,7 @@
 namespace pulsecast::extremes {
 
 /// Checks a figure found at an extreme of an axis against the right one, and prints both as a row of the table of
-/// extremes in docs/validation.md. The bound is in the unit of the figures, which `what` names.
+/// extremes in docs/tables/extremes.md. The bound is in the unit of the figures, which `what` names.
 inline void row(const std::string& axis, const std::string& what, double expected, double found, double bound) {
   validation::detail::check_and_print(axis + " | " + what, expected, found, bound);
 }

@@ -41,7 +41,7 @@ Vec3 at_angle(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
 
 TEST_CASE("the facets' normals fill the plane, with the variance of their slope") {
   for (const double slope : {0.05, 0.2, 0.5, 1.0}) {
-    const Microfacets rough{.slope = slope};
+    const detail::Microfacets rough{.slope = slope};
     CHECK(over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * n.z; }, 2000) ==
           doctest::Approx(1).epsilon(1e-3));
     const double variance = over_hemisphere(
@@ -54,7 +54,7 @@ TEST_CASE("the area of facets that is seen from a direction is that of the plane
   // Smith's condition: the projected area of facets that face a direction, less what is hidden, is the cosine
   for (const double slope : {0.1, 0.4, 0.8})
     for (const double angle : {0.0, 0.5, 1.0, 1.4}) {
-      const Microfacets rough{.slope = slope};
+      const detail::Microfacets rough{.slope = slope};
       const Vec3 to = at_angle(angle);
       const double facing =
           over_hemisphere([&](const Vec3& n) { return rough.density(n.z) * std::max(0.0, dot(n, to)); }, 1500);
@@ -65,7 +65,7 @@ TEST_CASE("the area of facets that is seen from a direction is that of the plane
 TEST_CASE("facets scatter no more than they reflect, and the same both ways") {
   support::Generator any(3);
   for (const double slope : {0.1, 0.3, 0.7}) {
-    const Microfacets rough{.slope = slope, .index = 1.5};
+    const detail::Microfacets rough{.slope = slope, .index = 1.5};
     for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
       const Vec3 from = at_angle(degrees * 1_deg);
       const double all = over_hemisphere([&](const Vec3& to) { return rough.scattered(from, to, axis::up); });
@@ -76,7 +76,7 @@ TEST_CASE("facets scatter no more than they reflect, and the same both ways") {
   }
   for (int k = 0; k < 1000; ++k) {
     CAPTURE(k);
-    const Microfacets rough{.slope = any.uniform(0.05, 1), .index = any.uniform(1.1, 3)};
+    const detail::Microfacets rough{.slope = any.uniform(0.05, 1), .index = any.uniform(1.1, 3)};
     Vec3 a = any.unit(), b = any.unit();
     a.z = std::fabs(a.z);
     b.z = std::fabs(b.z);
@@ -88,25 +88,26 @@ TEST_CASE("facets scatter no more than they reflect, and the same both ways") {
 TEST_CASE("what returns to its source is the lobe's value there, up to what hides a facet both ways") {
   for (const double slope : {0.1, 0.4})
     for (const double angle : {0.0, 0.2, 0.6, 1.2}) {
-      const Microfacets rough{.slope = slope, .index = 1.33};
+      const detail::Microfacets rough{.slope = slope, .index = 1.33};
       const Vec3 to = at_angle(angle);
       const double hidden = rough.hidden(to.z),
                    once = pi * rough.scattered(to, to, axis::up) * (1 + 2 * hidden) / (1 + hidden);
       CHECK(rough.backscatter(to.z) == doctest::Approx(once).epsilon(1e-9));
     }
-  CHECK(Microfacets{}.backscatter(0) == 0);
-  CHECK(Microfacets{.slope = 0.1}.backscatter(1) == doctest::Approx(0.04 / (4 * 0.01)));  // F / (4 s^2)
+  CHECK(detail::Microfacets{}.backscatter(0) == 0);
+  CHECK(detail::Microfacets{.slope = 0.1}.backscatter(1) == doctest::Approx(0.04 / (4 * 0.01)));  // F / (4 s^2)
 }
 
 TEST_CASE("rough facets add their glint to what is scattered under them") {
   const Material m{.reflectance = 0.4, .law = Microfacet{0.3}};
   for (const double angle : {0.0, 0.3, 0.9, 1.4}) {
-    const double c = std::cos(angle), facets = Microfacets{0.3, 1.5}.reflected(c);
-    CHECK(m.backscatter(c, 1e-6) == doctest::Approx(Microfacets{0.3, 1.5}.backscatter(c) + (1 - facets) * 0.4 * c));
+    const double c = std::cos(angle), facets = detail::Microfacets{0.3, 1.5}.reflected(c);
+    CHECK(m.backscatter(c, 1e-6) ==
+          doctest::Approx(detail::Microfacets{0.3, 1.5}.backscatter(c) + (1 - facets) * 0.4 * c));
     CHECK(m.scattered_share(1e-6, c) == doctest::Approx(facets + (1 - facets) * 0.4));
     const Vec3 from{std::sin(angle), 0, c}, to{0, 0.6, 0.8};
     CHECK(m.scattered(from, to, axis::up, 1e-6) ==
-          doctest::Approx(pi * Microfacets{0.3, 1.5}.scattered(from, to, axis::up) + (1 - facets) * 0.4 * 0.8));
+          doctest::Approx(pi * detail::Microfacets{0.3, 1.5}.scattered(from, to, axis::up) + (1 - facets) * 0.4 * 0.8));
   }
   CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, 0.8}, axis::up, 1e-6) == doctest::Approx(0.32));
   CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, -0.8}, axis::up, 1e-6) == 0);

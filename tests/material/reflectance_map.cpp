@@ -27,15 +27,15 @@ Image two_pixels(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
 }  // namespace
 
 TEST_CASE("samples of a picture are linear shares of light by the curve of sRGB") {
-  CHECK(linear_share(0) == 0);
-  CHECK(linear_share(255) == 1);
-  CHECK(linear_share(10) == doctest::Approx(10.0 / 255 / 12.92));  // straight near black
-  CHECK(linear_share(188) == doctest::Approx(0.5).epsilon(0.01));  // middle grey
+  CHECK(detail::linear_share(0) == 0);
+  CHECK(detail::linear_share(255) == 1);
+  CHECK(detail::linear_share(10) == doctest::Approx(10.0 / 255 / 12.92));  // straight near black
+  CHECK(detail::linear_share(188) == doctest::Approx(0.5).epsilon(0.01));  // middle grey
 }
 
 TEST_CASE("a map is linear between the wavelengths of its channels, and constant beyond") {
   const ReflectanceMap map(two_pixels(255, 188, 0));
-  const double green = linear_share(188);
+  const double green = detail::linear_share(188);
   CHECK(map.reflectance(1064e-9, left, 0.9) == 1);
   CHECK(map.reflectance(612e-9, left, 0.9) == 1);
   CHECK(map.reflectance(549e-9, left, 0.9) == doctest::Approx(green));
@@ -87,7 +87,7 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
   rays.pad();
   std::array<Hit, 2> hits;
   scene.closest(rays, hits);
-  CHECK(hits[0].backscatter == doctest::Approx(linear_share(188) * hits[0].cos_incidence));
+  CHECK(hits[0].backscatter == doctest::Approx(detail::linear_share(188) * hits[0].cos_incidence));
   CHECK(hits[1].backscatter == 0);
   for (std::size_t j = 0; j < 2; ++j) {
     std::array<Hit, 1> alone;
@@ -97,7 +97,7 @@ TEST_CASE("hits of a mapped surface have the backscatter of their pixels, in a b
     REQUIRE(hit);
     const SurfaceInteraction point = scene.surface(*hit, rays.ray(j));
     CHECK(point.material->reflectance_at(rays.wavelength, point.texture) ==
-          doctest::Approx(j == 0 ? linear_share(188) : 0));
+          doctest::Approx(j == 0 ? detail::linear_share(188) : 0));
   }
 }
 

@@ -24,7 +24,7 @@ struct Throwing : Least {
 };
 
 static_assert(ScatteringLaw<Least> && ScatteringLaw<Lambert> && !ScatteringLaw<Throwing> && !ScatteringLaw<int>);
-static_assert(!TakesSurfaceLight<Least> && TakesSurfaceLight<Lambert>);
+static_assert(!detail::TakesSurfaceLight<Least> && detail::TakesSurfaceLight<Lambert>);
 static_assert(!ScattersBetween<Least> && ScattersBetween<Between> && detail::members_checked<Between>);
 static_assert(ScattersInLanes<Phong> && !ScattersInLanes<Lambert> && !ScattersInLanes<Least>);
 static_assert(!SamplesDirections<Between> && !Retroreflects<Between> && !ReflectsInterface<Between>);
@@ -33,7 +33,7 @@ static_assert(!SamplesDirections<Between> && !Retroreflects<Between> && !Reflect
 
 TEST_CASE("a law is told the light of the surface, or its wavelength alone") {
   const SurfaceLight light{1e-6, 0.3, 1.33};
-  CHECK(&taken_by<Lambert>(light) == &light);
-  CHECK(taken_by<Least>(light) == 1e-6);
+  CHECK(&detail::taken_by<Lambert>(light) == &light);
+  CHECK(detail::taken_by<Least>(light) == 1e-6);
   CHECK(SurfaceLight{1e-6}.reflectance == 1);
 }

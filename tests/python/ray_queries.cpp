@@ -20,7 +20,7 @@
 using namespace pulsecast;
 namespace py = pybind11;
 
-static_assert(sizeof(python::HitRow) == 128);
+static_assert(sizeof(python::detail::HitRow) == 128);
 
 namespace {
 

@@ -75,7 +75,7 @@ TEST_CASE("a mask has a bit a pixel, by a channel and a cutoff") {
 
 TEST_CASE("a table of masks tells holes by material and texture coordinates") {
   const Mask half = Mask::of(grey(2, 1, [](std::size_t i) { return static_cast<std::uint8_t>(i == 0 ? 0 : 255); }), 0);
-  const MaskTable table(std::vector<Mask>{{}, half});
+  const pulsecast::detail::MaskTable table(std::vector<Mask>{{}, half});
   CHECK_FALSE(table.empty());
   CHECK(table.is_consistent());
   CHECK_FALSE(table.covers(0));
@@ -84,7 +84,7 @@ TEST_CASE("a table of masks tells holes by material and texture coordinates") {
   CHECK_FALSE(table.solid(1, {0.25, 0.5}));
   CHECK(table.solid(1, {0.75, 0.5}));
   CHECK(table.solid(1, {-0.25, 7.5}));  // pictures repeat
-  CHECK(MaskTable(std::vector<Mask>(3)).empty());
+  CHECK(pulsecast::detail::MaskTable(std::vector<Mask>(3)).empty());
 }
 
 TEST_CASE("light goes on through the holes of a mask, and meets what is behind") {

@@ -29,7 +29,7 @@ double height_variance(const std::vector<SineWave>& waves) {
 }
 
 /// Significant wave height of a spectrum between two wavenumbers: four standard deviations of the height.
-double significant_height(const WindSpectrum& spectrum, double from, double to) {
+double significant_height(const pulsecast::detail::WindSpectrum& spectrum, double from, double to) {
   const int steps = 50000;
   const double step = std::log(to / from) / steps;
   double sum = 0;
@@ -101,7 +101,7 @@ TEST_CASE("the significant wave height is that of the spectrum") {
     for (const double fetch : {std::numeric_limits<double>::infinity(), 3e4, 3e3}) {
       CAPTURE(speed);
       CAPTURE(fetch);
-      const WindSpectrum spectrum(speed, fetch);
+      const pulsecast::detail::WindSpectrum spectrum(speed, fetch);
       const double whole = significant_height(spectrum, spectrum.peak() / 50, 2 * pi / 3e-3);
       for (const std::size_t components : {32U, 96U})
         CHECK(
@@ -110,13 +110,13 @@ TEST_CASE("the significant wave height is that of the spectrum") {
     }
   // in light winds slopes of all waves are less than those of the spectrum, and heights with them
   const double light = 4 * std::sqrt(height_variance(waves_of({.wind_speed = 2})));
-  CHECK(light < significant_height(WindSpectrum(2, 1e9), 0.05, 2e3));
-  CHECK(light > 0.7 * significant_height(WindSpectrum(2, 1e9), 0.05, 2e3));
+  CHECK(light < significant_height(pulsecast::detail::WindSpectrum(2, 1e9), 0.05, 2e3));
+  CHECK(light > 0.7 * significant_height(pulsecast::detail::WindSpectrum(2, 1e9), 0.05, 2e3));
 }
 
 TEST_CASE("a fully developed sea is as high, and peaks where, others have found") {
   for (const double speed : {5.0, 10.0, 20.0}) {
-    const WindSpectrum spectrum(speed, std::numeric_limits<double>::infinity());
+    const pulsecast::detail::WindSpectrum spectrum(speed, std::numeric_limits<double>::infinity());
     // 0.21 U^2/g of the wind at 19.5 m, 1.026 times that at 10 m: Pierson & Moskowitz 1964, as in Stewart 2008,
     // section 16.4
     const double height = 0.21 * std::pow(1.026 * speed, 2) / 9.81;
@@ -125,11 +125,11 @@ TEST_CASE("a fully developed sea is as high, and peaks where, others have found"
     CHECK(std::sqrt(9.80665 / spectrum.peak()) == relative(speed / 0.84, 1e-6));
   }
   // the youngest sea that the spectrum describes
-  CHECK(WindSpectrum(10, 1).peak() == relative(25 * 9.80665 / 100, 1e-12));
+  CHECK(pulsecast::detail::WindSpectrum(10, 1).peak() == relative(25 * 9.80665 / 100, 1e-12));
   // less fetch, lower and shorter waves
   double height = 100, peak = 0;
   for (const double fetch : {1e6, 1e5, 1e4, 1e3}) {
-    const WindSpectrum spectrum(10, fetch);
+    const pulsecast::detail::WindSpectrum spectrum(10, fetch);
     const double lower = significant_height(spectrum, spectrum.peak() / 50, 2e3);
     CHECK(lower < height);
     CHECK(spectrum.peak() > peak);
@@ -140,7 +140,7 @@ TEST_CASE("a fully developed sea is as high, and peaks where, others have found"
 
 TEST_CASE("the spectrum alone has nearly the slopes of Cox & Munk, as it was made to have") {
   for (const double speed : {5.0, 7.0, 10.0, 15.0}) {
-    const WindSpectrum spectrum(speed, std::numeric_limits<double>::infinity());
+    const pulsecast::detail::WindSpectrum spectrum(speed, std::numeric_limits<double>::infinity());
     double sum = 0;
     const int steps = 20000;
     const double from = spectrum.peak() / 20, step = std::log(1e4 / from) / steps;
@@ -155,7 +155,7 @@ TEST_CASE("waves travel with the wind, and the longest most of all") {
   for (const SineWave& wave : waves_of({.wind_speed = 8, .toward = toward, .components = 512}))
     CHECK(std::cos(wave.toward - toward) > 0);
   for (const double turn : {-6.28, 6.28}) CHECK_NOTHROW(WaveField(waves_of({.toward = turn})));
-  const WindSpectrum spectrum(8, 1e9);
+  const pulsecast::detail::WindSpectrum spectrum(8, 1e9);
   CHECK(spectrum.spread(spectrum.peak()) > 0.99);
   CHECK(spectrum.spread(10.0) < 0.5);
 }
@@ -173,7 +173,7 @@ TEST_CASE("waves are as long as asked for, and of the seed only") {
   CHECK(waves.size() == 200);
   for (const SineWave& wave : waves) {
     CHECK(wave.wavelength >= 0.05);
-    CHECK(wave.wavelength <= 8 * pi / WindSpectrum(6, 1e12).peak());
+    CHECK(wave.wavelength <= 8 * pi / pulsecast::detail::WindSpectrum(6, 1e12).peak());
   }
   const auto same = [](const std::vector<SineWave>& a, const std::vector<SineWave>& b) {
     bool equal = a.size() == b.size();

@@ -226,6 +226,13 @@ differences_of_table() {
 }
 rule "the README's table lists the public headers" differences_of_table
 
+# shellcheck disable=SC2046
+rule 'every public name stands on a page' awk -f tests/structure/public_names.awk README.md docs/*.md $(echo "$headers" | grep -v /detail/)
+
+# Links from page to page, to headings of them, and to other files of the tree.
+# shellcheck disable=SC2046
+rule 'every link of a page leads somewhere' awk -f tests/structure/links.awk ./*.md $(find docs -name '*.md')
+
 # Every C++ block of the README is a whole example, without its licence lines.
 blocks=$(mktemp -d) || exit 2
 trap 'rm -rf "$violations" "$blocks"' EXIT

@@ -13,7 +13,7 @@ tried=0
 fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
   cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
-  mkdir docs && cp -R "$root/docs/packaging" docs || exit 2
+  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
   cp "$root"/*.md "$root"/*.json . 2> /dev/null
 }
 
@@ -89,6 +89,14 @@ notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
 notices 'pulsecast.hpp includes the contract and the pipeline' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
 notices 'every header has its test' 'rm tests/base/frame.cpp'
 notices 'CMakeLists.txt knows what a header needs' "$add #include <pugixml.hpp>\" include/pulsecast/io/las.hpp"
+public='every public name stands on a page'
+notices "$public" "echo 'struct Unmentioned {};' >> include/pulsecast/echo.hpp"
+notices "$public" "echo '[[nodiscard]] inline std::array<int, 2> unmentioned(int a) noexcept;' >> include/pulsecast/echo.hpp"
+notices "$public" "echo 'template <class T> inline constexpr bool unmentioned = true;' >> include/pulsecast/echo.hpp"
+notices "$public" "sed -i 's/LinkBudget//g' docs/*.md"
+links='every link of a page leads somewhere'
+notices "$links" 'rm docs/tables/extremes.md'
+notices "$links" 'sed -i "s/^## Ray queries/## Queries/" docs/scenes.md && echo "[queries](docs/scenes.md#ray-queries)" >> README.md'
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
 versions='every page and recipe states the version of version.hpp'

@@ -35,7 +35,7 @@ namespace {
 [[nodiscard, maybe_unused]] AnswerOfFile answer_of_this_file() {
   using Mesh = TriangleMesh<>;
   using Intersect = void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&,
-                         const SolidEverywhere&) noexcept;
+                         const detail::SolidEverywhere&) noexcept;
   MeshData ridge;
   for (std::uint32_t i = 0; i < 60; ++i) {
     const double x = 2.0 * i - 60, height = 3 * (i % 7) + 0.25 * (i % 3);
@@ -61,10 +61,10 @@ namespace {
   for (const Rotation& r :
        {pose.rotation, no_rotation, aimed_at(0.4, 0.2).rotation, rotation_of(matrix_of(pose.rotation))})
     numbers.insert(numbers.end(), {r.w, r.x, r.y, r.z, (r * axis::forward).x, (r * axis::forward).z});
-  AnswerOfFile answer{
-      std::make_unique<double[]>(numbers.size()), numbers.size(),
-      reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>)),
-      typeid(pose).name()};
+  AnswerOfFile answer{std::make_unique<double[]>(numbers.size()), numbers.size(),
+                      reinterpret_cast<const void*>(
+                          static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, detail::SolidEverywhere>)),
+                      typeid(pose).name()};
   std::copy(numbers.begin(), numbers.end(), answer.numbers.get());
   return answer;
 }

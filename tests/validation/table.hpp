@@ -66,7 +66,7 @@ inline void check_and_print(const std::string& head, double expected, double fou
 }
 }  // namespace detail
 
-/// Checks a simulated figure against the expected one, and prints both as a row of a table in docs/validation.md. The
+/// Checks a simulated figure against the expected one, and prints both as a row of docs/tables/validation.md. The
 /// tolerance is in the unit of the figures, which `what` names.
 inline void row(Kind kind, const std::string& what, double expected, double simulated, double tolerance) {
   detail::check_and_print(what + " | " + name_of(kind), expected, simulated, tolerance);

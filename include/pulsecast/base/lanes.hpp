@@ -12,8 +12,6 @@
 /// tick or pose, so a motion's pose does not depend on the other lanes.
 namespace PULSECAST_NAMESPACE {
 
-/// One number in all lanes, with its sign if it is zero.
-[[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
 /// Mask of all lanes.
 [[nodiscard]] inline simd::Mask all_lanes() noexcept { return simd::Mask{} - 1; }
 /// Mask of the first n lanes.
@@ -24,6 +22,9 @@ namespace PULSECAST_NAMESPACE {
 }
 
 namespace detail {
+
+/// One number in all lanes, with its sign if it is zero.
+[[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
 
 /// Rounding error of a product, exact while products of halves neither overflow nor underflow. Source: Dekker 1971, A
 /// floating-point technique for extending the available precision, with the halves of Veltkamp.
@@ -48,7 +49,7 @@ struct TickLanes {
   TickLanes() = default;
   TickLanes(const simd::Doubles& whole, const simd::Doubles& part) noexcept : second(whole), fraction(part) {}
   explicit TickLanes(const Tick& t) noexcept
-      : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
+      : second(detail::in_all_lanes(static_cast<double>(t.second))), fraction(detail::in_all_lanes(t.fraction)) {}
 
   /// Begins of the slots from i on of a source of constant rate [Hz], as `Tick::of`.
   [[nodiscard]] static TickLanes of(PulseIndex i, double rate) noexcept {
@@ -107,7 +108,8 @@ struct Vec3Lanes {
 
   Vec3Lanes() = default;
   Vec3Lanes(const simd::Doubles& x_, const simd::Doubles& y_, const simd::Doubles& z_) noexcept : x(x_), y(y_), z(z_) {}
-  explicit Vec3Lanes(const Vec3& v) noexcept : x(in_all_lanes(v.x)), y(in_all_lanes(v.y)), z(in_all_lanes(v.z)) {}
+  explicit Vec3Lanes(const Vec3& v) noexcept
+      : x(detail::in_all_lanes(v.x)), y(detail::in_all_lanes(v.y)), z(detail::in_all_lanes(v.z)) {}
 
   [[nodiscard]] Vec3 operator[](std::size_t lane) const noexcept { return {x[lane], y[lane], z[lane]}; }
   void set(std::size_t lane, const Vec3& v) noexcept {
@@ -133,17 +135,20 @@ struct Vec3Lanes {
 
 /// Rotations, one in each lane: unit quaternions.
 struct RotationLanes {
-  simd::Doubles w = in_all_lanes(1);  ///< real parts
-  simd::Doubles x{};                  ///< first imaginary parts
-  simd::Doubles y{};                  ///< second imaginary parts
-  simd::Doubles z{};                  ///< third imaginary parts
+  simd::Doubles w = detail::in_all_lanes(1);  ///< real parts
+  simd::Doubles x{};                          ///< first imaginary parts
+  simd::Doubles y{};                          ///< second imaginary parts
+  simd::Doubles z{};                          ///< third imaginary parts
 
   RotationLanes() = default;
   RotationLanes(const simd::Doubles& w_, const simd::Doubles& x_, const simd::Doubles& y_,
                 const simd::Doubles& z_) noexcept
       : w(w_), x(x_), y(y_), z(z_) {}
   explicit RotationLanes(const Rotation& r) noexcept
-      : w(in_all_lanes(r.w)), x(in_all_lanes(r.x)), y(in_all_lanes(r.y)), z(in_all_lanes(r.z)) {}
+      : w(detail::in_all_lanes(r.w)),
+        x(detail::in_all_lanes(r.x)),
+        y(detail::in_all_lanes(r.y)),
+        z(detail::in_all_lanes(r.z)) {}
   /// About a unit axis, by an angle [rad].
   [[nodiscard]] static RotationLanes about(const Vec3& axis, const simd::Doubles& angle) noexcept {
     const auto half = simd::sincos(simd::Doubles(0.5 * angle));

@@ -38,6 +38,15 @@ struct RandomKey {
   std::uint32_t part = 0;            ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
 };
 
+namespace detail {
+
+/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
+template <class... Lower>
+[[nodiscard]] constexpr double polynomial(double x, double value, Lower... lower) noexcept {
+  ((value = value * x + lower), ...);
+  return value;
+}
+
 /// Philox4x32-10 generator: four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                                             std::array<std::uint32_t, 2> key) noexcept {
@@ -52,11 +61,14 @@ struct RandomKey {
   return counter;
 }
 
+}  // namespace detail
+
 /// Four random words of a key. Purposes are below 256, so the part takes the upper bits of their word.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> random_words(const RandomKey& k) noexcept {
   const std::uint32_t purpose = static_cast<std::uint32_t>(k.purpose) ^ k.part << 8;
-  return philox({static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, purpose},
-                {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
+  return detail::philox(
+      {static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, purpose},
+      {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
 }
 
 /// Uniform draw from the open interval (0, 1), so that its logarithm is finite; 52 random bits.
@@ -65,17 +77,6 @@ struct RandomKey {
   const std::uint64_t bits = (std::uint64_t{words[0]} << 20) | (words[1] >> 12);
   return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }
-
-namespace detail {
-
-/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
-template <class... Lower>
-[[nodiscard]] constexpr double polynomial(double x, double value, Lower... lower) noexcept {
-  ((value = value * x + lower), ...);
-  return value;
-}
-
-}  // namespace detail
 
 /// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source: Wichura 1988,
 /// algorithm AS 241 (PPND16).

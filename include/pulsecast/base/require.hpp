@@ -97,6 +97,8 @@ PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", v
                           &&!pulsecast::Validated<T>)
 PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, ())
 
+namespace detail {
+
 /// Validates settings in place, and normalizes them. Throws a `SettingError`.
 template <class Settings>
 void validate_in_place(Settings& settings) {
@@ -105,10 +107,12 @@ void validate_in_place(Settings& settings) {
   if constexpr (Normalizable<Settings>) settings.normalize();
 }
 
+}  // namespace detail
+
 /// Settings of a stage, validated and normalized. Throws a `SettingError`.
 template <class Settings>
 [[nodiscard]] Settings validated(Settings settings) {
-  validate_in_place(settings);
+  detail::validate_in_place(settings);
   return settings;
 }
 

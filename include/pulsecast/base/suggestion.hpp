@@ -16,6 +16,8 @@
 /// Known names in place of a misspelt one, for messages.
 namespace PULSECAST_NAMESPACE::text {
 
+namespace detail {
+
 /// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored.
 /// Source: optimal string alignment distance, Damerau 1964.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -35,6 +37,8 @@ namespace PULSECAST_NAMESPACE::text {
   return last[b.size()];
 }
 
+}  // namespace detail
+
 /// Known name, and its edit distance from a word.
 struct NearestName {
   std::string_view name;     ///< the known name
@@ -46,7 +50,7 @@ struct NearestName {
   constexpr std::size_t longest = 100;  // bytes that count, as the time grows with their product
   NearestName nearest;
   for (const std::string_view name : known) {
-    const std::size_t distance = edit_distance(word.substr(0, longest), name.substr(0, longest));
+    const std::size_t distance = detail::edit_distance(word.substr(0, longest), name.substr(0, longest));
     if (nearest.name.data() == nullptr || distance < nearest.distance) nearest = {name, distance};
   }
   return nearest;

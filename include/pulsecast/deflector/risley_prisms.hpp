@@ -22,6 +22,8 @@ struct Prism {
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
 };
 
+namespace detail {
+
 /// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from
 /// the front of the face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by
 /// that after it. Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
@@ -33,6 +35,8 @@ inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double 
       normalize(ratios * direction + (ratios * cosine - simd::sqrt(simd::Doubles(1.0 - sine_squared))) * normal);
   return passes;
 }
+
+}  // namespace detail
 
 /// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked.
 /// The wedges bend the beam without shifting it: thickness and distance are neglected.
@@ -86,8 +90,8 @@ struct RisleyPrisms {
       const double aside = p.inclined_exit ? -wedge.sin : wedge.sin;
       const Vec3Lanes square(-axis::forward), inclined{turn.sin * aside, simd::Doubles{} - wedge.cos, turn.cos * aside};
       const double ratio = surrounding_index / p.refractive_index;
-      passes &= refract(light, p.inclined_exit ? square : inclined, ratio);
-      passes &= refract(light, p.inclined_exit ? inclined : square, 1 / ratio);
+      passes &= detail::refract(light, p.inclined_exit ? square : inclined, ratio);
+      passes &= detail::refract(light, p.inclined_exit ? inclined : square, 1 / ratio);
     }
     return passes;
   }

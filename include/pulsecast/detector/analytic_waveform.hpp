@@ -306,7 +306,7 @@ class AnalyticWaveform {
     if (reflections.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };
     const auto last = std::partition_point(reflections.begin() + 1, reflections.end(), before(peak.end)) - 1;
-    const double end = std::fmin(peak.end, arrival(*last) + tail_of(width_) * shape.tau);
+    const double end = std::fmin(peak.end, arrival(*last) + detail::tail_of(width_) * shape.tau);
     const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(max_samples - 2));
     const double faded = peak.begin - SampledSum::negligible * shape.tau;
     const auto first = std::partition_point(reflections.begin(), reflections.end(), before(faded));

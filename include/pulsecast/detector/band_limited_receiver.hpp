@@ -138,7 +138,7 @@ class BandLimitedReceiver {
     const auto top = static_cast<std::size_t>(
         std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
     if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};  // on their flank
-    const Vertex between = vertex(&y[top]);
+    const detail::Vertex between = detail::vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
     const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);
     OnlyPeak only{(from + mark) * s.sample_interval - pulse.peak(), between.height};

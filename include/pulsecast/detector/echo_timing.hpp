@@ -27,6 +27,8 @@ enum class EchoTiming : std::uint8_t {
   centroid,           ///< centre of mass of what exceeds a tenth of the maximum
 };
 
+namespace detail {
+
 /// Maximum of a waveform between its samples.
 struct Vertex {
   double offset, height;  ///< offset from the middle sample [samples]; power [W]
@@ -49,8 +51,6 @@ struct Vertex {
   const double height = y[0] + x * (c1 + x * (c2 + x * (c3 + x * c4)));
   return height >= y[0] ? Vertex{x, height} : Vertex{middle, y[0] + 0.25 * middle * (y[1] - y[-1])};
 }
-
-namespace detail {
 
 /// Place [samples] at which samples rise to a level before the peak at index i: on the cubic through the four samples
 /// about it. The lowest place before the peak, if they do not fall below the level there.
@@ -108,8 +108,6 @@ namespace detail {
   return place;
 }
 
-}  // namespace detail
-
 inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `centroid` weighs samples
 
 /// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is
@@ -121,6 +119,8 @@ inline constexpr double centroid_level = 0.1;  ///< share of the maximum above w
   if (timing == EchoTiming::centroid) return detail::centroid_about(y, i, centroid_level * top.height);
   return static_cast<double>(i) + top.offset;
 }
+
+}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE
 

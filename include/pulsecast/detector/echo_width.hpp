@@ -57,6 +57,8 @@ struct MomentWidth {
   [[nodiscard]] double width(const WaveformMoments& moments) const noexcept { return moments.deviation(); }
 };
 
+namespace detail {
+
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
@@ -66,6 +68,8 @@ template <EchoWidth Width>
   else
     return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;
 }
+
+}  // namespace detail
 
 /// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence.
 /// Sampled every `interval` [s]; not for the hot path.

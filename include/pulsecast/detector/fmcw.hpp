@@ -293,7 +293,7 @@ class Fmcw {
         std::shift_left(y.begin(), y.end(), 1);
         y[4] = power_at(lines, haze, noise, g * grid);
         if (g < begin + 4 || !(y[2] >= s_.threshold && y[2] > y[1] && y[2] >= y[3])) continue;
-        const Vertex top = vertex(&y[2]);
+        const detail::Vertex top = detail::vertex(&y[2]);
         keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);
       }
     }

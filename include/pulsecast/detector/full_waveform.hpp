@@ -218,8 +218,8 @@ class FullWaveform {
   /// Time after the peak of its last pulse up to which a waveform affects a width or a time [tau]. Of pulses that have
   /// passed their peaks, the sum falls at least as fast as one that is at its peak.
   [[nodiscard]] double tail() const noexcept {
-    const double of_time = s_.timing == EchoTiming::centroid ? PulseShape::fallen_to(centroid_level) : 0;
-    return std::fmax(tail_of(width_), of_time);
+    const double of_time = s_.timing == EchoTiming::centroid ? PulseShape::fallen_to(detail::centroid_level) : 0;
+    return std::fmax(detail::tail_of(width_), of_time);
   }
 
   [[nodiscard]] double reach_of(const Laser& laser) const noexcept {
@@ -300,7 +300,7 @@ class FullWaveform {
     }
     const std::size_t k = top.y[3] > top.y[2] ? 3 : 2;
     if (!(top.y[k] > top.y[k - 1] && top.y[k] >= top.y[k + 1])) return {};
-    const Vertex at = vertex(&top.y[k]);
+    const detail::Vertex at = detail::vertex(&top.y[k]);
     const double peak = time(static_cast<double>(k) + at.offset);
     const double mark = s_.timing == EchoTiming::true_range ? 2 * group.mean_range() / speed_of_light : peak;
     return OnlyPeak{mark, at.height, &group.strongest((peak - group.last_edge()) / shape.tau)};
@@ -313,7 +313,7 @@ class FullWaveform {
     if (!sample(group, shape, samples)) return false;
     const auto& y = samples.y;
     const std::size_t top = y[3] > y[2] ? 3 : 2;
-    const auto [offset, height] = vertex(&y[top]);
+    const auto [offset, height] = detail::vertex(&y[top]);
     if (height < s_.threshold) return true;
     const double time = (samples.first + static_cast<double>(top) + offset) * s_.sample_interval;
     const Echo echo = group.echo(time, height, s_.timing);

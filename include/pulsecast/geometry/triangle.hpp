@@ -49,12 +49,28 @@ struct Triangle {
   }
 };
 
+namespace detail {
+
+/// Hits that may need no further test, as `AnyHit` does after the first.
+template <class Hits>
+concept EndsEarly = requires(const Hits& hits) {
+  { hits.done() }
+  noexcept->std::same_as<bool>;
+};
+
+/// Triangles without holes.
+struct SolidEverywhere {
+  bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
+};
+
 /// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate to where it is used.
 struct TriangleRef {
   const Vec3& a;  ///< first corner [m]
   const Vec3& b;  ///< second corner [m]
   const Vec3& c;  ///< third corner [m]
 };
+
+}  // namespace detail
 
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
 struct TrianglePacket {
@@ -83,11 +99,6 @@ struct TrianglePacket {
   }
 };
 
-/// Triangles without holes.
-struct SolidEverywhere {
-  bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
-};
-
 /// Intersects the triangles of these primitives with every ray of a bundle, or with a `SingleRayPacket`: the deciding
 /// test, always in double precision.
 ///
@@ -101,12 +112,12 @@ struct SolidEverywhere {
 /// takes those with `solid(j, primitive)`, of ray j, as outside the holes of a mask. Never inlined, so that every
 /// accelerator gets the same bits. Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of
 /// Shevtsov, Soupikov & Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
-template <class Rays, class Hits, class Solid = SolidEverywhere>
+template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 [[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives,
                                  const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
-  constexpr bool with_holes = !std::is_same_v<Solid, SolidEverywhere>;
+  constexpr bool with_holes = !std::is_same_v<Solid, detail::SolidEverywhere>;
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
   const auto magnitude = [](const simd::Doubles& v) noexcept {
@@ -257,22 +268,15 @@ template <class Rays, class Hits, class Solid = SolidEverywhere>
   }
 }
 
-/// Hits that may need no further test, as `AnyHit` does after the first.
-template <class Hits>
-concept EndsEarly = requires(const Hits& hits) {
-  { hits.done() }
-  noexcept->std::same_as<bool>;
-};
-
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
-template <class TriangleOf, class Rays, class Hits, class Solid = SolidEverywhere>
+template <class TriangleOf, class Rays, class Hits, class Solid = detail::SolidEverywhere>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays,
                Hits& nearest, const Solid& solid = {}) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
     const TrianglePacket triangles(count, [&](std::size_t n) noexcept { return triangle_of(first + n); });
     intersect(triangles, primitives.subspan(first, count), rays, nearest, solid);
-    if constexpr (EndsEarly<Hits>)
+    if constexpr (detail::EndsEarly<Hits>)
       if (nearest.done()) return;
   }
 }

@@ -14,6 +14,8 @@
 /// Contract: closed forms of light at a rough surface of small smooth facets, whose slopes are Gaussian.
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+
 /// Rough surface: facets whose slope has a root mean square of `slope` in all, of a refractive index.
 struct Microfacets {
   double slope = 0.3;  ///< root mean square of the slope, both axes together, greater than 0
@@ -58,6 +60,8 @@ struct Microfacets {
   }
 };
 
+}  // namespace detail
+
 /// Light reflected by rough facets, and Lambert's law for the rest: varnish, wet ground, rippled water. The facets have
 /// the refractive index of the material's body, or 1.5. They weaken the light of the rest on its way in only, so that
 /// light towards other directions is not quite reciprocal.
@@ -69,7 +73,7 @@ struct Microfacet {
   /// @throws SettingError for values out of range
   void validate() const { require_within("Microfacet::slope", slope, 1e-3, 2, ""); }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {
-    const Microfacets facets{slope, light.relative_index};
+    const detail::Microfacets facets{slope, light.relative_index};
     return facets.backscatter(cosine) + (1 - facets.reflected(cosine)) * light.reflectance * cosine;
   }
   double scattered_share(double cosine, const SurfaceLight& light) const noexcept {
@@ -77,7 +81,7 @@ struct Microfacet {
     return by_facets + (1 - by_facets) * Lambert{}.scattered_share(cosine, light);
   }
   double scattered(const Vec3& in, const Vec3& out, const Vec3& normal, const SurfaceLight& light) const noexcept {
-    const Microfacets facets{slope, light.relative_index};
+    const detail::Microfacets facets{slope, light.relative_index};
     return pi * facets.scattered(in, out, normal) +
            (1 - facets.reflected(dot(in, normal))) * Lambert{}.scattered(in, out, normal, light);
   }

@@ -22,7 +22,7 @@ struct NormalizedPhong {
   }
   simd::Doubles backscatter(const simd::Doubles& cosine, const SurfaceLight& light) const noexcept {
     const double height = share * (exponent + 2) / 2;
-    return light.reflectance * cosine * (1 - share + height * mirror_lobe(cosine, exponent));
+    return light.reflectance * cosine * (1 - share + height * detail::mirror_lobe(cosine, exponent));
   }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {
     return backscatter(simd::Doubles{} + cosine, light)[0];

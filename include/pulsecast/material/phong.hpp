@@ -11,6 +11,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+
 /// Lobe about the mirror direction, twice the incidence away, where it is 1; 0 from 90 degrees on. Error at most 1e-14.
 [[nodiscard, gnu::always_inline]] inline simd::Doubles mirror_lobe(const simd::Doubles& cosine,
                                                                    double exponent) noexcept {
@@ -20,6 +22,8 @@ namespace PULSECAST_NAMESPACE {
                                   : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(base)));
   return base > 0 ? power : simd::Doubles{};
 }
+
+}  // namespace detail
 
 /// Lambert's law and a specular lobe that is as high as a white Lambertian surface, whatever its exponent. Light into
 /// other directions than back is that of Lambert's law. Source: Jutzi & Gross 2009.
@@ -33,7 +37,7 @@ struct Phong {
     require_not_negative("Phong::exponent", exponent, "");
   }
   simd::Doubles backscatter(const simd::Doubles& cosine, const SurfaceLight& light) const noexcept {
-    return light.reflectance * ((1 - share) * cosine + share * mirror_lobe(cosine, exponent));
+    return light.reflectance * ((1 - share) * cosine + share * detail::mirror_lobe(cosine, exponent));
   }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {
     return backscatter(simd::Doubles{} + cosine, light)[0];

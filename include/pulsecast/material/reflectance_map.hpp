@@ -14,6 +14,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+
 /// Linear share of light, from 0 to 1, of a sample of a picture. Source: IEC 61966-2-1 (sRGB).
 [[nodiscard]] inline double linear_share(std::uint8_t sample) noexcept {
   static const auto table = [] {
@@ -26,6 +28,8 @@ namespace PULSECAST_NAMESPACE {
   }();
   return table[sample];
 }
+
+}  // namespace detail
 
 /// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
 /// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all
@@ -51,7 +55,7 @@ struct ReflectanceMap final : ReflectanceByTexture {
     for (std::size_t k = 0; k < 3; ++k) {
       double sum = 0;
       for (std::size_t i = 0; i < pixels; ++i)
-        sum += linear_share(map.image.samples[i * map.image.channels + map.channel(k)]);
+        sum += detail::linear_share(map.image.samples[i * map.image.channels + map.channel(k)]);
       map.mean[static_cast<int>(k)] = sum > 0 ? sum / static_cast<double>(pixels) : 1;
     }
     return map;
@@ -72,7 +76,7 @@ struct ReflectanceMap final : ReflectanceByTexture {
   [[nodiscard]] double reflectance(double wavelength, Vec2 texture, double even) const noexcept override {
     const auto pixel = image.at(texture);
     const auto at = [&](std::size_t k) noexcept {
-      const double share = linear_share(pixel[channel(k)]);
+      const double share = detail::linear_share(pixel[channel(k)]);
       return mean == Vec3{} ? share : share / mean[static_cast<int>(k)];
     };
     const auto& w = wavelengths;

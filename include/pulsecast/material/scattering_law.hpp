@@ -38,6 +38,16 @@ template <class L>
 concept BackscattersSurfaceLight = requires(const L law, const SurfaceLight& light) { law.backscatter(1.0, light); };
 template <class L>
 concept ScattersSurfaceLight = requires(const L law, const Vec3& v, const SurfaceLight& light) { law.scattered(v, v, v, light); };
+/// Law that takes a `SurfaceLight`, in all its members.
+template <class L>
+concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
+
+/// Light as a law takes it.
+template <class L>
+[[nodiscard]] const auto& taken_by(const SurfaceLight& light) noexcept {
+  if constexpr (TakesSurfaceLight<L>) return light;
+  else return light.wavelength;
+}
 /// Type with a member of a law, in any form: meant to be one.
 template <class L>
 concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_share; } || Backscatters<L> || TellsShare<L>;
@@ -53,21 +63,10 @@ concept MeantAsLaw = requires { &L::backscatter; } || requires { &L::scattered_s
 template <class L>
 concept ScatteringLaw = std::copyable<L> && detail::Backscatters<L> && detail::TellsShare<L>;
 
-/// Law that takes a `SurfaceLight`, in all its members.
-template <class L>
-concept TakesSurfaceLight = requires(const L law, const SurfaceLight& light) { law.scattered_share(1.0, light); };
-
-/// Light as a law takes it.
-template <ScatteringLaw L>
-[[nodiscard]] const auto& taken_by(const SurfaceLight& light) noexcept {
-  if constexpr (TakesSurfaceLight<L>) return light;
-  else return light.wavelength;
-}
-
 /// Law that is evaluated in SIMD batches.
 template <class L>
 concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::Doubles& cosines, const SurfaceLight& light) {
-  { law.backscatter(cosines, taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
+  { law.backscatter(cosines, detail::taken_by<L>(light)) } noexcept -> std::same_as<simd::Doubles>;
 };
 
 // each law has a `backscatter` of a cosine, too

@@ -98,8 +98,8 @@ class SurfaceLaw {
     static_assert(detail::TellsShare<Law>,
                   "a law of scattered light needs the member: double scattered_share(double cosine, "
                   "double wavelength or const SurfaceLight&) const noexcept");
-    static_assert(detail::BackscattersSurfaceLight<Law> == TakesSurfaceLight<Law> &&
-                      (!ScattersBetween<Law> || detail::ScattersSurfaceLight<Law> == TakesSurfaceLight<Law>),
+    static_assert(detail::BackscattersSurfaceLight<Law> == detail::TakesSurfaceLight<Law> &&
+                      (!ScattersBetween<Law> || detail::ScattersSurfaceLight<Law> == detail::TakesSurfaceLight<Law>),
                   "all members of a law take the same: the wavelength, or a const SurfaceLight&");
     static_assert(detail::members_checked<Law, tag::Validated, tag::ScattersInLanes, tag::ScattersBetween,
                                           tag::SamplesDirections, tag::Retroreflects, tag::ReflectsInterface>);
@@ -116,13 +116,13 @@ class SurfaceLaw {
       if constexpr (Validated<Law>) law.validate();
     }
     double backscatter(double cosine, const SurfaceLight& light) const noexcept override {
-      return law.backscatter(cosine, taken_by<Law>(light));
+      return law.backscatter(cosine, detail::taken_by<Law>(light));
     }
     double scattered_share(double cosine, const SurfaceLight& light) const noexcept override {
-      return law.scattered_share(cosine, taken_by<Law>(light));
+      return law.scattered_share(cosine, detail::taken_by<Law>(light));
     }
     void scatter_at(std::span<Hit> hits, const SurfaceLight& light) const noexcept override {
-      const auto& in = taken_by<Law>(light);
+      const auto& in = detail::taken_by<Law>(light);
       constexpr std::size_t lanes = ScattersInLanes<Law> ? simd::lane_count : 1;
       if (hits.size() < lanes || lanes == 1) {
         for (Hit& hit : hits) {
@@ -144,7 +144,7 @@ class SurfaceLaw {
     }
     double scattered(const Vec3& in, const Vec3& out, const Vec3& normal,
                      const SurfaceLight& light) const noexcept override {
-      if constexpr (ScattersBetween<Law>) return law.scattered(in, out, normal, taken_by<Law>(light));
+      if constexpr (ScattersBetween<Law>) return law.scattered(in, out, normal, detail::taken_by<Law>(light));
       return 0;
     }
     std::optional<SampledDirection> sample(const Vec3& in, const Vec3& normal, double u,

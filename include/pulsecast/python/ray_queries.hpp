@@ -33,7 +33,7 @@
 ///     pulsecast::python::bind_ray_queries(pybind11::class_<OwnScene>(m, "OwnScene").def(...));
 ///
 /// A call releases the GIL and uses several threads. Its results do not depend on their number.
-namespace PULSECAST_NAMESPACE::python {
+namespace PULSECAST_NAMESPACE::python::detail {
 
 /// Hit of a ray as a row of a NumPy array. A miss has an infinite range, and -1 as part and primitive.
 struct HitRow {
@@ -54,7 +54,7 @@ struct HitRow {
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace PULSECAST_NAMESPACE::python
+}  // namespace PULSECAST_NAMESPACE::python::detail
 
 // hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
@@ -62,6 +62,8 @@ namespace [[gnu::visibility("hidden")]] python {
 
 /// Array of numbers in rows, as Python passes it.
 using NumberArray = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+namespace detail {
 
 /// Rays of one call: shape (n, 6), origins and directions, or both of shape (n, 3). Directions may have any length.
 class RayTable {
@@ -259,14 +261,16 @@ template <class World>
   return named;
 }
 
+}  // namespace detail
+
 /// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a class of scenes, as
 /// `Scene` and `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
   using World = typename std::remove_reference_t<Class>::type;
-  if (!py::detail::get_numpy_internals().get_type_info<HitRow>(false))
-    PYBIND11_NUMPY_DTYPE(HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
+  if (!py::detail::get_numpy_internals().get_type_info<detail::HitRow>(false))
+    PYBIND11_NUMPY_DTYPE(detail::HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
                          classification, front);
   const auto add = [&bound](const char* name, auto query, const std::string& returned) {
     const std::string doc =
@@ -279,7 +283,8 @@ Class& bind_ray_queries(Class&& bound) {
         name,
         [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near, double far,
                 NumberArray time, std::uint64_t seed, unsigned threads) {
-          return query(scene, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
+          return query(scene,
+                       detail::RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
                        threads);
         },
         py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
@@ -290,20 +295,22 @@ Class& bind_ray_queries(Class&& bound) {
       "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
       "(3) [m/s], ray, primitive, part, object, classification, front.";
   add(
-      "closest_hits", [](const World& s, const RayTable& r, unsigned t) { return python::closest_hits(s, r, t); },
+      "closest_hits",
+      [](const World& s, const detail::RayTable& r, unsigned t) { return detail::closest_hits(s, r, t); },
       "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive.");
   add(
-      "all_hits", [](const World& s, const RayTable& r, unsigned t) { return python::all_hits(s, r, t); },
+      "all_hits", [](const World& s, const detail::RayTable& r, unsigned t) { return detail::all_hits(s, r, t); },
       "Structured array of all hits, by ray and then by range: " + row);
   add(
-      "occluded", [](const World& s, const RayTable& r, unsigned t) { return python::occluded(s, r, t); },
+      "occluded", [](const World& s, const detail::RayTable& r, unsigned t) { return detail::occluded(s, r, t); },
       "Boolean array: True for each ray with a hit.");
   bound.def(
       "run_batch",
       [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions,
          double near, double far, NumberArray time, std::uint64_t seed, unsigned threads) {
-        return python::run_batch(
-            scene, poses, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
+        return detail::run_batch(
+            scene, poses, detail::RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
+            threads);
       },
       py::arg("poses"), py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
       py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
@@ -312,7 +319,7 @@ Class& bind_ray_queries(Class&& bound) {
       "hit. poses: shape (n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in "
       "the sensor's frame; else as `closest_hits`. seed: with the index in the array, the key of leaves met at "
       "random.");
-  bound.def("attributes_of", &python::attributes_of<World>, py::arg("objects"),
+  bound.def("attributes_of", &detail::attributes_of<World>, py::arg("objects"),
             "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
             "objects: whole numbers, as the column `object` of hits.");
   return bound;

@@ -45,8 +45,6 @@ void visit_points(const Shape& shape, const Placement& placement, const Visit& v
   }
 }
 
-}  // namespace detail
-
 /// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in question has ground
 /// above or below. Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying
 /// parts.
@@ -89,6 +87,8 @@ template <Geometry Shape>
   return lift;
 }
 
+}  // namespace detail
+
 /// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts
 /// there.
 /// @throws SettingError for a placement out of range or a missing geometry
@@ -98,7 +98,7 @@ template <Geometry... Shapes>
   part.placement = validated(part.placement);
   const auto lift_of = [&](const auto& shape) {
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
-    return lift_onto_ground(*shape, part.placement, ground, ground_placement);
+    return detail::lift_onto_ground(*shape, part.placement, ground, ground_placement);
   };
   const std::optional<double> lift = visit_shape(lift_of, part.geometry);
   if (!lift) return std::nullopt;

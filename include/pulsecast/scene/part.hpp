@@ -130,6 +130,19 @@ struct Placement {
 
 namespace detail {
 
+/// Shared shape of one of several kinds.
+template <Geometry... Shapes>
+struct SharedShape {
+  /// Variant of shared pointers.
+  using type = std::variant<std::shared_ptr<const Shapes>...>;
+};
+/// Shared shape of the only kind. A variant of one takes g++ 12 some 60 ms more to compile.
+template <Geometry Shape>
+struct SharedShape<Shape> {
+  /// Shared pointer.
+  using type = std::shared_ptr<const Shape>;
+};
+
 /// Half sides of the box around a turned box of these half sides, in axes `turn` [m].
 /// Source: Arvo 1990, Transforming axis-aligned bounding boxes, Graphics Gems.
 [[nodiscard]] inline Vec3 reach_of(const Matrix3& turn, const Vec3& half) noexcept {
@@ -165,19 +178,6 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
   static const MaterialTable table = material_table(std::vector<Material>(1));
   return table;
 }
-
-/// Shared shape of one of several kinds.
-template <Geometry... Shapes>
-struct SharedShape {
-  /// Variant of shared pointers.
-  using type = std::variant<std::shared_ptr<const Shapes>...>;
-};
-/// Shared shape of the only kind. A variant of one takes g++ 12 some 60 ms more to compile.
-template <Geometry Shape>
-struct SharedShape<Shape> {
-  /// Shared pointer.
-  using type = std::shared_ptr<const Shape>;
-};
 
 /// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
@@ -218,11 +218,12 @@ using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();      ///< materials by the shape's material index
-  Placement placement{};                           ///< placement in the world
-  ObjectId object = 0;                             ///< object id of its points
-  std::string name{};                              ///< user's name for it
+  typename detail::SharedShape<Shapes...>::type
+      geometry;                                ///< shared pointer to the shape; a variant of them for several kinds
+  MaterialTable materials = material_table();  ///< materials by the shape's material index
+  Placement placement{};                       ///< placement in the world
+  ObjectId object = 0;                         ///< object id of its points
+  std::string name{};                          ///< user's name for it
   std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
   Attributes attributes{};                     ///< what its points are told besides, as by `ObjectAttributes`
 };

@@ -219,7 +219,7 @@ class Scene {
     const SharedBuffer<Box> boxes(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       Part& part = parts[i];
-      validate_in_place(part.placement);
+      detail::validate_in_place(part.placement);
       if (part.motion && motions == Motions::refused)
         throw_setting_error("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
       const auto box_of = [&](const auto& shape) {

@@ -10,11 +10,15 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+
 /// Time from one firing sequence of a VLP-16 or VLP-32C to the next [s]. Source: Velodyne, VLP-16 user manual 63-9243
 /// rev. D, 9.3.1.1.
 inline constexpr double velodyne_sequence_period = 55.296e-6;
 /// Time from one firing of a VLP-16 or VLP-32C to the next of the same sequence [s]. Source: the same.
 inline constexpr double velodyne_firing_period = 2.304e-6;
+
+}  // namespace detail
 
 /// Velodyne VLP-16, which spins 5 to 20 times a second. Origin and axes as in its manual: y forward, at azimuth 0, and
 /// x right. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 2018, table 9-1 and data sheet. Of the accuracy of 3
@@ -25,7 +29,7 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
   constexpr std::array<double, 16> heights_mm{11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
                                               5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
   SpinningSensor sensor{.name = "VLP-16",
-                        .sequence_rate = 1 / velodyne_sequence_period,
+                        .sequence_rate = 1 / detail::velodyne_sequence_period,
                         .rotation_rate = rotation_rate,
                         .beam = {.wavelength = 903_nm, .peak_power = 31, .pulse_length = 6_ns, .divergence = 1.9_mrad},
                         .range_min = 0.5,
@@ -35,7 +39,7 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
     const double elevation = k % 2 == 0 ? -15_deg + static_cast<double>(k) * 1_deg : static_cast<double>(k) * 1_deg;
     sensor.lasers.push_back({.elevation = elevation,
                              .height = 1e-3 * heights_mm[k],
-                             .delay = static_cast<double>(k) * velodyne_firing_period});
+                             .delay = static_cast<double>(k) * detail::velodyne_firing_period});
   }
   return sensor;
 }
@@ -55,7 +59,7 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
        {3.333, -1.4},  {2.333, 1.4},  {-2.667, -1.4}, {-3, 1.4},       {7, -1.4},      {4.667, 1.4},   {-2.333, -4.2},
        {-2, 4.2},      {15, -1.4},    {10.333, 1.4},  {-1.333, -1.4}}};
   SpinningSensor sensor{.name = "VLP-32C",
-                        .sequence_rate = 1 / velodyne_sequence_period,
+                        .sequence_rate = 1 / detail::velodyne_sequence_period,
                         .rotation_rate = rotation_rate,
                         .beam = {.wavelength = 903_nm, .peak_power = 31, .pulse_length = 6_ns, .divergence = 2.1_mrad},
                         .range_min = 1,
@@ -64,7 +68,7 @@ inline constexpr double velodyne_firing_period = 2.304e-6;
   for (std::size_t k = 0; k < rows.size(); ++k)
     sensor.lasers.push_back({.elevation = rows[k].elevation_in_degrees * 1_deg,
                              .azimuth = rows[k].azimuth_in_degrees * 1_deg,
-                             .delay = static_cast<double>(k / 2) * velodyne_firing_period});
+                             .delay = static_cast<double>(k / 2) * detail::velodyne_firing_period});
   return sensor;
 }
 

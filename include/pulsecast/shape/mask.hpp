@@ -50,6 +50,8 @@ struct Mask {
   }
 };
 
+namespace detail {
+
 /// Masks of the materials of a mesh, immutable.
 class MaskTable {
  public:
@@ -118,6 +120,8 @@ struct NoMasks {
   [[nodiscard]] static constexpr std::size_t memory() noexcept { return 0; }
   [[nodiscard]] static constexpr bool empty() noexcept { return true; }  ///< nothing has holes
 };
+
+}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -13,9 +13,9 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/leaf_angles.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
-#include <pulsecast/shape/voxel_index.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

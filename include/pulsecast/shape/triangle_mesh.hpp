@@ -41,7 +41,7 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 /// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray
 /// passes the holes of the masks of a `MaskedMesh`. `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the
 /// hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
-template <Accelerator Index = Bvh<float>, class Masks = NoMasks>
+template <Accelerator Index = Bvh<float>, class Masks = detail::NoMasks>
 class TriangleMesh {
  public:
   using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
@@ -154,7 +154,7 @@ class TriangleMesh {
   [[nodiscard]] const Vec3* block_corners(std::size_t place) const noexcept {
     return corners_.data() + first_corners_[place / detail::chunk_size];
   }
-  [[nodiscard]] static TriangleRef triangle_in(const Vec3* corners, const Corners& triangle) noexcept {
+  [[nodiscard]] static detail::TriangleRef triangle_in(const Vec3* corners, const Corners& triangle) noexcept {
     return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
 
@@ -179,11 +179,11 @@ class TriangleMesh {
       const Vec3* const corners = mesh.block_corners(place);
       const Corners* const triangles = mesh.triangles_.data() + place;
       const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
-      if constexpr (std::is_same_v<Masks, MaskTable>)
+      if constexpr (std::is_same_v<Masks, detail::MaskTable>)
         if (!mesh.masks_.empty()) [[unlikely]]
           return test(primitives, triangle_of,
                       [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
-      test(primitives, triangle_of, SolidEverywhere{});
+      test(primitives, triangle_of, detail::SolidEverywhere{});
     }
     // always inlined, as without masks it is all there is
     [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
@@ -201,7 +201,7 @@ class TriangleMesh {
         const std::size_t count =
             std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
         (*this)(primitives.first(count));
-        if constexpr (EndsEarly<Hits>)
+        if constexpr (detail::EndsEarly<Hits>)
           if (nearest.done()) return;
         primitives = primitives.subspan(count);
       }
@@ -216,7 +216,7 @@ class TriangleMesh {
   };
 
   [[nodiscard]] Triangle triangle_at(std::size_t place) const noexcept {
-    const TriangleRef triangle = triangle_in(block_corners(place), triangles_[place]);
+    const detail::TriangleRef triangle = triangle_in(block_corners(place), triangles_[place]);
     return {triangle.a, triangle.b, triangle.c};
   }
 
@@ -324,7 +324,7 @@ TriangleMesh<Index, Masks>::TriangleMesh(MeshData data, const Workers& workers) 
 
 /// Mesh whose materials may have holes, as `MeshData::masks` says.
 template <Accelerator Index = Bvh<float>>
-using MaskedMesh = TriangleMesh<Index, MaskTable>;
+using MaskedMesh = TriangleMesh<Index, detail::MaskTable>;
 
 }  // namespace PULSECAST_NAMESPACE
 

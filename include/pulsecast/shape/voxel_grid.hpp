@@ -14,10 +14,10 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
+#include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/detail/voxel_index_builder.hpp>
 #include <pulsecast/shape/transmissive_voxels.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
-#include <pulsecast/shape/voxel_index.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

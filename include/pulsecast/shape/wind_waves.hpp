@@ -57,6 +57,8 @@ struct WindWaves {
   }
 };
 
+namespace detail {
+
 /// Spectrum of wind waves over wavenumbers [rad/m] and directions, from the longest waves to capillary waves.
 /// Source: Elfouhaily, Chapron, Katsaros & Vandemark 1997, A unified directional spectrum for long and short
 /// wind-driven waves, J. Geophys. Res. 102; friction velocity by the drag coefficient of Wu 1982, J. Geophys. Res. 87.
@@ -112,8 +114,6 @@ class WindSpectrum {
   double long_, short_;       ///< equilibrium ranges of long and short waves
   double overshoot_, width_;  ///< height and width of the peak, as in JONSWAP
 };
-
-namespace detail {
 
 /// Wave of a given vector of slopes, before its phase is drawn.
 struct DrawnWave {
@@ -213,7 +213,7 @@ class SlopeMap {
 [[nodiscard]] inline std::vector<SineWave> waves_of(const WindWaves& settings) {
   settings.validate();
   if (settings.wind_speed == 0) return {};
-  const WindSpectrum spectrum(settings.wind_speed, settings.fetch);
+  const detail::WindSpectrum spectrum(settings.wind_speed, settings.fetch);
   const SlopeDistribution wanted = SlopeDistribution::of(settings.wind_speed);
   std::vector<detail::DrawnWave> waves = detail::draw_waves(settings, spectrum);
   detail::SlopeVariance of_all, of_short;

@@ -12,8 +12,8 @@
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>
+#include <pulsecast/transport/detail/plane_spread.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
-#include <pulsecast/transport/plane_spread.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -190,9 +190,9 @@ EchoSimulator<Footprint, Target, Detector, Transport>::EchoSimulator(
     : target_(&target), transport_(validated(std::move(transport))), receivers_(std::move(receivers)), seed_(seed) {
   require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
   for (Unit& unit : receivers_) {
-    validate_in_place(unit.footprint);
-    validate_in_place(unit.receiver);
-    validate_in_place(unit.detector);
+    detail::validate_in_place(unit.footprint);
+    detail::validate_in_place(unit.receiver);
+    detail::validate_in_place(unit.detector);
     require_whole_beam(unit.footprint);
   }
   require_alike();
@@ -209,7 +209,7 @@ auto EchoSimulator<Footprint, Target, Detector, Transport>::workspace() const ->
   std::size_t most = 0;
   for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
   Workspace w{transport_.workspace(most),
-              room_for(transport_.reflections(most), most),
+              detail::room_for(transport_.reflections(most), most),
               std::vector<SubrayRecord>(recorded_subrays()),
               {}};
   for (const Unit& unit : receivers_)

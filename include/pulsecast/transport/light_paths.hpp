@@ -12,7 +12,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
-#include <pulsecast/transport/plane_spread.hpp>
+#include <pulsecast/transport/detail/plane_spread.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -38,12 +38,16 @@ struct TransportInput {
   }
 };
 
+namespace detail {
+
 /// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.
 [[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections, std::size_t subrays) {
   const SharedBuffer<Reflection> room(reflections);
   std::fill_n(room.begin(), std::min(reflections, 20 * subrays), Reflection{});
   return room;
 }
+
+}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE
 

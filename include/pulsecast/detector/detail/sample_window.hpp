@@ -67,9 +67,9 @@ class SampleWindow {
 
   /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, such as that of a
   /// saturated or coarse digitiser.
-  [[nodiscard]] Vertex top_of(std::size_t first, std::size_t last) const noexcept {
+  [[nodiscard]] detail::Vertex top_of(std::size_t first, std::size_t last) const noexcept {
     if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
-    return vertex(&samples_[first]);
+    return detail::vertex(&samples_[first]);
   }
 
   /// Appends every peak before index `end` of the window, whose last sample has the number `last`.
@@ -84,14 +84,14 @@ class SampleWindow {
       const bool turns = i >= 2 && i + 2 < y.size() && y[i] < y[i - 1] && y[i] <= y[i + 1];
       if (!turns) return time(i);
       const std::array<double, 5> below{-y[i - 2], -y[i - 1], -y[i], -y[i + 1], -y[i + 2]};
-      return time(i) + vertex(&below[2]).offset * s.sample_interval;
+      return time(i) + detail::vertex(&below[2]).offset * s.sample_interval;
     };
     std::size_t entered = peaks.size();
     for (std::size_t i = 2; i < end; ++i) {
       if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
       const std::size_t plateau_end = last_of_plateau(i);
       if (plateau_end + 1 < y.size() && y[plateau_end + 1] > y[i]) continue;  // a step of the rise
-      const Vertex top = top_of(i, plateau_end);
+      const detail::Vertex top = top_of(i, plateau_end);
       if ((search.by_sample ? y[i] : top.height) < s.threshold) continue;
       std::size_t from = i, to = plateau_end > i + 1 ? plateau_end : i;
       while (from > 0 && y[from - 1] < y[from]) --from;
@@ -104,8 +104,8 @@ class SampleWindow {
                 .after = y[to]};
       peak.mark = peak.time;
       if (s.timing > EchoTiming::peak)
-        peak.mark =
-            (start + echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval - search.delay;
+        peak.mark = (start + detail::echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval -
+                    search.delay;
       merge_or_append(peak, search.min_separation, s.prominence, peaks);
     }
     const auto place = [&](double t) { return (t + search.delay) / s.sample_interval - start; };

@@ -12,8 +12,8 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
-#include <pulsecast/shape/voxel_index.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_TRANSPORT_PLANE_SPREAD_HPP
-#define PULSECAST_TRANSPORT_PLANE_SPREAD_HPP
+#ifndef PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
+#define PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
 
 #include <algorithm>
 #include <cmath>

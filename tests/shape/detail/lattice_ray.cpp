@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/shape/lattice_ray.hpp>
+#include <pulsecast/shape/detail/lattice_ray.hpp>
 
 #include <doctest/doctest.h>
 

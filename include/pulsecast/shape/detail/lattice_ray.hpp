@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_SHAPE_LATTICE_RAY_HPP
-#define PULSECAST_SHAPE_LATTICE_RAY_HPP
+#ifndef PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
+#define PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/shape/voxel_index.hpp>
+#include <pulsecast/shape/detail/voxel_index.hpp>
 
 #include <doctest/doctest.h>
 

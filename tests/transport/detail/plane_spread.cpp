@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/transport/plane_spread.hpp>
+#include <pulsecast/transport/detail/plane_spread.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_SHAPE_VOXEL_INDEX_HPP
-#define PULSECAST_SHAPE_VOXEL_INDEX_HPP
+#ifndef PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
+#define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
-#include <pulsecast/shape/lattice_ray.hpp>
+#include <pulsecast/shape/detail/lattice_ray.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
