@@ -8,7 +8,6 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/motion.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
@@ -55,7 +54,9 @@ std::string filter_told(const std::string& params, Source& source) {
   return support::xml_told("<f><filter type=\"x\">" + params + "</filter></f>", [&](XmlInput& outer) {
     outer.know({}, {"filter"});
     XmlInput io(outer.document(), outer.node().child("filter"), outer.report(), outer.search(), true);
-    xml::fields(io, source);
+    PartSource read = source;
+    xml::fields(io, read);
+    source = std::get<Source>(read);
     io.finish();
   });
 }
@@ -90,7 +91,7 @@ TEST_CASE("of a turn, what cannot be is told") {
 TEST_CASE("a direction needs a length") {
   Vec3 v = axis::up;
   const auto read = [&](const char* text) {
-    return support::xml_told(text, [&](XmlInput& io) { xml::direction(io, "d", v); });
+    return support::xml_told(text, [&](XmlInput& io) { io.direction("d", v); });
   };
   CHECK(read(R"(<a><d x="1"/></a>)").empty());
   CHECK(v == axis::right);
