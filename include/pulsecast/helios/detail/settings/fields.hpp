@@ -25,9 +25,6 @@
 /// has in documents. Validation, XML, Python and the tables of docs/surveys.md are visitors of these rows.
 namespace PULSECAST_NAMESPACE::helios {
 
-inline constexpr double any = std::numeric_limits<double>::infinity();
-inline constexpr double max_coordinate = 1e9;  ///< maximum plausible coordinate [m]
-
 /// Words of documents with their values.
 template <class Value>
 using FieldWords = std::initializer_list<std::pair<std::string_view, Value>>;
@@ -36,6 +33,9 @@ using FieldWords = std::initializer_list<std::pair<std::string_view, Value>>;
 /// none.
 class FieldIo {
  public:
+  static constexpr double any = std::numeric_limits<double>::infinity();
+  static constexpr double max_coordinate = 1e9;  ///< maximum plausible coordinate [m]
+
   FieldIo() = default;
   FieldIo(const FieldIo&) = delete;
   FieldIo& operator=(const FieldIo&) = delete;

@@ -195,7 +195,7 @@ struct ChannelSettings {
   void detector_fields(FieldIo& io) {
     io.number("accuracy_m", accuracy, units::metre, 0, 1e4);
     io.number("rangeMin_m", range_min, units::metre, 0, 1e9);
-    io.number("rangeMax_m", range_max, units::metre, 0, any);
+    io.number("rangeMax_m", range_max, units::metre, 0, FieldIo::any);
   }
   /// Reports limits that contradict each other.
   void check_range(const FieldIo& io) const {

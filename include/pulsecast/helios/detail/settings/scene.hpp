@@ -122,7 +122,7 @@ struct AttributeSettings {
   void fields(FieldIo& io) {
     if (io.reads()) io.require({"name", "value"});
     io.text("name", name);
-    io.number("value", value, units::one, -any, any);
+    io.number("value", value, units::one, -FieldIo::any, FieldIo::any);
   }
   bool operator==(const AttributeSettings&) const = default;
 };
@@ -243,8 +243,8 @@ struct MediumSettings {
     io.number("absorption_perM", absorption, units::per_metre, 0, 1e6);
     io.number("scattering_perM", scattering, units::per_metre, 0, 1e6);
     io.number("backscatter_perMSr", backscatter, units::per_metre_steradian, 0, 1e6);
-    io.vector("min", min, max_coordinate);
-    io.vector("max", max, max_coordinate);
+    io.vector("min", min, FieldIo::max_coordinate);
+    io.vector("max", max, FieldIo::max_coordinate);
   }
   /// @throws SettingError for values out of range, or that do not go together
   void validate() const {

@@ -54,7 +54,7 @@ inline bool rotation_fields(FieldIo& io, RotationMotion& rotation, MotionKind ki
   axis(io, "axis", rotation.axis);
   io.require({"angle"});
   io.number("angle", rotation.angle, units::degree, -36000, 36000);
-  if (kind == MotionKind::rotation) io.vector("center", rotation.center, max_coordinate);
+  if (kind == MotionKind::rotation) io.vector("center", rotation.center, FieldIo::max_coordinate);
   if (kind == MotionKind::helical) {
     io.require({"glide"});
     if (io.reads()) rotation.glide = 0;
@@ -74,7 +74,7 @@ inline void reflection_fields(FieldIo& io, ReflectionMotion& plane, MotionKind k
   if (kind != MotionKind::glide_plane) return;
   io.require({"shift"});
   if (io.reads()) plane.shift = Vec3{};
-  io.vector("shift", *plane.shift, max_coordinate);
+  io.vector("shift", *plane.shift, FieldIo::max_coordinate);
   if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
     io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
 }
@@ -93,7 +93,7 @@ inline void fields(FieldIo& io, MotionSettings& motion) {
   if (io.reads()) set_kind(motion, kind);
   if (auto* m = std::get_if<TranslationMotion>(&motion.kind)) {
     io.require({"vec"});
-    io.vector("vec", m->by, max_coordinate);
+    io.vector("vec", m->by, FieldIo::max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
     const bool does_something = rotation_fields(io, *r, kind);
     if (io.reads())
@@ -105,7 +105,7 @@ inline void fields(FieldIo& io, MotionSettings& motion) {
     check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
-    io.vector("center", s->center, max_coordinate);
+    io.vector("center", s->center, FieldIo::max_coordinate);
   }
   io.flag("selfMode", motion.about_itself);
   io.number("autoCRS", motion.shift_factor, units::one, -1e6, 1e6);

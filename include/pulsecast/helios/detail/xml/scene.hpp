@@ -54,7 +54,7 @@ inline void filters(XmlOutput& io, PartSource* source, TransformSettings& transf
   }
   if (transform.translation == Vec3{} && transform.on_ground == 0) return;
   XmlOutput translate = filter("translate");
-  translate.vector("offset", transform.translation, max_coordinate);
+  translate.vector("offset", transform.translation, FieldIo::max_coordinate);
   translate.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
 }
 
@@ -110,7 +110,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.require({"offset"});
       transform.translation = {};
       transform.on_ground = 0;
-      filter.vector("offset", transform.translation, max_coordinate);
+      filter.vector("offset", transform.translation, FieldIo::max_coordinate);
       filter.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
     } else {
       io.report().fault(io.document().place(node, "type"),
