@@ -25,6 +25,13 @@ class FieldList final : public pulsecast::helios::FieldIo {
     const void* member = nullptr;        ///< its place in the settings
     std::string values{};                ///< as in `deg, 0 to 180`
     std::optional<std::string> value{};  ///< what the settings have; none if it is absent
+
+    /// True if it is a member of settings, or a part of one.
+    template <class Member>
+    [[nodiscard]] bool is_of(const Member& of) const {
+      const auto *const begin = reinterpret_cast<const char*>(&of), *const place = static_cast<const char*>(member);
+      return std::less_equal()(begin, place) && std::less()(place, begin + sizeof of);
+    }
   };
 
   /// Of settings, with their values as defaults.
