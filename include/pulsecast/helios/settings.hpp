@@ -23,7 +23,8 @@
 
 /// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds
 /// the survey. Templates, references and inheritance are resolved: each struct is complete. The comment of a member
-/// names its attribute or element. A 0 may mean a default or none; `validate` refuses negative values there.
+/// names its attribute or element, the function `fields` its limits, which `check_fields` checks. A 0 may mean a
+/// default or none.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Column of each quantity, from 0.
@@ -163,7 +164,6 @@ struct LegScannerSettings {
     io.number("opticsWarmupPhase_s", warm_up, units::second, 0, 1e5);
   }
   void validate() const { check_fields(*this); }
-
   bool operator==(const LegScannerSettings&) const = default;
 };
 
@@ -174,11 +174,10 @@ struct LegSettings {
   LegPlatformSettings platform{};        ///< `platformSettings` of the leg
   LegScannerSettings scanner{};          ///< `scannerSettings` of the leg
 
-  void validate() const {
-    if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");
-    scanner.validate();
+  void fields(FieldIo& io) {
+    io.text("stripId", strip);
+    io.number("maxDuration_s", duration_max, units::second, 0, 1e9);
   }
-
   bool operator==(const LegSettings&) const = default;
 };
 
@@ -248,8 +247,6 @@ struct NoiseSettings {
     if (distribution == NoiseDistribution::uniform && !(low <= high)) io.fault("max", "max is below min");
     if (clipped && !(clip_low <= clip_high)) io.fault("clipMax", "clipMax is below clipMin");
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const NoiseSettings&) const = default;
 };
 
@@ -263,12 +260,6 @@ struct PlatformSettings {
   RotationSpec rotation_spec = RotationSpec::arinc_705;  ///< interpolated only; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
-
-  void validate() const {
-    for (const auto* noises : {&position_noise, &attitude_noise})
-      for (const std::optional<NoiseSettings>& noise : *noises)
-        if (noise) noise->validate();
-  }
 
   bool operator==(const PlatformSettings&) const = default;
 };

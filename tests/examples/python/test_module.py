@@ -119,7 +119,7 @@ def test_what_does_not_go_together_is_refused_by_name(survey):
     (lambda s: setattr(s.legs[1].scanner, "pulse_rate", -5), r"SurveySettings\.legs\[1\]\.scanner\.pulse_rate \(pulseFreq_hz\) is -5 Hz, but must be from 0 to"),
     (lambda s: setattr(s.legs[1].scanner, "scan_rate", -5), r"\.scan_rate \(scanFreq_hz\) is -5 Hz"),
     (lambda s: setattr(s.legs[1].scanner, "trajectory_interval", -1), r"\.trajectory_interval \(trajectoryTimeInterval_s\) is -1 s"),
-    (lambda s: setattr(s.legs[2], "duration_max", -1), "leg 2: maxDuration_s is -1 s"),
+    (lambda s: setattr(s.legs[2], "duration_max", -1), r"legs\[2\]\.duration_max \(maxDuration_s\) is -1 s"),
     (lambda s: setattr(s.scanner.channels[0], "scan_angle_max", -1), r"scanner\.channels\[0\]\.scan_angle_max \(scanAngleMax_deg\) is -57"),
     (lambda s: setattr(s.scanner.channels[0], "scan_rate_max", -1), r"scan_rate_max \(scanFreqMax_Hz\) is -1 Hz"),
     (lambda s: setattr(s.scanner.channels[0], "returns_max", -1), r"returns_max \(maxNOR\) is -1"),

@@ -15,7 +15,6 @@
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
-#include <pulsecast/helios/detail/xml/source.hpp>
 
 #include "helios/xml_reading.hpp"
 

@@ -11,11 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
-#include <pulsecast/helios/detail/settings/mount.hpp>
 
 /// Sources of the geometry of parts: loading filters.
 namespace PULSECAST_NAMESPACE::helios {
@@ -33,8 +30,6 @@ struct MaterialSource {
     io.whole("randomMaterials", random, 0, 1'000'000);
     io.number("randomRange", random_range, units::one, 0, 1e6);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const MaterialSource&) const = default;
 };
 
@@ -72,8 +67,6 @@ struct GeoTiffSource {
     io.number("noDataValue", missing, units::one, -1e300, 1e300);
     io.number("pixelSize", pixel_size, units::metre, 1e-6, 1e6);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const GeoTiffSource&) const = default;
 };
 
@@ -110,8 +103,6 @@ struct XyzSource {
       io.warn("defaultNormal", "defaultNormal is zero: it has no direction, and no effect");
     }
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const XyzSource&) const = default;
 };
 
@@ -143,8 +134,6 @@ struct VoxelSource {
     io.number("leafArea_m2", leaf_area, units::square_metre, 0, 100);
     io.number("clumping", clumping, units::one, 0.01, 10);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const VoxelSource&) const = default;
 };
 
@@ -167,21 +156,11 @@ struct MeshSource {
     io.number("unit", unit, units::metre, 1e-9, 1e9);
     io.file("materials", materials);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const MeshSource&) const = default;
 };
 
 /// Any source of geometry.
 using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource, MeshSource>;
-
-namespace detail {
-
-inline void validate_source(const PartSource& source) {
-  std::visit([](const auto& one) { (void)validated(one); }, source);
-}
-
-}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

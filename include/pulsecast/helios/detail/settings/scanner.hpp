@@ -112,8 +112,6 @@ struct FullWaveformSettings {
     io.without_effect({"apertureDiameter_m", "minEchoWidth", "peakEnergy", "scannerEfficiency", "atmosphericVisibility",
                        "scannerWaveLength", "beamDivergence_rad", "numTimeBins", "numFullwaveBins"});
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const FullWaveformSettings&) const = default;
 };
 

@@ -94,8 +94,6 @@ struct MotionSequenceSettings {
     io.whole("loop", loop, 0, 2'000'000'000);
     io.text("next", next);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const MotionSequenceSettings&) const = default;
 };
 
@@ -109,7 +107,7 @@ struct SwapSettings {
   void fields(FieldIo& io) { io.whole("swapStep", step, 1, 1'000'000); }
   void validate() const {
     check_fields(*this);
-    if (source) detail::validate_source(*source);
+    if (source) std::visit([](const auto& one) { check_fields(one); }, *source);
   }
 
   bool operator==(const SwapSettings&) const = default;
@@ -143,9 +141,9 @@ struct PartSettings {
     io.number("dynTimeStep", dynamic_interval, units::second, 1e-9, 1e6);
   }
   void validate() const {
-    detail::validate_source(source);
+    std::visit([](const auto& one) { check_fields(one); }, source);
     check_fields(*this);
-    for (const MotionSequenceSettings& sequence : motions) sequence.validate();
+    for (const MotionSequenceSettings& sequence : motions) check_fields(sequence);
     for (const SwapSettings& swap : swaps) swap.validate();
     static_cast<void>(named_numbers());
   }
@@ -175,8 +173,6 @@ struct LightSettings {
     io.whole("paths", paths, 1, 100'000);
     io.number("fieldOfView_deg", field_of_view, units::degree, 0, 360);
   }
-  void validate() const { check_fields(*this); }
-
   bool operator==(const LightSettings&) const = default;
 };
 
@@ -293,7 +289,7 @@ struct SceneSettings {
 
   void validate() const {
     check_fields(*this);
-    for (const LightSettings& one : light) one.validate();
+    for (const LightSettings& one : light) check_fields(one);
     for (const MediumSettings& medium : media) medium.validate();
     (void)air(MediumSettings::known_wavelength);
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });

@@ -9,7 +9,6 @@
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/motion.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <optional>
 
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 

@@ -16,7 +16,6 @@
 
 #include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 

@@ -71,8 +71,7 @@ class DocumentWriter {
 inline void write_leg(XmlOutput& io, const SurveySettings& survey, std::size_t i) {
   LegSettings leg = survey.legs[i];
   const LegChecks checks(survey);
-  io.text("stripId", leg.strip);
-  io.number("maxDuration_s", leg.duration_max, units::second, 0, 1e9);
+  leg.fields(io);
   io.child("platformSettings", "", [&](XmlOutput& inner) {
     leg.platform.fields(inner);
     checks.check_platform(inner, i);
