@@ -84,12 +84,25 @@ awk -v page="$page" -v names="$work/names" '
     }
   }' "$page" >> "$faults"
 
+# The comment of a member names the attribute of its row, if it names any.
+awk '/^struct / { split("", said) }
+     match($0, /^  [A-Za-z_:<>0-9, ]+ [a-z_]+( =|{).*;.*\/\/\/< /) {
+       member = substr($0, 1, match($0, /( =|{)/) - 1)
+       sub(/.* /, "", member)
+       said[member] = substr($0, index($0, "///< ") + 5)
+     }
+     match($0, /io\.[a-z]+\("[A-Za-z0-9_]+", [a-z_]+[,)]/) {
+       split(substr($0, RSTART, RLENGTH), part, /[",)( ]+/)
+       if (part[3] in said && said[part[3]] ~ /`/ && !index(said[part[3]], part[2]))
+         print FILENAME ":" FNR ": the comment of " part[3] " does not name " part[2]
+     }' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp >> "$faults"
+
 # A table below <!-- rows of STRUCT... --> has a row for each row of these settings, with the values and the default that the program
 # of tables prints; texts, vectors and what an absent value means are described on the page. A row for several attributes has the values of each. A row that is
 # missing gets the comment of the member in the header; its meaning may be told at more length on the page.
 if [ -n "$tables" ]; then
   "$tables" > "$work/rows" || echo "$tables fails" >> "$faults"
-  awk -v headers="$(ls include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp | tr '\n' ' ')" '
+  awk -v headers="$(printf '%s ' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp)" '
     function comment(attribute,    n, file, k, line, member, said) {
       n = split(headers, file, " ")
       for (k = 1; k <= n; ++k) {
@@ -102,7 +115,12 @@ if [ -n "$tables" ]; then
           }
           if (index(line, "(\"" attribute "\", ") && match(line, /", [a-z_]+/)) {
             member = substr(line, RSTART + 3, RLENGTH - 3)
-            if (member in said) { close(file[k]); return said[member] }
+            if (member in said) {
+              close(file[k])
+              sub(/ \[[^]]*\]$/, "", said[member])
+              sub("[;.] `" attribute "`$", "", said[member])
+              return said[member]
+            }
           }
         }
         close(file[k])
