@@ -95,8 +95,7 @@ inline void fields(FieldIo& io, MotionSettings& motion) {
     io.vector("vec", m->by, FieldIo::max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
     const bool does_something = rotation_fields(io, *r, kind);
-    if (io.reads())
-      if (!does_something) motion.kind = NoMotion{};
+    if (io.reads() && !does_something) motion.kind = NoMotion{};
   } else if (auto* p = std::get_if<ReflectionMotion>(&motion.kind)) {
     reflection_fields(io, *p, kind);
   } else if (auto* s = std::get_if<RotoreflectionMotion>(&motion.kind)) {
