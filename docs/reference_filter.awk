@@ -9,6 +9,7 @@
 # - A comment after several variables of one declaration is given to each of them.
 BEGIN {
   says["validate"] = "Refuses settings outside of their limits. Errors: `SettingError`."
+  says["fields"] = "Table of the members: shows each to a visitor, with its attribute, unit and limits in documents."
   says["operator=="] = "Compares member by member."
   says["archive"] = "Names the members that a scene cache keeps."
   says["memory"] = "Memory that this occupies [bytes]."

@@ -15,7 +15,7 @@ import sys
 
 MEMBER = re.compile(r"  (?P<type>[\w:<>, ]+?) (?P<name>\w+)(?:\{.*\}| = [^;]*)?;(?:\s*///< (?P<doc>.*))?$")
 BROKEN_MEMBER = re.compile(r"^(  [\w:<>]+(?: \w+ =)?)\n +", re.MULTILINE)  # after its type or `=`
-NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodiscard\]\]|//[^/]|void validate)")
+NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodiscard\]\]|//[^/]|void \w+\()")
 FUNCTION = re.compile(r"[^;]*\) (const )?(noexcept )?\{$")
 TYPES = {"bool": "bool", "int": "int", "std::uint64_t": "int", "double": "float", "char": "str", "std::string": "str",
          "std::filesystem::path": "str | os.PathLike[str]", "Vec3": "tuple[float, float, float]"}

@@ -19,6 +19,9 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/settings.hpp>
+
+#include "../field_list.hpp"
 
 namespace py = pybind11;
 using namespace pulsecast;
@@ -36,6 +39,10 @@ concept Struct = requires {
 };
 template <class T>
 concept Enum = std::is_enum_v<T>;
+template <class T>
+concept Tabled = requires(T& settings, helios::FieldIo& io) {
+  settings.fields(io);
+};
 
 template <class T, template <class...> class Template>
 inline constexpr bool is_a = false;
@@ -45,6 +52,10 @@ template <class T>
 inline constexpr bool is_array = false;
 template <class T, std::size_t N>
 inline constexpr bool is_array<std::array<T, N>> = true;
+
+template <class T>
+inline constexpr bool is_number =
+    std::same_as<T, double> || std::same_as<T, int> || std::same_as<T, std::optional<double>>;
 
 /// The Python class of a struct; as the module, it is never taken down.
 template <Struct Settings>
@@ -131,6 +142,23 @@ Variant alternative_of(py::handle object, const std::string& where, std::string 
   }
 }
 
+/// Refuses members beyond their limits in documents, by their names here and there.
+template <Tabled Settings>
+void check(Settings& settings, const std::string& where) {
+  try {
+    helios::check_fields(settings);
+  } catch (const SettingError& error) {
+    const FieldList list(settings);
+    Described<Settings>::members(settings, [&](const char* name, auto& member, auto...) {
+      for (const FieldList::Row& row : list.rows())
+        if (row.name == error.field() && row.is_of(member) && !std::isnan(error.value()))
+          throw SettingError(where + "." + name + " (" + error.field() + ")", error.value(), error.unit(),
+                             error.allowed());
+    });
+    throw error.of(where);
+  }
+}
+
 template <Enum T>
 T enum_of(py::handle object, const std::string& where) {
   std::string names;
@@ -192,6 +220,7 @@ T value_of(py::handle object, const std::string& where) {
     Described<T>::members(settings, [&](const char* name, auto& member, auto...) {
       member = value_of<std::remove_cvref_t<decltype(member)>>(py::object(object.attr(name)), where + "." + name);
     });
+    if constexpr (Tabled<T>) check(settings, where);
     return settings;
   } else {
     return number_of<T>(object, where);
@@ -232,11 +261,17 @@ void bind(py::module_& m) {
   const py::object deepcopy = py::module_::import("copy").attr("deepcopy");
   py::list members;
   std::string doc = std::string(Described<Settings>::doc) + "\n\n";
-  const Settings defaults{};
+  Settings defaults{};
+  std::vector<FieldList::Row> rows;
+  if constexpr (Tabled<Settings>) rows = FieldList(defaults).rows();
   Described<Settings>::members(defaults, [&](const char* name, const auto& member, const char* type, const char* what) {
     const py::object first = functools.attr("partial")(deepcopy, object_of(member));
     members.append(py::make_tuple(name, type, dataclasses.attr("field")(py::arg("default_factory") = first)));
-    doc += std::string(name) + ": " + type + "\n    " + what + "\n";
+    doc += std::string(name) + ": " + type + "\n    " + what;
+    using Member = std::remove_cvref_t<decltype(member)>;
+    for (const FieldList::Row& row : rows)
+      if (is_number<Member> && row.is_of(member)) doc += "; in documents: " + row.values;
+    doc += "\n";
   });
   py::dict space;
   space["__doc__"] = doc;

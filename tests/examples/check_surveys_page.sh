@@ -2,13 +2,20 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Holds docs/surveys.md against the reader of surveys. Usage: check_surveys_page.sh [ROOT [PROGRAM]]; prints every fault and fails if there
-# is one. Every name that the reader knows and every option of the survey program stand on the page in backticks, the names and ranges in
-# its tables are those of the reader, and, with the program, every example runs without a note.
+# Holds docs/surveys.md against the reader of surveys. Usage: check_surveys_page.sh [--update] [ROOT [TABLES [PROGRAM]]]; prints every fault
+# and fails if there is one. Every name that the reader knows and every option of the survey program stand on the page in backticks. With
+# TABLES, the program settings_tables, values and defaults in its tables are those of the reader; --update writes them. With PROGRAM, the
+# survey program, every example runs without a note.
 set -u
 export LC_ALL=C
+update=
+if [ "${1:-}" = --update ]; then
+  update=yes
+  shift
+fi
 cd "${1:-.}" || exit 2
-program=${2:-}
+tables=${2:-}
+program=${3:-}
 page=docs/surveys.md
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
@@ -35,8 +42,8 @@ version
 xmlns
 END
 code=$work/code
-xml=include/pulsecast/helios/detail/xml  # its number.hpp first, which has the units
-cat $xml/number.hpp include/pulsecast/helios/document.hpp $xml/*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
+xml=include/pulsecast/helios/detail/xml
+cat $xml/*.hpp include/pulsecast/helios/document.hpp include/pulsecast/helios/settings.hpp $xml/../settings/*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
 grep -o '"[A-Za-z][A-Za-z0-9_]*"' "$code" | tr -d '"' | sort -u > "$work/literals"
 grep -vxF -f "$work/others" "$work/literals" > "$work/names"
 grep -vxF -f "$work/literals" "$work/others" | sed 's|^|tests/examples/check_surveys_page.sh: this is no literal any more: |' >> "$faults"
@@ -61,60 +68,104 @@ grep -vxF -f "$work/words" "$work/options" | sed "s|^|$page does not name, in ba
 
 # ----------------------------------------------------------------------------------------------------------------- tables
 
-# In tables of attributes, keys and elements, the first cell has names of the reader, and a range `0 to 1e6` in the second is that of a call
-# `number("name", ..., units::metre, 0, 1e6)` or `whole("name", ..., 0, 1'000'000)`, with the unit before it.
+# In tables of attributes, keys and elements, the first cell has names of the reader.
 awk -v page="$page" -v names="$work/names" '
-  function is_number(text) { return text ~ /^-?[0-9]*\.?[0-9]+(e-?[0-9]+)?$/ }
   BEGIN { while ((getline name < names) > 0) known[name] = 1 }
-  FNR == NR {
-    text = $0
-    while (match(text, /[a-z_]+\{"[A-Za-z\/ ]+"/)) {  # the units themselves
-      split(substr(text, RSTART, RLENGTH), part, /[{"]+/)
-      symbol["units::" part[1]] = part[2]
-      text = substr(text, RSTART + RLENGTH)
-    }
-    if (!match($0, /(number|whole)\("[A-Za-z0-9_]+", .*\);/)) next
-    text = substr($0, RSTART, RLENGTH - 2)
-    is_whole = text ~ /^whole/
-    name = text
-    sub(/^[a-z]+\("/, "", name)
-    sub(/".*/, "", name)
-    n = split(text, part, ", ")
-    gsub(/\047/, "", part[n - 1])
-    gsub(/\047/, "", part[n])
-    if (!is_number(part[n - 1]) || !is_number(part[n])) next
-    ++ranges[name]
-    least[name, ranges[name]] = part[n - 1] + 0
-    most[name, ranges[name]] = part[n] + 0
-    unit[name, ranges[name]] = is_whole ? "" : symbol[part[n - 2]]
-    next
-  }
   /^```/ { inside = !inside }
   inside || !/^\|/ { table = ""; next }
   table == "" { table = $0; counts = $0 ~ /^\| (attribute|key|element)( |s)/; next }
   /^\|---/ || !counts { next }
   {
     split($0, cell, / *\| */)
-    has_range = match(cell[3], /-?[0-9.]+(e-?[0-9]+)? to -?[0-9.]+(e-?[0-9]+)?/)
-    split(substr(cell[3], RSTART, RLENGTH), range, " to ")
-    before = has_range ? substr(cell[3], 1, RSTART - 1) : ""
-    sub(/,? *$/, "", before)
-    sub(/\/s$/, before == "m/s" ? "/s" : "", before)  # rates have the unit of the angle
     n = split(cell[2], piece, "`")
     for (i = 2; i <= n; i += 2) {
-      name = piece[i]
-      gsub(/[<>]/, "", name)
-      if (!(name in known)) print page ":" FNR ": the reader does not know " name
-      if (!has_range || !(name in ranges)) continue
-      right = 0
-      for (k = 1; k <= ranges[name]; ++k)
-        if (least[name, k] == range[1] + 0 && most[name, k] == range[2] + 0 && unit[name, k] == before) right = 1
-      ++compared
-      if (!right) print page ":" FNR ": " name " is said to be \"" cell[3] "\": the reader has " least[name, 1] " to " most[name, 1] " " \
-        unit[name, 1]
+      gsub(/[<>]/, "", piece[i])
+      if (!(piece[i] in known)) print page ":" FNR ": the reader does not know " piece[i]
     }
-  }
-  END { if (compared < 60) print page ": only " compared + 0 " ranges were compared" }' "$code" "$page" >> "$faults"
+  }' "$page" >> "$faults"
+
+# The comment of a member names the attribute of its row, if it names any.
+awk '/^struct / { split("", said) }
+     match($0, /^  [A-Za-z_:<>0-9, ]+ [a-z_]+( =|{).*;.*\/\/\/< /) {
+       member = substr($0, 1, match($0, /( =|{)/) - 1)
+       sub(/.* /, "", member)
+       said[member] = substr($0, index($0, "///< ") + 5)
+     }
+     match($0, /io\.[a-z]+\("[A-Za-z0-9_]+", [a-z_]+[,)]/) {
+       split(substr($0, RSTART, RLENGTH), part, /[",)( ]+/)
+       if (part[3] in said && said[part[3]] ~ /`/ && !index(said[part[3]], part[2]))
+         print FILENAME ":" FNR ": the comment of " part[3] " does not name " part[2]
+     }' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp >> "$faults"
+
+# A table below <!-- rows of STRUCT... --> has a row for each row of these settings, with the values and the default that the program
+# of tables prints; texts, vectors and what an absent value means are described on the page. A row for several attributes has the values of each. A row that is
+# missing gets the comment of the member in the header; its meaning may be told at more length on the page.
+if [ -n "$tables" ]; then
+  "$tables" > "$work/rows" || echo "$tables fails" >> "$faults"
+  awk -v headers="$(printf '%s ' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp)" '
+    function comment(attribute,    n, file, k, line, member, said) {
+      n = split(headers, file, " ")
+      for (k = 1; k <= n; ++k) {
+        while ((getline line < file[k]) > 0) {
+          if (line ~ /^struct /) split("", said)
+          if (match(line, /^  [A-Za-z_:<>0-9, ]+ [a-z_]+( =.*|{.*);.*\/\/\/< /)) {
+            member = substr(line, 1, match(line, /( =|{)/) - 1)
+            sub(/.* /, "", member)
+            said[member] = substr(line, index(line, "///< ") + 5)
+          }
+          if (index(line, "(\"" attribute "\", ") && match(line, /", [a-z_]+/)) {
+            member = substr(line, RSTART + 3, RLENGTH - 3)
+            if (member in said) {
+              close(file[k])
+              sub(/ \[[^]]*\]$/, "", said[member])
+              sub("[;.] `" attribute "`$", "", said[member])
+              return said[member]
+            }
+          }
+        }
+        close(file[k])
+      }
+    }
+    function finish(    i, name) {
+      for (i = 1; i <= rows; ++i) {
+        split(row[i], part, "|")
+        if (index(" " wanted " ", " " part[1] " ") && !(part[2] in seen))
+          print "| `" part[2] "` | " part[3] " | " part[4] " | " comment(part[2]) " |"
+      }
+      wanted = ""
+    }
+    FNR == NR { row[++rows] = $0; next }
+    /^<!-- rows of .* -->$/ { wanted = $0; gsub(/^<!-- rows of | -->$/, "", wanted); split("", seen); begun = 0 }
+    wanted != "" && begun && !/^\|/ { finish() }
+    wanted != "" && /^\|/ {
+      begun = 1
+      split($0, cell, / *\| */)
+      n = split(cell[2], piece, "`")
+      values = defaults = ""
+      for (k = 2; k <= n; k += 2)
+        for (i = 1; i <= rows; ++i) {
+          split(row[i], part, "|")
+          if (part[2] != piece[k] || !index(" " wanted " ", " " part[1] " ")) continue
+          seen[part[2]] = 1
+          values = values == "" || values == part[3] ? part[3] : values "; " part[3]
+          defaults = defaults == "" || defaults == part[4] ? part[4] : defaults ", " part[4]
+        }
+      if (values != "") {
+        if (defaults == "none") defaults = cell[4]
+        if (values ~ /^(text|vector)$/) values = cell[3]
+        rest = $0
+        for (k = 1; k <= 4; ++k) rest = substr(rest, index(rest, "|") + 1)
+        $0 = "| " cell[2] " | " values " | " defaults " |" rest
+      }
+    }
+    { print }
+    END { if (wanted != "") finish() }' "$work/rows" "$page" > "$work/page"
+  [ -z "$update" ] || cat "$work/page" > "$page"
+  diff "$page" "$work/page" > "$work/differences" || {
+    sed "s|^|$page: |" "$work/differences"
+    echo "check_surveys_page.sh --update writes the tables anew"
+  } >> "$faults"
+fi
 
 # --------------------------------------------------------------------------------------------------------------- examples
 

@@ -9,18 +9,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
 /// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds
 /// the survey. Templates, references and inheritance are resolved: each struct is complete. The comment of a member
-/// names its attribute or element. A 0 may mean a default or none; `validate` refuses negative values there.
+/// names its attribute or element, the function `fields` its limits, which `check_fields` checks. A 0 may mean a
+/// default or none.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Column of each quantity, from 0.
@@ -33,6 +37,15 @@ struct TrajectoryIndices {
   int y = 5;      ///< `yIndex`
   int z = 6;      ///< `zIndex`
 
+  void fields(FieldIo& io) {
+    io.whole("tIndex", time, 0, 999);
+    io.whole("rollIndex", roll, 0, 999);
+    io.whole("pitchIndex", pitch, 0, 999);
+    io.whole("yawIndex", yaw, 0, 999);
+    io.whole("xIndex", x, 0, 999);
+    io.whole("yIndex", y, 0, 999);
+    io.whole("zIndex", z, 0, 999);
+  }
   bool operator==(const TrajectoryIndices&) const = default;
 };
 
@@ -48,6 +61,41 @@ struct TrajectorySettings {
   std::optional<double> start{};  ///< on the clock of the file, default its first sample; `tStart` [s]
   std::optional<double> end{};    ///< on the clock of the file, default its last sample; `tEnd` [s]
 
+  void fields(FieldIo& io) {
+    io.file("trajectory", file);
+    separator_fields(io);
+    TrajectoryIndices indices = columns.value_or(TrajectoryIndices{});
+    bool given = columns.has_value();
+    for (const char* name : {"tIndex", "rollIndex", "pitchIndex", "yawIndex", "xIndex", "yIndex", "zIndex"})
+      given = given || io.has(name);
+    if (given || io.reads()) indices.fields(io);
+    if (given && io.reads()) columns = indices;
+    io.choice("interpolationDomain", position_only, {{"position_and_attitude", false}, {"position", true}});
+    io.flag("toRadians", angles_in_degrees);
+    io.flag("syncGPSTime", sync_clock);
+    io.flag("teleportToStart", teleports);
+    double slope = 0;
+    if (io.reads()) io.number("slopeFilterThreshold", slope, units::one, 0, 1e9);
+    if (slope > 0) io.warn("slopeFilterThreshold", "slopeFilterThreshold has no effect: all samples are kept");
+    io.number("tStart", start, units::second, -1e12, 1e12);
+    io.number("tEnd", end, units::second, -1e12, 1e12);
+    if (start && end && !(*start < *end)) io.fault("tEnd", "tEnd is not after tStart");
+  }
+  /// Both spellings of the separator.
+  void separator_fields(FieldIo& io) {
+    for (const char* name : {"trajectory_separator", "trajectory_seperator"}) {
+      std::optional<std::string> given;
+      if (!io.reads() && separator) given.emplace(1, *separator);
+      io.text(name, given);
+      if (!io.reads()) return;
+      const bool is_one =
+          given && given->size() == 1 && std::string_view(",;\t ").find(*given) != std::string_view::npos;
+      if (is_one) separator = given->front();
+      if (given && !is_one)
+        io.warn(name, FieldIo::said(name, *given) +
+                          " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
+    }
+  }
   bool operator==(const TrajectorySettings&) const = default;
 };
 
@@ -60,6 +108,29 @@ struct LegPlatformSettings {
   std::optional<double> yaw_at_departure{};  ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
+  void fields(FieldIo& io) {
+    io.components(position);
+    io.flag("onGround", on_ground);
+    io.number("movePerSec_m", speed, units::metre_per_second, 0, 1e5);
+    io.flag("smoothTurn", smooth_turn);
+    bool stops = true;
+    bool slows = true;
+    if (io.reads()) {
+      io.flag("stopAndTurn", stops);
+      io.flag("slowdownEnabled", slows);
+    }
+    if (!stops) smooth_turn = true;
+    if (!slows)
+      io.warn("slowdownEnabled",
+              "slowdownEnabled of false has no effect: a multicopter slows down as it must to turn and to stop");
+    io.number("yawAtDeparture_deg", yaw_at_departure, units::degree, -3600, 3600);
+    if (!io.reads() && trajectory) return trajectory->fields(io);
+    if (!io.reads()) return;
+    const TrajectorySettings before = trajectory.value_or(TrajectorySettings{});
+    TrajectorySettings read = before;
+    read.fields(io);
+    if (read != before || io.has("trajectory")) trajectory = std::move(read);
+  }
   bool operator==(const LegPlatformSettings&) const = default;
 };
 
@@ -78,14 +149,21 @@ struct LegScannerSettings {
   double trajectory_interval = 0;      ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
   double warm_up = 0;  ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
 
-  void validate() const {
-    require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
-    require_not_negative("scanFreq_hz", scan_rate, "Hz");
-    if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
-    require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
-    require_not_negative("opticsWarmupPhase_s", warm_up, "s");
+  void fields(FieldIo& io) {
+    io.flag("active", active);
+    io.number("pulseFreq_hz", pulse_rate, units::hertz, 0, 1e8);
+    io.number("scanFreq_hz", scan_rate, units::hertz, 0, 1e6);
+    io.number("scanAngle_deg", scan_angle, units::degree, 0, 180);
+    io.number("verticalAngleMin_deg", vertical_angle_min, units::degree, -360, 360);
+    io.number("verticalAngleMax_deg", vertical_angle_max, units::degree, -360, 360);
+    io.number("headRotatePerSec_deg", head_rate, units::degree_per_second, -1e6, 1e6);
+    io.number("headRotateStart_deg", head_start, units::degree, -1e8, 1e8);
+    io.number("headRotateStop_deg", head_stop, units::degree, -1e8, 1e8);
+    io.number("beamDivergence_rad", divergence, units::radian, 1e-9, 0.5);
+    io.number("trajectoryTimeInterval_s", trajectory_interval, units::second, 0, 1e9);
+    io.number("opticsWarmupPhase_s", warm_up, units::second, 0, 1e5);
   }
-
+  void validate() const { check_fields(*this); }
   bool operator==(const LegScannerSettings&) const = default;
 };
 
@@ -96,11 +174,10 @@ struct LegSettings {
   LegPlatformSettings platform{};        ///< `platformSettings` of the leg
   LegScannerSettings scanner{};          ///< `scannerSettings` of the leg
 
-  void validate() const {
-    if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");
-    scanner.validate();
+  void fields(FieldIo& io) {
+    io.text("stripId", strip);
+    io.number("maxDuration_s", duration_max, units::second, 0, 1e9);
   }
-
   bool operator==(const LegSettings&) const = default;
 };
 
@@ -132,6 +209,10 @@ struct MulticopterDynamics {
   double yaw_speed = radians(85.94);  ///< maximum; `yaw_speed_deg` [rad/s]
   double pitch_offset = radians(35);  ///< maximum bank angle; `pitch_offset_deg` [rad]
 
+  void fields(FieldIo& io) {
+    io.number("yaw_speed_deg", yaw_speed, units::degree_per_second, 0, 1e5);
+    io.number("pitch_offset_deg", pitch_offset, units::degree, 0, 90);
+  }
   bool operator==(const MulticopterDynamics&) const = default;
 };
 
@@ -153,8 +234,19 @@ struct NoiseSettings {
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
   int lifespan = 1;  ///< number of pulses per random number, 0 for all; `fixedLifespan`
 
-  void validate() const { detail::require_at_least(0, "fixedLifespan", lifespan); }
-
+  void fields(FieldIo& io) {
+    io.choice("type", distribution, {{"NORMAL", NoiseDistribution::normal}, {"UNIFORM", NoiseDistribution::uniform}});
+    io.number("mean", mean, units::one, -1e6, 1e6);
+    io.number("stdev", deviation, units::one, 0, 1e6);
+    io.number("min", low, units::one, -1e6, 1e6);
+    io.number("max", high, units::one, -1e6, 1e6);
+    io.flag("clipEnabled", clipped);
+    io.number("clipMin", clip_low, units::one, -1e6, 1e6);
+    io.number("clipMax", clip_high, units::one, -1e6, 1e6);
+    io.whole("fixedLifespan", lifespan, 0, 1'000'000'000);
+    if (distribution == NoiseDistribution::uniform && !(low <= high)) io.fault("max", "max is below min");
+    if (clipped && !(clip_low <= clip_high)) io.fault("clipMax", "clipMax is below clipMin");
+  }
   bool operator==(const NoiseSettings&) const = default;
 };
 
@@ -169,12 +261,6 @@ struct PlatformSettings {
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
 
-  void validate() const {
-    for (const auto* noises : {&position_noise, &attitude_noise})
-      for (const std::optional<NoiseSettings>& noise : *noises)
-        if (noise) noise->validate();
-  }
-
   bool operator==(const PlatformSettings&) const = default;
 };
 
@@ -183,6 +269,10 @@ struct LegOffsetSettings {
   double mean = 0;         ///< along each axis; `legRandomOffsetMean` [m]
   double deviation = 0.1;  ///< along each axis; `legRandomOffsetStdev` [m]
 
+  void fields(FieldIo& io) {
+    io.number("legRandomOffsetMean", mean, units::metre, -1e6, 1e6);
+    io.number("legRandomOffsetStdev", deviation, units::metre, 0, 1e6);
+  }
   bool operator==(const LegOffsetSettings&) const = default;
 };
 

@@ -83,7 +83,7 @@ def test_settings_are_plain_objects(survey):
     assert other != survey and survey.legs[0].platform.position == (0, 0, 0)
     with pytest.raises(AttributeError):
         survey.legs[0].platform.sped = 3
-    assert "[m/s]" in pulsecast.LegPlatformSettings.__doc__
+    assert "[m/s]; in documents: m/s, 0 to 1e5" in pulsecast.LegPlatformSettings.__doc__
 
 
 @pytest.mark.parametrize(("spoil", "says"), [
@@ -109,25 +109,31 @@ def test_what_is_not_a_number_is_refused_by_name(survey):
         simulation(survey)
 
 
+def test_what_does_not_go_together_is_refused_by_name(survey):
+    survey.platform.attitude_noise = [pulsecast.NoiseSettings(clipped=True, clip_low=2), None, None]
+    with pytest.raises(pulsecast.SettingError, match=r"SurveySettings\.platform\.attitude_noise\[0\]: clipMax is below clipMin"):
+        pulsecast.xml_text(survey)
+
+
 @pytest.mark.parametrize(("spoil", "says"), [
-    (lambda s: setattr(s.legs[1].scanner, "pulse_rate", -5), "leg 1: pulseFreq_hz is -5 Hz"),
-    (lambda s: setattr(s.legs[1].scanner, "scan_rate", -5), "leg 1: scanFreq_hz is -5 Hz"),
-    (lambda s: setattr(s.legs[1].scanner, "trajectory_interval", -1), "leg 1: trajectoryTimeInterval_s is -1 s"),
-    (lambda s: setattr(s.legs[2], "duration_max", -1), "leg 2: maxDuration_s is -1 s"),
-    (lambda s: setattr(s.scanner.channels[0], "scan_angle_max", -1), "scanAngleMax_deg is -57"),
-    (lambda s: setattr(s.scanner.channels[0], "scan_rate_max", -1), "scanFreqMax_Hz is -1 Hz"),
-    (lambda s: setattr(s.scanner.channels[0], "returns_max", -1), "maxNOR is -1"),
-    (lambda s: setattr(s.scanner.channels[0].waveform, "rings", 0), "beamSampleQuality is 0"),
-    (lambda s: setattr(s.scanner.channels[0].waveform, "duration_max", -1e-9), "maxFullwaveRange_ns is -1 ns"),
-    (lambda s: setattr(s.platform, "position_noise", [None, pulsecast.NoiseSettings(lifespan=-1), None]), "fixedLifespan is -1"),
-    (lambda s: setattr(s.scene, "dynamic_step", 0), "dynStep is 0"),
-    (lambda s: setattr(s.scene, "dynamic_interval", 0), "dynTimeStep is 0 s"),
-    (lambda s: setattr(s.scene.parts[0], "dynamic_step", 0), "part '7': dynStep is 0"),
-    (lambda s: setattr(s.scene.parts[0], "swaps", [pulsecast.SwapSettings(step=-1)]), "part '7': swap 0: swapStep is -1"),
-    (lambda s: setattr(s.scene.parts[0], "motions", [pulsecast.MotionSequenceSettings(loop=-1)]), "part '7': dmotion 0: loop is -1"),
-    (lambda s: setattr(s.scene.parts[0], "source", pulsecast.XyzSource(estimate_normals=-1)), "part '7': estimateNormals is -1"),
+    (lambda s: setattr(s.legs[1].scanner, "pulse_rate", -5), r"SurveySettings\.legs\[1\]\.scanner\.pulse_rate \(pulseFreq_hz\) is -5 Hz, but must be from 0 to"),
+    (lambda s: setattr(s.legs[1].scanner, "scan_rate", -5), r"\.scan_rate \(scanFreq_hz\) is -5 Hz"),
+    (lambda s: setattr(s.legs[1].scanner, "trajectory_interval", -1), r"\.trajectory_interval \(trajectoryTimeInterval_s\) is -1 s"),
+    (lambda s: setattr(s.legs[2], "duration_max", -1), r"legs\[2\]\.duration_max \(maxDuration_s\) is -1 s"),
+    (lambda s: setattr(s.scanner.channels[0], "scan_angle_max", -1), r"scanner\.channels\[0\]\.scan_angle_max \(scanAngleMax_deg\) is -57"),
+    (lambda s: setattr(s.scanner.channels[0], "scan_rate_max", -1), r"scan_rate_max \(scanFreqMax_Hz\) is -1 Hz"),
+    (lambda s: setattr(s.scanner.channels[0], "returns_max", -1), r"returns_max \(maxNOR\) is -1"),
+    (lambda s: setattr(s.scanner.channels[0].waveform, "rings", 0), r"waveform\.rings \(beamSampleQuality\) is 0"),
+    (lambda s: setattr(s.scanner.channels[0].waveform, "duration_max", -1e-9), r"duration_max \(maxFullwaveRange_ns\) is -1 ns"),
+    (lambda s: setattr(s.platform, "position_noise", [None, pulsecast.NoiseSettings(lifespan=-1), None]), r"position_noise\[1\]\.lifespan \(fixedLifespan\) is -1"),
+    (lambda s: setattr(s.scene, "dynamic_step", 0), r"SurveySettings\.scene\.dynamic_step \(dynStep\) is 0"),
+    (lambda s: setattr(s.scene, "dynamic_interval", 0), r"dynamic_interval \(dynTimeStep\) is 0 s"),
+    (lambda s: setattr(s.scene.parts[0], "dynamic_step", 0), r"scene\.parts\[0\]\.dynamic_step \(dynStep\) is 0"),
+    (lambda s: setattr(s.scene.parts[0], "swaps", [pulsecast.SwapSettings(step=-1)]), r"parts\[0\]\.swaps\[0\]\.step \(swapStep\) is -1"),
+    (lambda s: setattr(s.scene.parts[0], "motions", [pulsecast.MotionSequenceSettings(loop=-1)]), r"motions\[0\]\.loop \(loop\) is -1"),
+    (lambda s: setattr(s.scene.parts[0], "source", pulsecast.XyzSource(estimate_normals=-1)), r"source\.estimate_normals \(estimateNormals\) is -1"),
     (lambda s: setattr(s.scene.parts[0], "source", pulsecast.GeoTiffSource(material=pulsecast.MaterialSource(random=-1))),
-     "part '7': randomMaterials is -1"),
+     r"source\.material\.random \(randomMaterials\) is -1"),
 ])
 def test_less_than_the_default_of_zero_is_no_setting(survey, spoil, says):
     spoil(survey)
@@ -173,7 +179,7 @@ def test_settings_have_the_limits_and_notes_of_a_document(survey, tmp_path):
         assert any(says in str(note.message) for note in notes), says
     survey.legs[0].scanner.vertical_angle_min, survey.legs[0].scanner.vertical_angle_max = -40, 60
     for refused in (simulation, pulsecast.xml_text, lambda s: pulsecast.write_survey(tmp_path / "no.xml", s)):
-        with pytest.raises(pulsecast.SettingError, match=r"leg 0: verticalAngleMin_deg is -2291\.8.* from -360 to 360: given in degrees"):
+        with pytest.raises(pulsecast.SettingError, match=r"vertical_angle_min \(verticalAngleMin_deg\) is -2291\.8.* from -360 to 360: given in degrees"):
             refused(survey)
     assert not (tmp_path / "no.xml").exists()
 

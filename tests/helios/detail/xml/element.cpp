@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 #include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/output.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -76,22 +77,20 @@ struct Everything {
   std::optional<Vec3> normal{};
   std::filesystem::path file{};
 
+  void fields(FieldIo& io) {
+    io.number("length_ns", length, units::nanosecond, 0, 1e12);
+    io.number("angle_deg", angle, units::degree, -360, 360);
+    io.whole("count", count, -5, 5);
+    io.flag("on", is_on);
+    io.text("name", name);
+    io.text("nick", nick);
+    io.choice("colour", colour, {{"red", Colour::red}, {"green", Colour::green}});
+    io.vector("place", place, 1e9);
+    io.vector("normal", normal, 1);
+    io.file("file", file);
+  }
   bool operator==(const Everything&) const = default;
 };
-
-template <class Io, class Settings>
-void all_fields(Io& io, Settings& s) {
-  io.number("length_ns", s.length, units::nanosecond, 0, 1e12);
-  io.number("angle_deg", s.angle, units::degree, -360, 360);
-  io.whole("count", s.count, -5, 5);
-  io.flag("on", s.is_on);
-  io.text("name", s.name);
-  io.text("nick", s.nick);
-  io.choice("colour", s.colour, {{"red", Colour::red}, {"green", Colour::green}});
-  io.vector("place", s.place, 1e9);
-  io.vector("normal", s.normal, 1);
-  io.file("file", s.file);
-}
 
 constexpr const char* whole_text =
     R"(length_ns="4" angle_deg="30" count="-3" on="1" name="" nick="k" colour="GREEN" place="1;-2;3.5" normal="0;0;1" file="a.xml")";
@@ -142,14 +141,14 @@ TEST_CASE("every kind of field is read, as attribute and as param, and what is n
     }
     Reading reading(text, params);
     Everything s;
-    all_fields(reading.io, s);
+    s.fields(reading.io);
     CHECK(reading.faults().empty());
     CHECK(s == Everything{4e-9, radians(30), -3, true, "", "k", Colour::green, Vec3(1, -2, 3.5), Vec3(0, 0, 1),
                           folder / "a.xml"});
   }
   Reading nothing("<a/>");
   Everything s;
-  all_fields(nothing.io, s);
+  s.fields(nothing.io);
   CHECK(nothing.faults().empty());
   CHECK(s == Everything{});
 }
@@ -157,17 +156,17 @@ TEST_CASE("every kind of field is read, as attribute and as param, and what is n
 TEST_CASE("what was written is read the same, as attribute and as param") {
   const Everything full{
       0.1, 0.2, 5, true, "<&>\"'\n", "", Colour::green, Vec3(1e-9, -2e8, 3), Vec3(0, 1, 0), folder / "a.xml"};
-  for (const Everything& s : {full, Everything{}})
+  for (Everything s : {full, Everything{}})
     for (const bool params : {false, true}) {
       pugi::xml_document document;
       pugi::xml_node node = document.append_child(params ? "filter" : "a");
       if (params) node.append_attribute("type").set_value("x");
       XmlOutput out(node, params);
-      all_fields(out, s);
+      s.fields(out);
       document.save_file((folder / "c.xml").c_str());
       Reading reading(support::content(folder / "c.xml"), params);
       Everything again{.length = 7, .name = "other"};
-      all_fields(reading.io, again);
+      again.fields(reading.io);
       CHECK(reading.faults().empty());
       CHECK(again.angle.has_value() == s.angle.has_value());
       again.angle = s.angle;
@@ -180,7 +179,7 @@ TEST_CASE("what is wrong with a field is told, and the field stays") {
   const auto refuses = [](const std::string& attribute, const std::string& part) {
     Reading reading("<a\n " + attribute + "/>");
     Everything s;
-    all_fields(reading.io, s);
+    s.fields(reading.io);
     CAPTURE(attribute);
     const std::string faults = reading.faults();
     INFO(faults);
@@ -210,7 +209,7 @@ TEST_CASE("what is odd about a field, but leaves no doubt, is told and read") {
           "<filter type=\"x\">\n <param key=\"" + attribute.substr(0, equals) + "\" value" + attribute.substr(equals);
       Reading reading(params ? param + "/></filter>" : "<a\n " + attribute + "/>", params);
       Everything s;
-      all_fields(reading.io, s);
+      s.fields(reading.io);
       CAPTURE(attribute);
       const std::string warnings = reading.warnings();
       INFO(warnings);
@@ -237,7 +236,7 @@ TEST_CASE("what is odd about a field, but leaves no doubt, is told and read") {
 TEST_CASE("children are read in order, once where there may be one, and unknown ones are told") {
   Reading reading("<a><b n=\"1\"/><b n=\"2\"/><c/><c/><d/></a>");
   std::vector<int> numbers;
-  reading.io.children("b", numbers, [](XmlInput& io, int& n) { io.whole("n", n, 0, 9); });
+  reading.io.children("b", numbers, [](FieldIo& io, int& n) { io.whole("n", n, 0, 9); });
   CHECK(numbers == std::vector<int>{1, 2});
   CHECK(reading.io.child("c", [](XmlInput&) {}));
   CHECK_FALSE(reading.io.child("e", [](XmlInput&) { FAIL("does not exist"); }));

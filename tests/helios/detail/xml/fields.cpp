@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/helios/detail/xml/fields.hpp>
 
+#include <cmath>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/motion.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
-#include <pulsecast/helios/detail/xml/source.hpp>
 
 #include "helios/xml_reading.hpp"
 
@@ -55,12 +56,78 @@ std::string filter_told(const std::string& params, Source& source) {
   return support::xml_told("<f><filter type=\"x\">" + params + "</filter></f>", [&](XmlInput& outer) {
     outer.know({}, {"filter"});
     XmlInput io(outer.document(), outer.node().child("filter"), outer.report(), outer.search(), true);
-    xml::fields(io, source);
+    PartSource read = source;
+    xml::fields(io, read);
+    source = std::get<Source>(read);
     io.finish();
   });
 }
 
+/// Sets the numbers of settings one after the other beyond their maximum, in the unit of documents.
+class Beyond final : public FieldCheck {
+ public:
+  explicit Beyond(int row) : row_(row) {}
+  [[nodiscard]] bool reads() const noexcept override { return true; }
+  [[nodiscard]] bool has(const char*) const override { return true; }
+  using FieldCheck::number, FieldCheck::vector;
+  void vector(const char*, Vec3&, double) override {}
+  void number(const char* row, double& value, const XmlUnit& unit, double, double high) override {
+    const bool is_member = std::string_view(row) != "slopeFilterThreshold";
+    if (is_member && high < 1e300 && row_-- == 0) value = unit.si(tell(row, 1.5 * std::abs(high) + 1));
+  }
+  void whole(const char* row, int& value, int, int high) override {
+    if (row_-- == 0) value = static_cast<int>(tell(row, high + 1.0));
+  }
+  bool element(const char*, const std::function<void(FieldIo&)>&) override { return false; }
+  void each(const char*, std::size_t, const std::function<void(FieldIo&, std::size_t)>&) override {}
+  void fault(std::string_view, std::string) const override {}
+
+  std::string name, text;  ///< of the number that was set
+
+ private:
+  double tell(const char* row, double number) {
+    name = row;
+    text = xml_number(number);
+    return number;
+  }
+  int row_;
+};
+
+/// Checks that each number of settings is refused beyond its maximum, as a member and as an attribute; counts them.
+template <class Settings>
+int refused_beyond_limits(const Settings& defaults = {}) {
+  for (int row = 0;; ++row) {
+    Settings settings = defaults;
+    Beyond beyond(row);
+    settings.fields(beyond);
+    if (beyond.name.empty()) return row;
+    CAPTURE(beyond.name);
+    CHECK_NOTHROW(check_fields(defaults));
+    CHECK_THROWS_WITH_AS(check_fields(settings), doctest::Contains(beyond.name.c_str()), SettingError);
+    settings = defaults;
+    const std::string attribute = beyond.name + "=\"" + beyond.text + "\"";
+    CHECK(contains(support::xml_told("<a " + attribute + "/>", [&](XmlInput& io) { settings.fields(io); }),
+                   attribute + ": expected"));
+  }
+}
+
+template <class... Settings>
+int all_refused_beyond_limits(const Settings&... defaults) {
+  return (refused_beyond_limits(defaults) + ...);
+}
+
 }  // namespace
+
+// ----------------------------------------------------------------------------------------- limits
+
+TEST_CASE("each number of all settings has its limits in programs and in documents") {
+  CHECK(all_refused_beyond_limits(
+            AxisTurn{}, MountSettings{}, ChannelSettings{.optic = OscillatingOptic{}}, RotatingOptic{}, LineOptic{},
+            RisleyOptic{}, FullWaveformSettings{}, NoiseSettings{}, MulticopterDynamics{}, LegOffsetSettings{},
+            LegPlatformSettings{}, LegScannerSettings{}, TrajectorySettings{}, TrajectoryIndices{}, SceneSettings{},
+            PartSettings{}, LightSettings{}, MediumSettings{}, MotionSequenceSettings{}, SwapSettings{},
+            MaterialSource{}, GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}) > 90);
+}
 
 // ------------------------------------------------------------------------------ mounts, directions
 
@@ -90,7 +157,7 @@ TEST_CASE("of a turn, what cannot be is told") {
 TEST_CASE("a direction needs a length") {
   Vec3 v = axis::up;
   const auto read = [&](const char* text) {
-    return support::xml_told(text, [&](XmlInput& io) { xml::direction(io, "d", v); });
+    return support::xml_told(text, [&](XmlInput& io) { io.direction("d", v); });
   };
   CHECK(read(R"(<a><d x="1"/></a>)").empty());
   CHECK(v == axis::right);

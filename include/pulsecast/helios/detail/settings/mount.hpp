@@ -4,24 +4,14 @@
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 
 #include <cstdint>
-#include <limits>
-#include <string_view>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
-
-namespace detail {
-
-/// Refuses an integer less than `least`.
-inline void require_at_least(int least, std::string_view field, int value) {
-  require_within(field, value, least, std::numeric_limits<int>::max(), "");
-}
-
-}  // namespace detail
 
 /// Axis of a rotation: right, forward, up.
 enum class Axis : std::uint8_t { x, y, z };
@@ -31,6 +21,11 @@ struct AxisTurn {
   Axis axis = Axis::z;  ///< `axis`
   double angle = 0;     ///< right-handed; `angle_deg` [rad]
 
+  void fields(FieldIo& io) {
+    io.require({"axis", "angle_deg"});
+    io.choice("axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}});
+    io.number("angle_deg", angle, units::degree, -36000, 36000);
+  }
   bool operator==(const AxisTurn&) const = default;
 };
 
@@ -51,6 +46,10 @@ struct RotationList {
     return normalize(all);
   }
 
+  void fields(FieldIo& io) {
+    io.choice("rotations", local, {{"global", false}, {"local", true}});
+    io.children("rot", turns);
+  }
   bool operator==(const RotationList&) const = default;
 };
 
@@ -59,6 +58,11 @@ struct MountSettings {
   Vec3 position{};          ///< in the frame of the carrier; `x`, `y`, `z` [m]
   RotationList rotation{};  ///< from the frame of the device to that of the carrier
 
+  void fields(FieldIo& io) {
+    if (io.reads()) *this = {};
+    io.components(position);
+    rotation.fields(io);
+  }
   bool operator==(const MountSettings&) const = default;
 };
 

@@ -11,10 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/settings/mount.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 
 /// Sources of the geometry of parts: loading filters.
 namespace PULSECAST_NAMESPACE::helios {
@@ -26,11 +24,12 @@ struct MaterialSource {
   int random = 0;                     ///< number of variants; `randomMaterials`
   double random_range = 1;            ///< maximum colour difference of variants; `randomRange`
 
-  void validate() const {
-    detail::require_at_least(0, "randomMaterials", random);
-    require_not_negative("randomRange", random_range, "");
+  void fields(FieldIo& io) {
+    io.file("matfile", file);
+    io.text("matname", name);
+    io.whole("randomMaterials", random, 0, 1'000'000);
+    io.number("randomRange", random_range, units::one, 0, 1e6);
   }
-
   bool operator==(const MaterialSource&) const = default;
 };
 
@@ -39,6 +38,10 @@ struct ObjSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   bool y_up = false;                           ///< `up`
 
+  void fields(FieldIo& io) {
+    io.choice("up", y_up, {{"z", false}, {"y", true}});
+    io.without_effect({"recomputeVertexNormals"});
+  }
   bool operator==(const ObjSource&) const = default;
 };
 
@@ -54,13 +57,16 @@ struct GeoTiffSource {
   std::optional<double> missing{};       ///< number of missing heights; by default that of the file. `noDataValue`
   std::optional<double> pixel_size{};    ///< of PNG files without a world file [m]. `pixelSize`
 
-  void validate() const {
-    material.validate();
-    if (height_scale) require_within("GeoTiffSource::height_scale", *height_scale, 1e-9, 1e6, "m");
-    require_within("GeoTiffSource::height_offset", height_offset, -1e9, 1e9, "m");
-    if (pixel_size) require_within("GeoTiffSource::pixel_size", *pixel_size, 1e-6, 1e6, "m");
+  void fields(FieldIo& io) {
+    material.fields(io);
+    io.flag("mosaic", mosaic);
+    io.file("classfile", classes);
+    io.flag("classcolours", class_colours);
+    io.number("heightScale", height_scale, units::metre, 1e-9, 1e6);
+    io.number("heightOffset", height_offset, units::metre, -1e9, 1e9);
+    io.number("noDataValue", missing, units::one, -1e300, 1e300);
+    io.number("pixelSize", pixel_size, units::metre, 1e-6, 1e6);
   }
-
   bool operator==(const GeoTiffSource&) const = default;
 };
 
@@ -75,11 +81,28 @@ struct XyzSource {
   bool snap_neighbor_normal = false;  ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
-  void validate() const {
-    material.validate();
-    detail::require_at_least(0, "estimateNormals", estimate_normals);
+  void fields(FieldIo& io) {
+    material.fields(io);
+    io.text("separator", separator);
+    io.require({"voxelSize"});
+    io.number("voxelSize", voxel_size, units::metre, 0, 1e6);
+    io.vector("defaultNormal", default_normal, 1e6);
+    io.whole("estimateNormals", estimate_normals, 0, 1'000'000);
+    io.flag("snapNeighborNormal", snap_neighbor_normal);
+    static constexpr std::array normals{"normalXIndex", "normalYIndex", "normalZIndex"};
+    for (std::size_t i = 0; i < 3; ++i) io.whole(normals[i], normal_columns[i], 0, 999);
+    io.without_effect({"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue"}, "has no effect: voxels have no colour");
+    io.without_effect({"sparse"});
+    if (!io.reads()) return;
+    if (voxel_size == 0) {
+      voxel_size = 1;
+      io.warn("voxelSize", "voxelSize of 0 means 1 m");
+    }
+    if (default_normal == Vec3{}) {
+      default_normal.reset();
+      io.warn("defaultNormal", "defaultNormal is zero: it has no direction, and no effect");
+    }
   }
-
   bool operator==(const XyzSource&) const = default;
 };
 
@@ -101,8 +124,16 @@ struct VoxelSource {
   double clumping = 1;                       ///< factor of the extinction. `clumping`
   std::filesystem::path leaf_angles{};       ///< look-up table; empty: none. `ladlut`
 
-  void validate() const { material.validate(); }
-
+  void fields(FieldIo& io) {
+    material.fields(io);
+    io.choice("intersectionMode", mode,
+              {{"transmittive", VoxelMode::transmittive}, {"fixed", VoxelMode::fixed}, {"scaled", VoxelMode::scaled}});
+    io.number("intersectionArgument", scaling_exponent, units::one, 0, 100);
+    io.flag("randomShift", random_shift);
+    io.file("ladlut", leaf_angles);
+    io.number("leafArea_m2", leaf_area, units::square_metre, 0, 100);
+    io.number("clumping", clumping, units::one, 0.01, 10);
+  }
   bool operator==(const VoxelSource&) const = default;
 };
 
@@ -120,23 +151,16 @@ struct MeshSource {
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
   std::filesystem::path materials{};  ///< MTL file whose materials replace those of the same names. `materials`
 
-  void validate() const {
-    if (unit) require_within("unit", *unit, 1e-9, 1e9, "m");
+  void fields(FieldIo& io) {
+    io.choice("up", up, {{"file", MeshUp::file}, {"z", MeshUp::z}, {"y", MeshUp::y}});
+    io.number("unit", unit, units::metre, 1e-9, 1e9);
+    io.file("materials", materials);
   }
-
   bool operator==(const MeshSource&) const = default;
 };
 
 /// Any source of geometry.
 using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource, MeshSource>;
-
-namespace detail {
-
-inline void validate_source(const PartSource& source) {
-  std::visit([](const auto& one) { (void)validated(one); }, source);
-}
-
-}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

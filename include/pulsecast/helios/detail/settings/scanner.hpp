@@ -14,6 +14,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -24,6 +25,7 @@ using pulsecast::KeptReturns;
 struct OscillatingOptic {
   double scan_product_max = radians(1e6);  ///< of half scan angle times frequency; `scanProduct` in deg Hz [rad/s]
 
+  void fields(FieldIo& io) { io.number("scanProduct", scan_product_max, units::degree_hertz, 1e-3, 1e12); }
   bool operator==(const OscillatingOptic&) const = default;
 };
 
@@ -33,11 +35,13 @@ struct RotatingOptic {
   /// Maximum half angle of measurement, default `scan_angle_max`; `scanAngleEffectiveMax_deg` [rad]
   std::optional<double> effective_angle_max{};
 
+  void fields(FieldIo& io) { io.number("scanAngleEffectiveMax_deg", effective_angle_max, units::degree, 0, 180); }
   bool operator==(const RotatingOptic&) const = default;
 };
 
 /// Palmer mirror (conical scan): `optics="conic"`.
 struct ConicOptic {
+  void fields(FieldIo& /*io*/) {}
   bool operator==(const ConicOptic&) const = default;
 };
 
@@ -45,6 +49,7 @@ struct ConicOptic {
 struct LineOptic {
   int fibers = 1;  ///< `numFibers`
 
+  void fields(FieldIo& io) { io.whole("numFibers", fibers, 1, 1'000'000); }
   bool operator==(const LineOptic&) const = default;
 };
 
@@ -63,11 +68,34 @@ struct RisleyOptic {
   double air_refractive_index = 1;      ///< `refrIndex_air`
   Vec3 incident_beam = axis::forward;   ///< non-zero, any length; `<incidentBeam>`
 
+  void fields(FieldIo& io) {
+    static constexpr std::array rates{"rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz"};
+    static constexpr std::array angles{"angle1_deg", "angle2_deg", "angle3_deg"};
+    static constexpr std::array indices{"refrIndex1", "refrIndex2", "refrIndex3"};
+    for (std::size_t i = 0; i < prisms.size(); ++i) {
+      io.number(rates[i], prisms[i].rotation_rate, units::hertz, -1e5, 1e5);
+      io.number(angles[i], prisms[i].angle, units::degree, -89, 89);
+      io.number(indices[i], prisms[i].refractive_index, units::one, 0.1, 10);
+    }
+    io.number("refrIndex_air", air_refractive_index, units::one, 0.1, 10);
+    io.direction("incidentBeam", incident_beam);
+  }
   bool operator==(const RisleyOptic&) const = default;
 };
 
 /// Any optic.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
+
+namespace detail {
+
+/// Default optic of a kind.
+[[nodiscard]] inline OpticSettings optic_of(std::size_t kind) {
+  static const std::array<OpticSettings, 5> all{OscillatingOptic{}, RotatingOptic{}, ConicOptic{}, LineOptic{},
+                                                RisleyOptic{}};
+  return all[kind];
+}
+
+}  // namespace detail
 
 /// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
@@ -76,11 +104,14 @@ struct FullWaveformSettings {
   int rings = 3;                   ///< number of subray rings, including the centre; `beamSampleQuality`
   double duration_max = 0;         ///< 0: no limit; `maxFullwaveRange_ns` [s]
 
-  void validate() const {
-    detail::require_at_least(1, "beamSampleQuality", rings);
-    require_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
+  void fields(FieldIo& io) {
+    io.number("binSize_ns", bin_size, units::nanosecond, 1e-4, 1e4);
+    io.number("winSize_ns", window, units::nanosecond, 0, 1e6);
+    io.whole("beamSampleQuality", rings, 1, 100);
+    io.number("maxFullwaveRange_ns", duration_max, units::nanosecond, 0, 1e9);
+    io.without_effect({"apertureDiameter_m", "minEchoWidth", "peakEnergy", "scannerEfficiency", "atmosphericVisibility",
+                       "scannerWaveLength", "beamDivergence_rad", "numTimeBins", "numFullwaveBins"});
   }
-
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
@@ -124,13 +155,62 @@ struct ChannelSettings {
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
+  void fields(FieldIo& io) {
+    optic_fields(io);
+    io.number("scanAngleMax_deg", scan_angle_max, units::degree, 0, 180);
+    io.number("scanFreqMin_Hz", scan_rate_min, units::hertz, 0, 1e6);
+    io.number("scanFreqMax_Hz", scan_rate_max, units::hertz, 0, 1e6);
+    io.element("beamOrigin", [&](FieldIo& inner) { beam_origin.fields(inner); });
+    io.direction("headRotateAxis", head_axis);
+    io.number("headRotatePerSecMax_deg", head_rate_max, units::degree_per_second, 0, 1e6);
+    io.number("beamDivergence_rad", divergence, units::radian, 1e-9, 0.5);
+    io.number("pulseLength_ns", pulse_length, units::nanosecond, 1e-3, 1e4);
+    io.number("averagePower_w", average_power, units::watt, 1e-12, 1e9);
+    io.number("beamQualityFactor", beam_quality, units::one, 0.1, 1e3);
+    if (io.reads() && beam_quality == 1.0) beam_quality.reset();  // the format's default says nothing
+    io.number("wavelength_nm", wavelength, units::nanometre, 100, 1e5);
+    io.number("opticalEfficiency", efficiency, units::one, 0, 1);
+    io.number("receiverDiameter_m", receiver_diameter, units::metre, 1e-6, 1e3);
+    io.number("atmosphericVisibility_km", visibility, units::kilometre, 1e-3, 1e5);
+    detector_fields(io);
+    io.whole("maxNOR", returns_max, 0, 65535);
+    io.choice("keptReturns", returns_kept, {{"first", KeptReturns::first}, {"strongest", KeptReturns::strongest}});
+    io.number("receivedEnergyMin_W", received_power_min, units::nanowatt, 0, 1e12);
+    io.element("FWFSettings", [&](FieldIo& inner) { waveform.fields(inner); });
+  }
+  /// `optics` and its attributes. Another kind than before starts from defaults.
+  void optic_fields(FieldIo& io) {
+    std::size_t kind = optic.index();
+    io.choice("optics", kind, {{"oscillating", 0}, {"rotating", 1}, {"conic", 2}, {"line", 3}, {"risley", 4}});
+    if (kind != optic.index()) optic = detail::optic_of(kind);
+    std::visit([&](auto& of_kind) { of_kind.fields(io); }, optic);
+    for (const char* name :
+         {"scanProduct", "scanAngleEffectiveMax_deg", "numFibers", "rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz",
+          "angle1_deg", "angle2_deg", "angle3_deg", "refrIndex1", "refrIndex2", "refrIndex3", "refrIndex_air"})
+      if (!io.knows(name)) io.without_effect({name}, "has no effect with these optics");
+  }
+  /// Attributes of a detector, of a scanner, a channel or a survey.
+  void detector_fields(FieldIo& io) {
+    io.number("accuracy_m", accuracy, units::metre, 0, 1e4);
+    io.number("rangeMin_m", range_min, units::metre, 0, 1e9);
+    io.number("rangeMax_m", range_max, units::metre, 0, FieldIo::any);
+  }
+  /// Reports limits that contradict each other.
+  void check_range(const FieldIo& io) const {
+    if (!(range_min < range_max))
+      io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
+  }
+  void check_limits(const FieldIo& io) const {
+    check_range(io);
+    if (scan_rate_max > 0 && scan_rate_max < scan_rate_min)
+      io.fault("scanFreqMax_Hz", "scanFreqMax_Hz is below scanFreqMin_Hz");
+    const auto* const rotating = std::get_if<RotatingOptic>(&optic);
+    if (rotating && rotating->effective_angle_max.value_or(1) == 0)
+      io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse is emitted");
+  }
   void validate() const {
-    require_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
-    require_not_negative("scanFreqMin_Hz", scan_rate_min, "Hz");
-    require_not_negative("scanFreqMax_Hz", scan_rate_max, "Hz");
-    require_not_negative("headRotatePerSecMax_deg", degrees(head_rate_max), "deg/s");
-    detail::require_at_least(0, "maxNOR", returns_max);
-    waveform.validate();
+    check_fields(*this);
+    check_limits(FieldCheck());
   }
 
   bool operator==(const ChannelSettings&) const = default;

@@ -14,6 +14,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/part_source.hpp>
 #include <pulsecast/material/media.hpp>
@@ -87,8 +88,12 @@ struct MotionSequenceSettings {
   std::optional<std::string> next{};      ///< id of the next sequence, default rest; `next`
   std::vector<MotionSettings> motions{};  ///< all applied in each step, in this order
 
-  void validate() const { detail::require_at_least(0, "loop", loop); }
-
+  void fields(FieldIo& io) {
+    io.require({"id", "loop"});
+    io.text("id", id);
+    io.whole("loop", loop, 0, 2'000'000'000);
+    io.text("next", next);
+  }
   bool operator==(const MotionSequenceSettings&) const = default;
 };
 
@@ -99,9 +104,10 @@ struct SwapSettings {
   std::optional<PartSource> source{};  ///< default: that of the part
   TransformSettings transform{};
 
+  void fields(FieldIo& io) { io.whole("swapStep", step, 1, 1'000'000); }
   void validate() const {
-    detail::require_at_least(1, "swapStep", step);
-    if (source) detail::validate_source(*source);
+    check_fields(*this);
+    if (source) std::visit([](const auto& one) { check_fields(one); }, *source);
   }
 
   bool operator==(const SwapSettings&) const = default;
@@ -111,6 +117,11 @@ struct SwapSettings {
 struct AttributeSettings {
   std::string name{};  ///< name of the column; `name`
   double value = 0;    ///< number; `value`
+  void fields(FieldIo& io) {
+    if (io.reads()) io.require({"name", "value"});
+    io.text("name", name);
+    io.number("value", value, units::one, -FieldIo::any, FieldIo::any);
+  }
   bool operator==(const AttributeSettings&) const = default;
 };
 
@@ -125,11 +136,14 @@ struct PartSettings {
   std::vector<SwapSettings> swaps{};              ///< in sequence
   std::vector<AttributeSettings> attributes{};    ///< named numbers, each name once
 
+  void fields(FieldIo& io) {
+    io.whole("dynStep", dynamic_step, 1, 1'000'000'000);
+    io.number("dynTimeStep", dynamic_interval, units::second, 1e-9, 1e6);
+  }
   void validate() const {
-    detail::validate_source(source);
-    detail::require_at_least(1, "dynStep", dynamic_step);
-    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
-    for (const MotionSequenceSettings& sequence : motions) sequence.validate();
+    std::visit([](const auto& one) { check_fields(one); }, source);
+    check_fields(*this);
+    for (const MotionSequenceSettings& sequence : motions) check_fields(sequence);
     for (const SwapSettings& swap : swaps) swap.validate();
     static_cast<void>(named_numbers());
   }
@@ -152,15 +166,13 @@ struct LightSettings {
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
   double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
 
-  /// @throws SettingError for values out of range
-  void validate() const {
-    require_within("passages", passages, 0, 32, "");
-    require_within("leastShare", share_min, 0, 1, "");
-    require_within("orders", orders, 1, 64, "");
-    require_within("paths", paths, 1, 100'000, "");
-    require_within("fieldOfView_deg", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");
+  void fields(FieldIo& io) {
+    io.whole("passages", passages, 0, 32);
+    io.number("leastShare", share_min, units::one, 0, 1);
+    io.whole("orders", orders, 1, 64);
+    io.whole("paths", paths, 1, 100'000);
+    io.number("fieldOfView_deg", field_of_view, units::degree, 0, 360);
   }
-
   bool operator==(const LightSettings&) const = default;
 };
 
@@ -214,6 +226,22 @@ struct MediumSettings {
     made.bounds = {min.value_or(all.min), max.value_or(all.max)};
     return made;
   }
+  void fields(FieldIo& io) {
+    io.choice("preset", preset,
+              {{"fog", MediumPreset::fog},
+               {"haze", MediumPreset::haze},
+               {"dust", MediumPreset::dust},
+               {"smoke", MediumPreset::smoke},
+               {"rain", MediumPreset::rain},
+               {"snow", MediumPreset::snow}});
+    io.number("visibility_m", visibility, units::metre, 1, 1e5);
+    io.number("rate_mmPerH", rate, units::millimetre_per_hour, 0.1, 300);
+    io.number("absorption_perM", absorption, units::per_metre, 0, 1e6);
+    io.number("scattering_perM", scattering, units::per_metre, 0, 1e6);
+    io.number("backscatter_perMSr", backscatter, units::per_metre_steradian, 0, 1e6);
+    io.vector("min", min, FieldIo::max_coordinate);
+    io.vector("max", max, FieldIo::max_coordinate);
+  }
   /// @throws SettingError for values out of range, or that do not go together
   void validate() const {
     const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow,
@@ -225,6 +253,7 @@ struct MediumSettings {
       require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
     region(known_wavelength).validate();
+    check_fields(*this);
   }
   static constexpr double known_wavelength = 905e-9;  ///< for which all presets are defined [m]
 
@@ -241,6 +270,13 @@ struct SceneSettings {
   std::vector<LightSettings> light{};   ///< `<light>`: the first counts; without it and media, rays end at surfaces
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
+  void fields(FieldIo& io) {
+    io.require({"id"});
+    io.text("id", id);
+    io.text("name", name);
+    io.whole("dynStep", dynamic_step, 1, 1'000'000'000);
+    io.number("dynTimeStep", dynamic_interval, units::second, 1e-9, 1e6);
+  }
   /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as
   /// `MediumSettings::region`
   [[nodiscard]] Media air(double wavelength) const {
@@ -252,11 +288,10 @@ struct SceneSettings {
   [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
 
   void validate() const {
-    detail::require_at_least(1, "dynStep", dynamic_step);
-    for (const LightSettings& one : light) one.validate();
+    check_fields(*this);
+    for (const LightSettings& one : light) check_fields(one);
     for (const MediumSettings& medium : media) medium.validate();
     (void)air(MediumSettings::known_wavelength);
-    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -23,29 +24,23 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
+#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
-#include <pulsecast/helios/detail/xml/output.hpp>
 
-/// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and
-/// children in turn. `XmlInput` reads them, `XmlOutput` writes them. A missing attribute keeps its value, so that
-/// inheritance is reading twice.
+/// Reading of elements. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known;
 /// `finish` reports the others.
-class XmlInput {
+class XmlInput final : public FieldIo {
  public:
-  static constexpr bool reads = true;
-
   XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search,
            bool params = false)
       : document_(document), node_(node), report_(report), search_(search), params_(params) {
     if (params) known_ = {"type"};
   }
-  XmlInput(const XmlInput&) = delete;
-  XmlInput& operator=(const XmlInput&) = delete;
-
+  [[nodiscard]] bool reads() const noexcept override { return true; }
   [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
   [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
   [[nodiscard]] XmlReport& report() const noexcept { return report_; }
@@ -59,18 +54,20 @@ class XmlInput {
     return given ? document_.place(given, "value") : place();
   }
 
-  void fault(std::string_view name, std::string problem) const { report_.fault(place(name), std::move(problem)); }
-  void warn(std::string_view name, const std::string& problem) const { report_.warn(place(name), problem); }
+  void fault(std::string_view name, std::string problem) const override {
+    report_.fault(place(name), std::move(problem));
+  }
+  void warn(std::string_view name, const std::string& problem) const override { report_.warn(place(name), problem); }
 
-  [[nodiscard]] bool has(const char* name) const {
+  [[nodiscard]] bool has(const char* name) const override {
     return params_ ? !param(name).empty() : !node_.attribute(name).empty();
   }
 
   /// True if a name was requested before.
-  [[nodiscard]] bool knows(std::string_view name) const { return is_among(known_, name); }
+  [[nodiscard]] bool knows(std::string_view name) const override { return is_among(known_, name); }
 
   /// Reports missing attributes that are mandatory.
-  void require(std::initializer_list<const char*> names) {
+  void require(std::initializer_list<const char*> names) override {
     for (const char* name : names) {
       required_.emplace_back(name);
       if (!has(name))
@@ -97,14 +94,14 @@ class XmlInput {
     return std::nullopt;
   }
 
+  using FieldIo::number, FieldIo::vector;
   /// Reads a number; `low` and `high` are its limits, in the unit of the document.
-  template <class Number>
-  void number(const char* name, Number& number, const XmlUnit& unit, double low, double high) {
+  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) override {
     if (const auto text = value(name))
       if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
   }
 
-  void whole(const char* name, int& number, int low, int high) {
+  void whole(const char* name, int& number, int low, int high) override {
     const auto text = value(name);
     const auto found = text ? number_of(*text) : std::nullopt;
     if (found && *found == std::floor(*found) && *found >= low && *found <= high)
@@ -114,37 +111,40 @@ class XmlInput {
                       std::to_string(high));
   }
 
-  void flag(const char* name, bool& flag) {
-    static constexpr std::array<std::pair<std::string_view, bool>, 4> others{
-        {{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
+  void flag(const char* name, bool& flag) override {
+    static constexpr std::array<std::string_view, 8> words{"true", "false", "1", "0", "yes", "no", "on", "off"};
     const std::string text = given(name).value_or("");
-    const auto other = std::find_if(others.begin(), others.end(),
-                                    [&](const auto& word) { return text::is_same_word(word.first, text); });
-    if (other == others.end()) return choice(name, flag, {{"true", true}, {"false", false}, {"1", true}, {"0", false}});
-    flag = other->second;
-    warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (!text::is_same_word(words[i], text)) continue;
+      flag = i % 2 == 0;
+      if (i >= 4)
+        warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
+      return;
+    }
+    std::size_t index = 0;
+    word(name, index, std::span(words).first(4), &flag);
   }
 
-  template <class Text>
-  void text(const char* name, Text& value) {
+  void text(const char* name, std::string& value) override {
     if (auto text = given(name)) value = *std::move(text);
+  }
+  void text(const char* name, std::optional<std::string>& value) override {
+    if (auto text = given(name)) value = std::move(text);
   }
 
   /// Reads one of several words; case is ignored.
-  template <class Value>
-  void choice(const char* name, Value& chosen, XmlWords<Value> words) {
+  void word(const char* name, std::size_t& index, std::span<const std::string_view> words,
+            const void* /*member*/) override {
     const auto text = value(name);
     if (!text) return;
-    std::vector<std::string> known;
-    for (const auto& [word, meaning] : words) {
-      if (text::is_same_word(word, *text)) return void(chosen = meaning);
-      known.emplace_back(word);
-    }
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (text::is_same_word(words[i], *text)) return void(index = i);
+    const std::vector<std::string> known(words.begin(), words.end());
     fault(name, said(name, *text) + " is not known" + text::suggestion(*text, known));
   }
 
   /// Reads three numbers separated by semicolons.
-  void vector(const char* name, Vec3& vector, double size_max) {
+  void vector(const char* name, Vec3& vector, double size_max) override {
     const auto text = value(name);
     if (!text) return;
     for (const char separator : {';', ',', ' '}) {
@@ -156,14 +156,9 @@ class XmlInput {
     }
     fault(name, said(name, *text) + ": expected three numbers 'x;y;z' of at most " + xml_number(size_max));
   }
-  void vector(const char* name, std::optional<Vec3>& vector, double size_max) {
-    Vec3 found(std::numeric_limits<double>::infinity());
-    this->vector(name, found, size_max);
-    if (finite(found)) vector = found;
-  }
 
   /// Reads the path of a file that must exist.
-  void file(const char* name, std::filesystem::path& path) {
+  void file(const char* name, std::filesystem::path& path) override {
     if (const auto text = value(name)) {
       const AssetMatch match = search_.find(*text);
       take(name, *text, match);
@@ -177,9 +172,8 @@ class XmlInput {
     if (!match.warning.empty()) warn(name, said(name, text) + " " + match.warning);
   }
 
-  /// Calls `read(XmlInput&)` for an optional child element. Returns true if it exists.
-  template <class Read>
-  bool child(const char* name, Read read) {
+  /// Reads an optional child element. Returns true if it exists.
+  bool child(const char* name, const std::function<void(XmlInput&)>& read) {
     known_children_.emplace_back(name);
     const pugi::xml_node found = node_.child(name);
     if (!found) return false;
@@ -191,20 +185,18 @@ class XmlInput {
     inner.finish();
     return true;
   }
-
-  /// Reads all children of a name, in their order.
-  template <class Value, class Fields>
-  void children(const char* name, std::vector<Value>& values, Fields fields) {
+  bool element(const char* name, const std::function<void(FieldIo&)>& fields) override { return child(name, fields); }
+  void each(const char* name, std::size_t i, const std::function<void(FieldIo&, std::size_t)>& fields) override {
     known_children_.emplace_back(name);
     for (pugi::xml_node node = node_.child(name); node; node = node.next_sibling(name)) {
       XmlInput inner(document_, node, report_, search_);
-      fields(inner, values.emplace_back());
+      fields(inner, i++);
       inner.finish();
     }
   }
 
   /// Warns of attributes that are allowed, but have no effect.
-  void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") {
+  void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") override {
     for (const char* name : names)
       if (given(name)) warn(name, (params_ ? "param " : "attribute ") + text::quoted(name) + " " + why);
   }
@@ -244,11 +236,6 @@ class XmlInput {
       if (std::string_view(attribute.name()) != "type")
         report_.warn(document_.place(node_, attribute.name()),
                      "attribute " + text::quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
-  }
-
-  /// `name="text"`, for messages.
-  [[nodiscard]] static std::string said(std::string_view name, std::string_view text) {
-    return std::string(name) + "=\"" + std::string(text.substr(0, 80)) + (text.size() > 80 ? "...\"" : "\"");
   }
 
   /// Text between the tags.

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/settings.hpp>
 
@@ -26,8 +25,7 @@ class LegChecks {
   explicit LegChecks(const SurveySettings& survey) : survey_(survey) {}
 
   /// Checks the path of a leg; `io` is that of its `<platformSettings>`.
-  template <class Io>
-  void check_platform(Io& io, std::size_t i) const {
+  void check_platform(const FieldIo& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
     const LegPlatformSettings& platform = settings.platform;
     if (survey_.platform.kind == PlatformKind::interpolated) {
@@ -48,8 +46,7 @@ class LegChecks {
 
   /// Checks the scanner's part of a leg; `io` is that of its `<scannerSettings>`, `resolution` its
   /// `verticalResolution_deg`, 0 if it has none [rad].
-  template <class Io>
-  void check_scanner(Io& io, std::size_t i, double resolution = 0) const {
+  void check_scanner(const FieldIo& io, std::size_t i, double resolution = 0) const {
     if (only_ends(survey_, i)) return;
     const LegSettings& settings = survey_.legs[i];
     const LegScannerSettings& s = settings.scanner;
@@ -72,8 +69,7 @@ class LegChecks {
   /// Computed number, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
 
-  template <class Io>
-  void check_way(Io& io, std::size_t i) const {
+  void check_way(const FieldIo& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
     const std::size_t legs = survey_.legs.size();
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
@@ -96,8 +92,8 @@ class LegChecks {
     }
   }
 
-  template <class Io>
-  void check_rates(Io& io, const ChannelSettings& device, const LegScannerSettings& s, double resolution) const {
+  void check_rates(const FieldIo& io, const ChannelSettings& device, const LegScannerSettings& s,
+                   double resolution) const {
     const double pulse_rate = pulse_rate_of(survey_.scanner, s);
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
     const auto limit = [&](const char* expected, const char* name, double frequency) {
@@ -122,8 +118,7 @@ class LegChecks {
       io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(pulse_rate) + " is not one of the scanner's pulse rates");
   }
 
-  template <class Io>
-  void check_gate(Io& io, const ChannelSettings& device, const LegScannerSettings& s) const {
+  void check_gate(const FieldIo& io, const ChannelSettings& device, const LegScannerSettings& s) const {
     const auto* const rotating = std::get_if<RotatingOptic>(&device.optic);
     if (!rotating) {
       if (s.vertical_angle_min || s.vertical_angle_max)
@@ -144,8 +139,7 @@ class LegChecks {
                   " deg: they are limited to " + in_degrees(low) + " and " + in_degrees(high) + " deg");
   }
 
-  template <class Io>
-  void check_head(Io& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
+  void check_head(const FieldIo& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
     const LegScannerSettings& s = settings.scanner;
     const double speed = head_rate(device, s);
     for (const auto& [name, angle] :

@@ -17,7 +17,6 @@
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
-#include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -161,14 +160,14 @@ class LegReader {
   void read_leg_platform(XmlInput& io, LegPlatformSettings& settings) {
     with_template(io, document_, {}, [&](XmlInput& inner, bool is_leg) {
       if (is_leg) settings.yaw_at_departure.reset();  // is not inherited
-      xml::fields(inner, settings);
+      settings.fields(inner);
     });
   }
 
   void read_leg_scanner(XmlInput& io, LegScanner& scanner) {
     const double usual_rate = scanner.settings.pulse_rate;
     with_template(io, document_, {}, [&](XmlInput& inner, bool) {
-      xml::fields(inner, scanner.settings);
+      scanner.settings.fields(inner);
       inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();

@@ -9,7 +9,6 @@
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/motion.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
@@ -20,15 +19,13 @@ namespace PULSECAST_NAMESPACE::helios::xml {
 [[nodiscard]] inline bool has_direction(const Vec3& v) { return length(v) > 1e-9; }
 
 /// Axis or normal of a motion.
-template <class Io>
-void axis(Io& io, const char* name, Of<Io, Vec3>& v) {
+inline void axis(FieldIo& io, const char* name, Vec3& v) {
   io.require({name});
   io.vector(name, v, 1e9);
 }
 
 /// Reports an axis or normal without a direction.
-template <class Io>
-void check_axis(const Io& io, const char* name, const Vec3& v) {
+inline void check_axis(const FieldIo& io, const char* name, const Vec3& v) {
   if (!has_direction(v)) io.fault(name, std::string(name) + " is too short for a direction");
 }
 
@@ -52,15 +49,14 @@ inline void set_kind(MotionSettings& motion, MotionKind kind) {
 }
 
 /// Rotation; false if it has no effect: the axis has no direction and the angle is 0.
-template <class Io>
-bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) {
+inline bool rotation_fields(FieldIo& io, RotationMotion& rotation, MotionKind kind) {
   axis(io, "axis", rotation.axis);
   io.require({"angle"});
   io.number("angle", rotation.angle, units::degree, -36000, 36000);
-  if (kind == MotionKind::rotation) io.vector("center", rotation.center, max_coordinate);
+  if (kind == MotionKind::rotation) io.vector("center", rotation.center, FieldIo::max_coordinate);
   if (kind == MotionKind::helical) {
     io.require({"glide"});
-    if constexpr (Io::reads) rotation.glide = 0;
+    if (io.reads()) rotation.glide = 0;
     io.number("glide", *rotation.glide, units::one, -1e9, 1e9);
   }
   if (!has_direction(rotation.axis) && rotation.angle == 0) {
@@ -71,20 +67,18 @@ bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) 
   return true;
 }
 
-template <class Io>
-void reflection_fields(Io& io, Of<Io, ReflectionMotion>& plane, MotionKind kind) {
+inline void reflection_fields(FieldIo& io, ReflectionMotion& plane, MotionKind kind) {
   axis(io, "ortho", plane.normal);
   check_axis(io, "ortho", plane.normal);
   if (kind != MotionKind::glide_plane) return;
   io.require({"shift"});
-  if constexpr (Io::reads) plane.shift = Vec3{};
-  io.vector("shift", *plane.shift, max_coordinate);
+  if (io.reads()) plane.shift = Vec3{};
+  io.vector("shift", *plane.shift, FieldIo::max_coordinate);
   if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
     io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
 }
 
-template <class Io>
-void fields(Io& io, Of<Io, MotionSettings>& motion) {
+inline void fields(FieldIo& io, MotionSettings& motion) {
   MotionKind kind = kind_of(motion);
   io.require({"type"});
   io.choice("type", kind,
@@ -95,14 +89,13 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
              {"reflection", MotionKind::reflection},
              {"glideplane", MotionKind::glide_plane},
              {"rotsym", MotionKind::rotoreflection}});
-  if constexpr (Io::reads) set_kind(motion, kind);
+  if (io.reads()) set_kind(motion, kind);
   if (auto* m = std::get_if<TranslationMotion>(&motion.kind)) {
     io.require({"vec"});
-    io.vector("vec", m->by, max_coordinate);
+    io.vector("vec", m->by, FieldIo::max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
     const bool does_something = rotation_fields(io, *r, kind);
-    if constexpr (Io::reads)
-      if (!does_something) motion.kind = NoMotion{};
+    if (io.reads() && !does_something) motion.kind = NoMotion{};
   } else if (auto* p = std::get_if<ReflectionMotion>(&motion.kind)) {
     reflection_fields(io, *p, kind);
   } else if (auto* s = std::get_if<RotoreflectionMotion>(&motion.kind)) {
@@ -110,19 +103,15 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
-    io.vector("center", s->center, max_coordinate);
+    io.vector("center", s->center, FieldIo::max_coordinate);
   }
   io.flag("selfMode", motion.about_itself);
   io.number("autoCRS", motion.shift_factor, units::one, -1e6, 1e6);
 }
 
-template <class Io>
-void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
-  io.require({"id", "loop"});
-  io.text("id", sequence.id);
-  io.whole("loop", sequence.loop, 0, 2'000'000'000);
-  io.text("next", sequence.next);
-  io.children("motion", sequence.motions, [](auto& inner, auto& motion) { fields(inner, motion); });
+inline void fields(FieldIo& io, MotionSequenceSettings& sequence) {
+  sequence.fields(io);
+  io.children("motion", sequence.motions, [](FieldIo& inner, MotionSettings& motion) { fields(inner, motion); });
   if (const std::string problem = motion_problem(sequence); !problem.empty())
     io.fault("", "<dmotion id=" + text::quoted(sequence.id) + "> is not supported: expected " + problem);
 }

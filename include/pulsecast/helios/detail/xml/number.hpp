@@ -53,9 +53,11 @@ struct XmlUnit {
 };
 
 namespace units {
-inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"};
-inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9},
-    nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
+inline constexpr double deg = std::numbers::pi / 180;
+inline constexpr XmlUnit one{}, metre{"m"}, square_metre{"m^2"}, per_metre{"1/m"}, per_metre_steradian{"1/(m sr)"},
+    second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"}, millimetre_per_hour{"mm/h"};
+inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, kilometre{"km", 1e3},
+    nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", deg};
 }  // namespace units
 
 /// True for an angle beyond a turn that is whole in radians, as one that was given in degrees [rad].
@@ -71,6 +73,20 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
   std::array<char, 64> digits;
   return {digits.data(),
           std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
+}
+
+/// Number of a document for a value. @throws SettingError out of its limits, but for the rounding of its unit
+[[nodiscard]] inline double document_number(std::string_view name, double value, const XmlUnit& unit, double low,
+                                            double high) {
+  const double number = unit.number(value), limit = std::clamp(number, low, high);
+  if (number >= low && number <= high) return number;
+  if (std::fabs(number - limit) <= 1e-12 * std::fabs(limit)) return limit;
+  const std::string bound = high < std::numeric_limits<double>::max() ? " to " + xml_number(high) : "";
+  const std::string allowed =
+      low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
+  const bool in_degrees = std::string_view(unit.symbol).starts_with("deg") && looks_like_degrees(value);
+  throw SettingError(std::string(name), number, unit.symbol,
+                     allowed + (in_degrees ? ": given in degrees, not radians?" : ""));
 }
 
 /// Parses a whole text as a number, except for blanks around it.

@@ -16,15 +16,58 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/motion.hpp>
-#include <pulsecast/helios/detail/xml/source.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 /// `<scene>`, its parts, and their placing filters.
 namespace PULSECAST_NAMESPACE::helios::xml {
+
+/// `filepath`, `efilepath`, or, as an extension, `filepaths` with `|` between them.
+inline void files(XmlInput& io, std::vector<std::filesystem::path>& paths) {
+  const auto take = [&](const char* name, const std::string& text, const AssetMatch& match) {
+    io.take(name, text, match);
+    paths.insert(paths.end(), match.files.begin(), match.files.end());
+  };
+  const auto one = io.given("filepath"), by_pattern = io.given("efilepath"), list = io.given("filepaths");
+  if (by_pattern) {
+    take("efilepath", *by_pattern, io.search().find_all(*by_pattern));
+  } else if (list) {
+    for (std::string_view rest = *list; paths.size() < 100'000;) {
+      const std::size_t end = rest.find('|');
+      take("filepaths", std::string(rest.substr(0, end)), io.search().find(std::string(rest.substr(0, end))));
+      if (end == std::string_view::npos) break;
+      rest.remove_prefix(end + 1);
+    }
+  } else if (one) {
+    take("filepath", *one, io.search().find(*one));
+  } else {
+    io.require({"filepath"});
+  }
+}
+inline void files(XmlOutput& io, std::vector<std::filesystem::path>& paths) {
+  if (paths.size() == 1) return io.file("filepath", paths.front());
+  std::string text;
+  for (const std::filesystem::path& path : paths)
+    text.append(text.empty() ? "" : "|").append(std::filesystem::absolute(path).string());
+  io.put("filepaths", text);
+}
+
+/// A loading filter.
+inline void fields(FieldIo& io, PartSource& source) {
+  std::visit(
+      [&](auto& of_kind) {
+        if (io.reads())
+          files(input(io), of_kind.files);
+        else
+          files(output(io), of_kind.files);
+        of_kind.fields(io);
+      },
+      source);
+}
 
 /// Types of loading filters, in the order of `PartSource`.
 inline constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "meshloader"};
@@ -34,7 +77,7 @@ inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part, 
 inline constexpr int most_on_ground = 1'000'000;                ///< `onGround` of a part
 
 /// Writes the filters of a part or swap.
-inline void filters(XmlOutput& io, const PartSource* source, const TransformSettings& transform) {
+inline void filters(XmlOutput& io, PartSource* source, TransformSettings& transform) {
   const auto filter = [&](const char* type) {
     pugi::xml_node node = io.node().append_child("filter");
     node.append_attribute("type").set_value(type);
@@ -42,19 +85,19 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
   };
   if (source) {
     XmlOutput loader = filter(loaders[source->index()]);
-    std::visit([&](const auto& of_kind) { fields(loader, of_kind); }, *source);
+    fields(loader, *source);
   }
   if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, least_scale, most_scale);
-  for (const RotationList& rotation : transform.rotations) {
+  for (RotationList& rotation : transform.rotations) {
     pugi::xml_node param = filter("rotate").node().append_child("param");
     param.append_attribute("type").set_value("rotation");
     param.append_attribute("key").set_value("rotation");
     XmlOutput list(param);
-    fields(list, rotation);
+    rotation.fields(list);
   }
   if (transform.translation == Vec3{} && transform.on_ground == 0) return;
   XmlOutput translate = filter("translate");
-  translate.vector("offset", transform.translation, max_coordinate);
+  translate.vector("offset", transform.translation, FieldIo::max_coordinate);
   translate.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
 }
 
@@ -86,7 +129,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
     if (std::optional<PartSource> made = source_of(type)) {
       if (source) io.report().fault(io.document().place(node), "a second loading filter: expected one per part");
       source = std::move(made);
-      std::visit([&](auto& of_kind) { fields(filter, of_kind); }, *source);
+      fields(filter, *source);
     } else if (is("scale")) {
       once(node, is_scaled);
       filter.require({"scale"});
@@ -102,7 +145,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       if (const pugi::xml_node param = filter.param("rotation")) {
         XmlInput list(io.document(), param, io.report(), io.search());
         list.know({"type", "key", "value"});
-        fields(list, transform.rotations.emplace_back());
+        transform.rotations.emplace_back().fields(list);
         list.finish();
       }
     } else if (is("translate")) {
@@ -110,7 +153,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.require({"offset"});
       transform.translation = {};
       transform.on_ground = 0;
-      filter.vector("offset", transform.translation, max_coordinate);
+      filter.vector("offset", transform.translation, FieldIo::max_coordinate);
       filter.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
     } else {
       io.report().fault(io.document().place(node, "type"),
@@ -122,48 +165,17 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
   }
 }
 
-/// Reports the `SettingError` of a check, of which that of a writer is the fault itself.
-template <class Check>
-void valid(const XmlInput& io, const Check& check) {
-  try {
-    check();
-  } catch (const SettingError& wrong) {
-    io.fault("", wrong.what());
-  }
-}
-/// As above.
-template <class Check>
-void valid(const XmlOutput&, const Check& check) {
-  check();
-}
-
-template <class Io>
-void fields(Io& io, Of<Io, SwapSettings>& swap) {
-  io.whole("swapStep", swap.step, 1, 1'000'000);
-  if constexpr (Io::reads) {
-    bool keeps = true;
-    io.flag("keepCRS", keeps);
-    if (!keeps) io.warn("keepCRS", "keepCRS of false has no effect: coordinates are those of the files in all runs");
-    swap.removes = io.given("force_null").has_value();
-    filters(io, swap.source, swap.transform);
-  } else {
+inline void fields(FieldIo& io, SwapSettings& swap) {
+  swap.fields(io);
+  if (!io.reads()) {
     if (swap.removes) io.flag("force_null", swap.removes);
-    filters(io, swap.source ? &*swap.source : nullptr, swap.transform);
+    return filters(output(io), swap.source ? &*swap.source : nullptr, swap.transform);
   }
-}
-
-template <class Io>
-void fields(Io& io, Of<Io, AttributeSettings>& attribute) {
-  if constexpr (Io::reads) io.require({"name", "value"});
-  io.text("name", attribute.name);
-  io.number("value", attribute.value, units::one, -any, any);
-}
-
-/// Steps of moving parts, of a scene or a part.
-template <class Io, class Settings>
-void timing_fields(Io& io, Settings& settings) {
-  io.whole("dynStep", settings.dynamic_step, 1, 1'000'000'000);
-  io.number("dynTimeStep", settings.dynamic_interval, units::second, 1e-9, 1e6);
+  bool keeps = true;
+  io.flag("keepCRS", keeps);
+  if (!keeps) io.warn("keepCRS", "keepCRS of false has no effect: coordinates are those of the files in all runs");
+  swap.removes = input(io).given("force_null").has_value();
+  filters(input(io), swap.source, swap.transform);
 }
 
 /// True if the successor of a sequence is not one of its part.
@@ -173,78 +185,48 @@ inline bool lacks_next(const PartSettings& part, const MotionSequenceSettings& s
 }
 
 /// Attributes and children of a part, except its geometry and id.
-template <class Io>
-void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
-  timing_fields(io, part);
-  io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
-  io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
-  io.children("attribute", part.attributes, [](auto& inner, auto& attribute) { fields(inner, attribute); });
+inline void dynamic_fields(FieldIo& io, PartSettings& part) {
+  part.fields(io);
+  io.children("dmotion", part.motions,
+              [](FieldIo& inner, MotionSequenceSettings& sequence) { fields(inner, sequence); });
+  io.children("swap", part.swaps, [](FieldIo& inner, SwapSettings& swap) { fields(inner, swap); });
+  io.children("attribute", part.attributes);
   valid(io, [&] { static_cast<void>(part.named_numbers()); });
-  if constexpr (Io::reads) {
-    io.without_effect({"kdtDynStep", "kdtDynTimeStep"},
-                      "has no effect: each pulse hits a part at its pose of that time");
-    pugi::xml_node node = io.node().child("dmotion");
-    if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
-    if (io.report().is_full() || part.motions.size() > 1000) return;
-    for (const MotionSequenceSettings& sequence : part.motions) {
-      if (lacks_next(part, sequence))
-        io.report().fault(io.document().place(node, "next"),
-                          XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part");
-      node = node.next_sibling("dmotion");
-    }
-  } else {
+  io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse hits a part at its pose of that time");
+  const auto unknown = [](const MotionSequenceSettings& sequence) {
+    return XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part";
+  };
+  if (!io.reads()) {
     for (const MotionSequenceSettings& sequence : part.motions)
-      if (lacks_next(part, sequence))
-        io.fault("next", XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part");
+      if (lacks_next(part, sequence)) io.fault("next", unknown(sequence));
+    return;
+  }
+  XmlInput& element = input(io);
+  pugi::xml_node node = element.node().child("dmotion");
+  if (part.motions.size() > 1000) io.fault("", "<part> holds more than 1000 <dmotion>");
+  if (element.report().is_full() || part.motions.size() > 1000) return;
+  for (const MotionSequenceSettings& sequence : part.motions) {
+    if (lacks_next(part, sequence)) element.report().fault(element.document().place(node, "next"), unknown(sequence));
+    node = node.next_sibling("dmotion");
   }
 }
 
-template <class Io>
-void fields(Io& io, Of<Io, LightSettings>& light) {
-  io.whole("passages", light.passages, 0, 32);
-  io.number("leastShare", light.share_min, units::one, 0, 1);
-  io.whole("orders", light.orders, 1, 64);
-  io.whole("paths", light.paths, 1, 100'000);
-  io.number("fieldOfView_deg", light.field_of_view, units::degree, 0, 360);
-}
-
-template <class Io>
-void fields(Io& io, Of<Io, MediumSettings>& medium) {
-  io.choice("preset", medium.preset,
-            {{"fog", MediumPreset::fog},
-             {"haze", MediumPreset::haze},
-             {"dust", MediumPreset::dust},
-             {"smoke", MediumPreset::smoke},
-             {"rain", MediumPreset::rain},
-             {"snow", MediumPreset::snow}});
-  io.number("visibility_m", medium.visibility, units::metre, 1, 1e5);
-  io.number("rate_mmPerH", medium.rate, units::one, 0.1, 300);
-  io.number("absorption_perM", medium.absorption, units::one, 0, 1e6);
-  io.number("scattering_perM", medium.scattering, units::one, 0, 1e6);
-  io.number("backscatter_perMSr", medium.backscatter, units::one, 0, 1e6);
-  io.vector("min", medium.min, max_coordinate);
-  io.vector("max", medium.max, max_coordinate);
-  valid(io, [&] { medium.validate(); });
-}
-
-/// Light and media of a scene.
-template <class Io>
-void light_fields(Io& io, Of<Io, SceneSettings>& scene) {
-  io.children("light", scene.light, [](auto& inner, auto& light) { fields(inner, light); });
-  io.children("medium", scene.media, [](auto& inner, auto& medium) { fields(inner, medium); });
-  if constexpr (Io::reads)
-    if (!io.report().is_clean()) return;
+/// Attributes of a scene, its light and media.
+inline void scene_fields(FieldIo& io, SceneSettings& scene) {
+  scene.fields(io);
+  io.children("light", scene.light);
+  io.children("medium", scene.media, [](FieldIo& inner, MediumSettings& medium) {
+    medium.fields(inner);
+    valid(inner, [&] { medium.validate(); });
+  });
+  if (io.reads() && !input(io).report().is_clean()) return;
   valid(io, [&] { (void)scene.air(MediumSettings::known_wavelength); });
 }
 
 /// Reads a scene. A part of several files and no id becomes several parts, each with a number.
 inline void fields(XmlInput& io, SceneSettings& scene) {
-  io.require({"id"});
-  io.text("id", scene.id);
-  io.text("name", scene.name);
-  timing_fields(io, scene);
   io.know({}, {"part"});
-  light_fields(io, scene);
+  scene_fields(io, scene);
   if (scene.light.size() > 1) io.report().warn(io.place(), "<scene> holds a second <light>: the first is used");
   std::size_t number = 0;
   for (pugi::xml_node node = io.node().child("part"); node; node = node.next_sibling("part")) {
@@ -277,13 +259,10 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
 }
 
 /// Writes a scene.
-inline void fields(XmlOutput& io, const SceneSettings& scene) {
-  io.text("id", scene.id);
-  io.text("name", scene.name);
-  timing_fields(io, scene);
-  light_fields(io, scene);
-  for (const PartSettings& part : scene.parts)
-    io.child_of("part", "part '" + part.id + "'", [&](XmlOutput& inner) {
+inline void fields(XmlOutput& io, SceneSettings& scene) {
+  scene_fields(io, scene);
+  for (PartSettings& part : scene.parts)
+    io.child("part", "part '" + part.id + "'", [&](XmlOutput& inner) {
       inner.text("id", part.id);
       filters(inner, &part.source, part.transform);
       dynamic_fields(inner, part);

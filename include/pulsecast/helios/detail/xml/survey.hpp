@@ -94,7 +94,7 @@ class SurveyReader {
     bool is_offset = false;
     LegOffsetSettings offset;
     io.flag("legRandomOffset", is_offset);
-    xml::fields(io, offset);
+    offset.fields(io);
     if (is_offset) survey_.leg_offset = offset;
     io.require({"scanner", "platform", "scene"});
     read_platform(io);
@@ -173,7 +173,7 @@ class SurveyReader {
       read_reference(io, "platform", survey_.platform);
       if (io.child("scannerMount", [&](XmlInput& inner) {
             MountSettings ignored;
-            xml::fields(inner, ignored);
+            ignored.fields(inner);
           }))
         io.warn("platform", "<scannerMount> of a survey has no effect unless platform=\"interpolated\"");
       return;
@@ -184,9 +184,8 @@ class SurveyReader {
         asset(found, survey_.platform);
     survey_.platform.multicopter = {};
     survey_.platform.kind = PlatformKind::interpolated;
-    io.choice("rotationSpec", survey_.platform.rotation_spec,
-              {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
-    io.child("scannerMount", [&](XmlInput& inner) { xml::fields(inner, survey_.platform.mount); });
+    xml::rotation_spec(io, survey_.platform.rotation_spec);
+    io.child("scannerMount", [&](XmlInput& inner) { survey_.platform.mount.fields(inner); });
   }
 
   /// Reads the scanner overrides of a survey, for all channels.
@@ -194,12 +193,11 @@ class SurveyReader {
     std::vector<ChannelSettings> none(1);
     std::vector<ChannelSettings>& channels = survey_.scanner.channels.empty() ? none : survey_.scanner.channels;
     for (ChannelSettings& channel : channels) {
-      io.child("FWFSettings", [&](XmlInput& inner) { xml::fields(inner, channel.waveform); });
+      io.child("FWFSettings", [&](XmlInput& inner) { channel.waveform.fields(inner); });
       io.child("detectorSettings", [&](XmlInput& inner) {
-        xml::detector_fields(inner, channel);
+        channel.detector_fields(inner);
         xml::range_noise(inner, channel);
-        if (!(channel.range_min < channel.range_max))
-          inner.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
+        channel.check_range(inner);
       });
     }
     limit_bins(io);

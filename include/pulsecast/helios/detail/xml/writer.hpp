@@ -12,7 +12,6 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/helios/detail/xml/leg.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
@@ -34,7 +33,7 @@ class DocumentWriter {
   }
 
   template <class Settings>
-  void add(const char* element, const Settings& settings) {
+  void add(const char* element, Settings settings) {
     write(element, [&](XmlOutput& io) { xml::fields(io, settings); });
   }
 
@@ -70,16 +69,15 @@ class DocumentWriter {
 };
 
 inline void write_leg(XmlOutput& io, const SurveySettings& survey, std::size_t i) {
-  const LegSettings& leg = survey.legs[i];
+  LegSettings leg = survey.legs[i];
   const LegChecks checks(survey);
-  io.text("stripId", leg.strip);
-  io.number("maxDuration_s", leg.duration_max, units::second, 0, 1e9);
-  io.child("platformSettings", [&](XmlOutput& inner) {
-    xml::fields(inner, leg.platform);
+  leg.fields(io);
+  io.child("platformSettings", "", [&](XmlOutput& inner) {
+    leg.platform.fields(inner);
     checks.check_platform(inner, i);
   });
-  io.child("scannerSettings", [&](XmlOutput& inner) {
-    xml::fields(inner, leg.scanner);
+  io.child("scannerSettings", "", [&](XmlOutput& inner) {
+    leg.scanner.fields(inner);
     checks.check_scanner(inner, i);
   });
 }
@@ -100,32 +98,31 @@ DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name
   if (survey.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
   ScannerSettings scanner = with_id(survey.scanner, "scanner");
   if (scanner.pulse_rates.empty()) scanner.pulse_rates = {first_pulse_rate(survey)};
-  const PlatformSettings platform = with_id(survey.platform, "platform");
+  PlatformSettings platform = with_id(survey.platform, "platform");
   const SceneSettings scene = with_id(survey.scene, "scene");
   document.add("scanner", scanner);
   document.add("platform", platform);
   document.add("scene", scene);
   document.write("survey", [&](XmlOutput& io) {
-    io.text("name", survey.name);
-    io.text("scene", "#" + scene.id);
-    io.text("scanner", "#" + scanner.id);
+    io.put("name", survey.name);
+    io.put("scene", "#" + scene.id);
+    io.put("scanner", "#" + scanner.id);
     if (platform.kind == PlatformKind::interpolated) {
-      io.text("platform", std::string("interpolated"));
-      io.text("basePlatform", "#" + platform.id);
-      io.choice("rotationSpec", platform.rotation_spec,
-                {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
+      io.put("platform", "interpolated");
+      io.put("basePlatform", "#" + platform.id);
+      xml::rotation_spec(io, platform.rotation_spec);
     } else {
-      io.text("platform", "#" + platform.id);
+      io.put("platform", "#" + platform.id);
     }
-    if (survey.seed) io.text("seed", std::to_string(*survey.seed));
-    if (survey.leg_offset) {
-      io.flag("legRandomOffset", true);
-      xml::fields(io, *survey.leg_offset);
+    if (survey.seed) io.put("seed", std::to_string(*survey.seed));
+    if (LegOffsetSettings offset = survey.leg_offset.value_or(LegOffsetSettings{}); survey.leg_offset) {
+      io.put("legRandomOffset", "true");
+      offset.fields(io);
     }
     for (const ChannelSettings& channel : scanner.channels)
       if (const std::string note = xml::bin_note(channel); !note.empty()) io.warn("binSize_ns", note);
     for (std::size_t i = 0; i < survey.legs.size(); ++i)
-      io.child_of("leg", leg_name(i), [&](XmlOutput& inner) { write_leg(inner, survey, i); });
+      io.child("leg", leg_name(i), [&](XmlOutput& inner) { write_leg(inner, survey, i); });
   });
   return document;
 }
