@@ -13,16 +13,15 @@
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/sample.hpp>
 
 #include "outputs.hpp"
 
 using namespace pulsecast;
 using helios::CompiledSurvey;
 using helios::ReceiverOverrides;
-using helios::Sample;
-using helios::SampleBlock;
 using helios::Simulation;
-using helios::SlotCount;
 using helios::SurveySettings;
 
 namespace {
@@ -85,7 +84,7 @@ Census take_census(const Simulation& simulation, PulseLines counted, std::uint64
       numbers.push_back(i);
       slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
     }
-    const std::vector<SlotCount> found = simulation.count(slots, threads);
+    const std::vector<SlotCount> found = count_echoes(simulation.survey(), slots, threads);
     for (std::size_t k = 0; k < slots.size(); ++k) {
       counts[numbers[k]] = found[k];
       places[numbers[k]] = slots[k];
@@ -237,7 +236,7 @@ std::size_t subrays_of(int rings) { return RingFootprint(static_cast<std::size_t
 
 class Forecaster {
  public:
-  Forecaster(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed,
+  Forecaster(const Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed,
              double loading)
       : simulation_(simulation),
         survey_(survey),
@@ -292,7 +291,7 @@ class Forecaster {
         const std::uint64_t each = kind == hit ? 16 : 4;
         std::vector<SampleBlock> subset = blocks(kind, round * each, (round + 1) * each, 128, 896);
         for (SampleBlock& block : subset) block.empty_shots = lines_ != PulseLines::none;
-        for (Sample& sample : simulation_.sample(subset, threads_)) {
+        for (Sample& sample : sample(simulation_.survey(), subset, threads_)) {
           samples.push_back(std::move(sample));
           begin_at.push_back(kind);
         }
@@ -342,12 +341,10 @@ class Forecaster {
         kind_of_block_.push_back(kind);
       }
     weights_ = weights_of(census_, kind_of_block_);
-    own_ = simulation_.sample(blocks_, threads_);
+    own_ = sample(simulation_.survey(), blocks_, threads_);
     own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_, weights_));
     compared_ = blocks(hit, 0, affordable(0.5, effort(*finest_.rings) + trials, 128, 2048), 0, 1);
-    simulation_.receive(finest_);
-    finer_ = simulation_.sample(compared_, threads_);
-    simulation_.receive({});
+    finer_ = sampled_with(finest_, compared_);
   }
 
   /// Own settings of the survey, then all other plausible ones.
@@ -362,22 +359,24 @@ class Forecaster {
     return all;
   }
 
-  Forecast forecast(const ReceiverOverrides& overrides) {
+  [[nodiscard]] std::vector<Sample> sampled_with(const ReceiverOverrides& overrides,
+                                                 std::span<const SampleBlock> blocks) const {
+    return sample(simulation_.with_receivers(overrides)->survey(), blocks, threads_);
+  }
+
+  Forecast forecast(const ReceiverOverrides& overrides) const {
     Forecast f{
         .overrides = overrides, .subrays = subrays_of(overrides.rings.value_or(rings_)), .points = census_.points};
     const bool other = overrides != ReceiverOverrides{};
     double computing = computing_;
     if (other) {
-      simulation_.receive(overrides);
-      const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
+      const std::vector<Sample> samples = sampled_with(overrides, blocks_);
       if (own_cost_ > 0)
         computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
       add_points(samples, f.points);
     }
     entire(f, computing);
-    simulation_.receive({overrides.rings, overrides.bin_size, true});
-    compare(simulation_.sample(compared_, threads_), f);
-    simulation_.receive({});
+    compare(sampled_with({overrides.rings, overrides.bin_size, true}, compared_), f);
     return f;
   }
 
@@ -412,7 +411,7 @@ class Forecaster {
 
   /// Estimates time, memory and files from the measurements.
   void entire(Forecast& f, double computing) const {
-    const double repetitions = simulation_.runs();
+    const double repetitions = simulation_.repetitions();
     const auto seconds = [&](double points, double unsure) {
       const double writing = writing_.seconds.growing(points, census_.lines.value);
       // One thread writes at a time, while the others compute.
@@ -448,7 +447,7 @@ class Forecaster {
     f.invented = all.of_other > 0 ? 1 - of_both / all.of_other : 0;
   }
 
-  Simulation& simulation_;
+  const Simulation& simulation_;
   const SurveySettings& survey_;
   const CompiledSurvey& compiled_;
   const Options& options_;
@@ -477,7 +476,7 @@ class Forecaster {
 
 }  // namespace
 
-Forecasts forecasts_of(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed,
-                       double loading) {
+Forecasts forecasts_of(const Simulation& simulation, const SurveySettings& survey, const Options& options,
+                       std::uint64_t seed, double loading) {
   return Forecaster(simulation, survey, options, seed, loading).all();
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
 #include "options.hpp"
@@ -36,5 +37,5 @@ struct Forecasts {
 
 /// Simulates samples of a survey at several settings. The simulation must be new; `loading` is the time of making it
 /// [s].
-Forecasts forecasts_of(pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
+Forecasts forecasts_of(const pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
                        const Options& options, std::uint64_t seed, double loading);

@@ -20,14 +20,15 @@
 #include <utility>
 
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/run.hpp>
+#include <pulsecast/sample.hpp>
 
 #include "outputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
 using helios::CompiledSurvey;
-using helios::Sample;
-using helios::SampleBlock;
 using helios::Simulation;
 
 namespace {
@@ -107,7 +108,7 @@ class TrialWriter {
       std::vector<SampleBlock> blocks;
       for (; from < end && blocks.size() < at_once; from = blocks.back().end)
         blocks.push_back({from, from, std::min(end, from + length), counted_ != PulseLines::none});
-      for (const Sample& sample : simulation_.sample(blocks, options_.threads)) {
+      for (const Sample& sample : sample(simulation_.survey(), blocks, options_.threads)) {
         const double before = processor_time();
         files(sample.batch());
         all.seconds += processor_time() - before;
@@ -221,11 +222,12 @@ void play(const Simulation& simulation, const Options& options, const std::vecto
     auto& files = open[prefix];
     if (!files) files.reset(new TrialFiles{LegFiles(folder, prefix, options, start_time, channels), allowance, enough});
     files->files.add_trajectory(compiled.source.legs()[k], leg.start, leg.trajectory_interval);
-    const RunSummary run = simulation.run(
+    const RunSummary summary = pulsecast::run(
+        simulation.survey(),
         {.threads = options.threads, .first = leg.first, .end = leg.end, .stop = files->stop.get_token()}, *files);
-    trial.points += static_cast<double>(run.echoes);
-    trial.lines += lines(run, counted);
-    trial.complete = trial.complete && run.complete;
+    trial.points += static_cast<double>(summary.echoes);
+    trial.lines += lines(summary, counted);
+    trial.complete = trial.complete && summary.complete;
     trial.most_points = std::max(trial.most_points, static_cast<double>(files->points));
     if (legs_of.at(prefix).back() != k) continue;
     files->files.close();

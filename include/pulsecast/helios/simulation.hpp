@@ -4,6 +4,8 @@
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +13,12 @@
 
 #include <pulsecast/any_survey.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/city_reader.hpp>
+#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/point_colour.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
 namespace PULSECAST_NAMESPACE::helios {
@@ -32,8 +38,33 @@ struct ReceiverOverrides {
 /// receivers give other simulations. All functions may be called by several threads at once.
 class Simulation {
  public:
-  struct Mesh;      ///< in make_simulation.hpp, as the next
-  struct Settings;  ///< options of a simulation
+  /// Triangles of one material, in addition to the survey's own parts.
+  struct Mesh {
+    MeshData data{};          ///< triangles, in the world [m]
+    Material material{};      ///< material of all triangles
+    ObjectId object = 0;      ///< object number of its points
+    Attributes attributes{};  ///< named numbers of its points; empty without
+  };
+
+  /// Options of a simulation.
+  struct Settings {
+    std::uint64_t seed = 0;        ///< seed of all random numbers
+    bool echo_width = false;       ///< fit echo widths
+    bool waveforms = false;        ///< keep the waveforms of echoes
+    bool las_waveforms = false;    ///< cut and sample waveforms to the limits of LAS
+    bool waveform_noise = false;   ///< add receiver noise
+    bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
+    bool library_physics = false;  ///< true: the library's own physics, not that of HELIOS++: docs/surveys.md
+    bool light_paths = false;  ///< true: multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
+    bool platform_noise = true;                   ///< true: as in the survey; false: none
+    bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
+    std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
+    std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
+    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
+    std::string place{};                          ///< place of the survey in its document, for messages; may be empty
+    unsigned threads = 0;                         ///< threads that build the scene; 0: all
+    CityReader city_models{};                     ///< reader of CityGML files; empty: they are an error
+  };
 
   /// Size of a loaded scene.
   struct Scene {
