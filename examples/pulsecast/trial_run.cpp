@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +23,6 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/sample.hpp>
 
 #include "outputs.hpp"
 
@@ -185,7 +185,7 @@ std::uint64_t filling_points(const Options& options) {
 /// memory.
 struct TrialFiles {
   LegFiles files;
-  const Allowance& allowance;
+  const ProcessorBudget& allowance;
   std::uint64_t enough;  ///< points
   std::stop_source stop{};
   std::uint64_t points = 0;
@@ -209,7 +209,7 @@ struct TrialFiles {
 void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
           PulseLines counted, const fs::path& folder, TrialRun& trial) {
   const CompiledSurvey& compiled = simulation.compiled();
-  const Allowance allowance(3, std::min(thread_count(options.threads), thread_count(0)));
+  const ProcessorBudget allowance(3, std::min(thread_count(options.threads), thread_count(0)));
   // Compressors take more memory when they fill their buffers again, by what the heap leaves between.
   const std::uint64_t enough = options.format == "laz" ? 3 * trial.filling : trial.filling;
   const auto legs_of = legs_by_files(compiled);
@@ -270,7 +270,7 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   constexpr double stretch = 25'000;  // results: enough for a compressor to adapt
   constexpr std::size_t min_stretches = 8;
   constexpr PulseIndex longest = 1 << 18;
-  const Allowance allowance(1, std::min(thread_count(options.threads), thread_count(0)));
+  const ProcessorBudget allowance(1, std::min(thread_count(options.threads), thread_count(0)));
   for (const PulseIndex from : starts) {
     if (all.size() >= min_stretches && !allowance.left()) break;
     const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
