@@ -51,7 +51,7 @@ includes_of_higher_layers() {
     may["detail"] = may["sample"] " sample"
     may["forecast"] = may["detail"] " detail"
     may["run"] = may["survey"] " survey result_buffer detail"
-    may["pulsecast"] = may["run"] " run forecast version"
+    may["pulsecast"] = may["run"] " run any_survey sample forecast version"
     may["io"] = may["pulsecast"] " sensor"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"
     may["version"] = ""
