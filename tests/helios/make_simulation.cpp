@@ -68,7 +68,7 @@ double farthest_from_plane(const Cloud& cloud) {
 TEST_CASE("each pulse that points down at a plane has one echo on it, on any number of threads") {
   const auto simulation = make_simulation(survey(), {.meshes = {plane()}});
   REQUIRE(simulation->compiled().source.size() == 2000);
-  CHECK(simulation->runs() == 1);
+  CHECK(simulation->repetitions() == 1);
   CHECK(simulation->warnings().empty());
   const Simulation::Scene scene = simulation->scene();
   CHECK_FALSE(scene.empty);

@@ -190,79 +190,58 @@ struct LoadedRepetition {
   }
 };
 
-/// Joins scene and legs with receivers to a survey.
-class SurveyMaker {
- public:
-  SurveyMaker(const LoadedRepetition& loaded, const ReceiverOverrides& overrides, std::vector<std::string>& warnings)
-      : loaded_(loaded),
-        survey_(loaded.inputs->survey),
-        settings_(loaded.inputs->settings),
-        overrides_(overrides),
-        warnings_(warnings) {}
-
-  [[nodiscard]] AnySurvey survey() const {
-    return settings_.library_physics ? survey_with<BandLimitedReceiver<>>() : survey_with<ReceiverNoise>();
+[[nodiscard]] inline ScannerSettings overridden(ScannerSettings scanner, const ReceiverOverrides& overrides) {
+  for (ChannelSettings& channel : scanner.channels) {
+    channel.waveform.rings = overrides.rings.value_or(channel.waveform.rings);
+    channel.waveform.bin_size = overrides.bin_size.value_or(channel.waveform.bin_size);
+    if (!overrides.ideal) continue;
+    channel.accuracy = 0;
+    channel.errors.range_noise.clear();
   }
+  return scanner;
+}
 
- private:
-  [[nodiscard]] ScannerSettings scanner() const {
-    ScannerSettings scanner = survey_.scanner;
-    for (ChannelSettings& channel : scanner.channels) {
-      channel.waveform.rings = overrides_.rings.value_or(channel.waveform.rings);
-      channel.waveform.bin_size = overrides_.bin_size.value_or(channel.waveform.bin_size);
-      if (!overrides_.ideal) continue;
-      channel.accuracy = 0;
-      channel.errors.range_noise.clear();
-    }
-    return scanner;
-  }
-
-  template <class Receiver>
-  [[nodiscard]] AnySurvey survey_with() const {
-    using Detector = SurveyDetector<Receiver>;
-    const WaveformLimits limits(survey_, settings_);
-    const ScannerSettings scanner = limits.sampled_alike(this->scanner(), warnings_);
-    const bool ideal = overrides_.ideal, library = settings_.library_physics,
-               follows_light = settings_.light_paths || survey_.scene.follows_light();
-    const Box bounds = loaded_.scene->bounds();
-    const double extent = bounds.empty() ? 0 : length(bounds.size());
-    auto units = ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
-      const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
-      WaveformSettings waveform =
-          survey_waveform(channel, settings_.waveforms && !ideal ? longest : 0, library, follows_light);
-      limits.limit_record(waveform, warnings_);
-      const bool noisy = settings_.waveform_noise && !ideal;
-      const auto unit = [&]<EchoWidth Width>(Width) {
-        auto made = receiver_unit<Width, Receiver>(channel, waveform, noisy);
-        return ReceiverUnit<RingFootprint, Detector>{made.footprint, made.receiver, Detector(std::move(made.detector))};
-      };
-      auto made = settings_.echo_width && !ideal ? unit(GaussianFit{}) : unit(NoWidth{});
-      if (const std::string air = air_warning(channel.wavelength, made.receiver); !air.empty())
-        warnings_.push_back(air);
-      return made;
-    });
-    const SurveyScene& scene = *loaded_.scene;
-    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector, SurveyLight>;
-    return AnySurvey(Pipeline(loaded_.compiled->source, std::move(units), scene,
-                              survey_light(survey_, follows_light, library), loaded_.seed),
-                     loaded_.scene);
-  }
-
-  template <EchoWidth Width, class Receiver>
-  [[nodiscard]] static auto receiver_unit(const ChannelSettings& channel, const WaveformSettings& waveform,
-                                          bool noisy) {
+/// Footprint, receiver and detector of a channel.
+template <class Receiver, EchoWidth Width>
+[[nodiscard]] ReceiverUnit<RingFootprint, SurveyDetector<Receiver>> receiver_unit(const ChannelSettings& channel,
+                                                                                  const WaveformSettings& waveform,
+                                                                                  bool noisy) {
+  const auto unit = [&] {
     if constexpr (std::same_as<Receiver, ReceiverNoise>)
       return survey_receiver_unit<Width>(channel, waveform, noisy);
     else
       return library_receiver_unit<Width>(channel, waveform, noisy);
-  }
+  }();
+  return {unit.footprint, unit.receiver, SurveyDetector<Receiver>(unit.detector)};
+}
 
-  const LoadedRepetition& loaded_;
-  const SurveySettings& survey_;
-  const Simulation::Settings& settings_;
-  const ReceiverOverrides& overrides_;
-  std::vector<std::string>& warnings_;
-};
+/// Survey of scene, legs and receivers. Adds warnings of the receivers.
+template <class Receiver>
+[[nodiscard]] AnySurvey joined(const LoadedRepetition& loaded, const ReceiverOverrides& overrides,
+                               std::vector<std::string>& warnings) {
+  const SurveySettings& survey = loaded.inputs->survey;
+  const Simulation::Settings& settings = loaded.inputs->settings;
+  const WaveformLimits limits(survey, settings);
+  const ScannerSettings scanner = limits.sampled_alike(overridden(survey.scanner, overrides), warnings);
+  const bool library = settings.library_physics, follows_light = settings.light_paths || survey.scene.follows_light(),
+             waveforms = settings.waveforms && !overrides.ideal, noisy = settings.waveform_noise && !overrides.ideal,
+             widths = settings.echo_width && !overrides.ideal;
+  const Box bounds = loaded.scene->bounds();
+  const double extent = bounds.empty() ? 0 : length(bounds.size());
+  auto units = ReceiverGroups(survey.scanner).units(scanner, [&](const ChannelSettings& channel) {
+    const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
+    WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light);
+    limits.limit_record(waveform, warnings);
+    auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy)
+                       : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy);
+    if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) warnings.push_back(air);
+    return unit;
+  });
+  return {Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, SurveyDetector<Receiver>, SurveyLight>(
+              loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, follows_light, library),
+              loaded.seed),
+          loaded.scene};
+}
 
 /// Only implementation of `Simulation`.
 class LoadedSimulation final : public Simulation {
@@ -307,7 +286,9 @@ class LoadedSimulation final : public Simulation {
  private:
   [[nodiscard]] AnySurvey received(const ReceiverOverrides& overrides) {
     std::vector<std::string> of_receivers;
-    AnySurvey survey = SurveyMaker(*loaded_, overrides, of_receivers).survey();
+    AnySurvey survey = loaded_->inputs->settings.library_physics
+                           ? joined<BandLimitedReceiver<>>(*loaded_, overrides, of_receivers)
+                           : joined<ReceiverNoise>(*loaded_, overrides, of_receivers);
     add_new(warnings_, of_receivers);
     return survey;
   }
