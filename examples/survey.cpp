@@ -12,6 +12,7 @@
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/run.hpp>
 
 #include "command_line.hpp"
 #include "summary.hpp"
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
         helios::make_simulation(document.survey, {.seed = line.seed, .assets = assets, .threads = line.threads});
     io::LasWriter las(line.output / "cloud.las", {.gps_time = io::GpsTime::week});
     const RunOptions options{.threads = line.threads, .progress = ProgressLine{}};
-    const RunSummary summary = simulation->run(options, las);
+    const RunSummary summary = run(simulation->survey(), options, las);
     las.close();
     for (const std::string& warning : simulation->warnings()) std::cerr << "note: " << warning << '\n';
     print(summary);

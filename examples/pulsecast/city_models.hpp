@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/helios/scene.hpp>
 
 /// Reader of CityGML files by child processes; empty in a program built without libcitygml.
 pulsecast::helios::CityReader city_models();

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/forecast.hpp>
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
 #include "options.hpp"
@@ -15,14 +17,14 @@
 /// Forecast of a survey with certain settings.
 struct Forecast {
   pulsecast::helios::ReceiverOverrides overrides{};
-  std::size_t subrays = 0;        ///< per pulse
-  Estimate seconds{};             ///< total run time [s]
-  Estimate memory{};              ///< peak [byte]
-  Estimate points{};              ///< in all files
-  Estimate bytes{};               ///< of all files
-  Estimate range_error{};         ///< 95 % quantile over echoes, against a far finer simulation [m]
-  Estimate intensity_error{};     ///< 95 % quantile, relative
-  double lost = 0, invented = 0;  ///< relative numbers of echoes only in the finer simulation, and only here
+  std::size_t subrays = 0;                ///< per pulse
+  pulsecast::Estimate seconds{};          ///< total run time [s]
+  pulsecast::Estimate memory{};           ///< peak [byte]
+  pulsecast::Estimate points{};           ///< in all files
+  pulsecast::Estimate bytes{};            ///< of all files
+  pulsecast::Estimate range_error{};      ///< 95 % quantile over echoes, against a far finer simulation [m]
+  pulsecast::Estimate intensity_error{};  ///< 95 % quantile, relative
+  double lost = 0, invented = 0;          ///< relative numbers of echoes only in the finer simulation, and only here
 };
 
 /// Forecasts of a survey from a sample of its pulses.
@@ -36,5 +38,5 @@ struct Forecasts {
 
 /// Simulates samples of a survey at several settings. The simulation must be new; `loading` is the time of making it
 /// [s].
-Forecasts forecasts_of(pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
+Forecasts forecasts_of(const pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
                        const Options& options, std::uint64_t seed, double loading);

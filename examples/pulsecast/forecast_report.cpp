@@ -52,7 +52,7 @@ Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}}); }
 constexpr Unit one{1, ""}, percent{1e-2, "%"};
 
 /// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
-std::string text_of(const Estimate& e, const Unit& unit) {
+std::string text_of(const pulsecast::Estimate& e, const Unit& unit) {
   if (!std::isfinite(e.high)) return "unknown";
   return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" +
          digits(e.low / unit.size, std::floor) + " to " + digits(e.high / unit.size, std::ceil) + ')';
@@ -159,7 +159,7 @@ class SettingsChooser {
   /// Greatest ratio of upper estimate to limit; all limits hold up to 1.
   [[nodiscard]] double worst(const Forecast& f) const {
     double most = 0;
-    const auto hold = [&](const Estimate& e, const std::optional<double>& asked) {
+    const auto hold = [&](const pulsecast::Estimate& e, const std::optional<double>& asked) {
       if (asked) most = std::max(most, e.high / *asked);
     };
     hold(f.range_error, asked_.range_error);
@@ -185,7 +185,7 @@ class SettingsChooser {
   }
 
   const Options& options_;
-  const ForecastOptions& asked_;
+  const ForecastLimits& asked_;
   const pulsecast::helios::SurveySettings& survey_;
   const Forecasts& found_;
 };

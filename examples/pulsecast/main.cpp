@@ -28,7 +28,9 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/scene_cache.hpp>
+#include <pulsecast/run.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
@@ -141,14 +143,14 @@ class Session {
     else
       log_.start_time = start_time;
     note_inputs(*inputs);
-    const std::unique_ptr<Simulation> simulation = loaded(inputs);
+    std::unique_ptr<Simulation> simulation = loaded(inputs);
     note_inputs(*inputs);
-    if (again) require_run(*again, simulation->runs());
+    if (again) require_run(*again, simulation->repetitions());
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
     print_notes(*simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
-    const RunSummary all = play_all(*simulation, *inputs, parent, again);
+    const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
     if (pulses_cut_ > 0)
@@ -215,7 +217,7 @@ class Session {
   void settle_clock(const Simulation& simulation) {
     constexpr double week = 604'800;
     const double begin = log_.start_time,
-                 end = begin + simulation.runs() * simulation.compiled().source.duration().seconds();
+                 end = begin + simulation.repetitions() * simulation.compiled().source.duration().seconds();
     options_.adjusted_time = simulation.compiled().clock_start && !(begin >= 0 && begin <= week);
     if (!options_.format.starts_with("las") && !options_.format.ends_with("laz")) return;
     std::ostringstream text;
@@ -245,27 +247,28 @@ class Session {
     RunLog::remove(parent / log_.before);
   }
 
-  /// Simulates all remaining repetitions, each into its own folder.
-  RunSummary play_all(Simulation& simulation, SurveyInputs& inputs, const fs::path& parent,
+  /// Simulates all remaining repetitions, each into its own folder. `simulation` is then the last one.
+  RunSummary play_all(std::unique_ptr<Simulation>& simulation, SurveyInputs& inputs, const fs::path& parent,
                       std::optional<fs::path> again) {
+    const int repetitions = simulation->repetitions();
     RunSummary all;
     fs::path folder = again ? *again : new_folder(parent);
-    for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
+    for (int r = log_.run; r < repetitions && all.complete; ++r) {
       log_.run = r;
       if (r > 0) {
-        simulation.begin(r);
+        simulation = simulation->repetition(r);
         if (note_inputs(inputs)) log_.write(folder);
-        print_notes(simulation);
+        print_notes(*simulation);
       }
-      take_columns(options_, simulation);
-      all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
+      take_columns(options_, *simulation);
+      all.add(play(*simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
       const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // held until its log is removed
       log_.run = r + 1;
       log_.files.clear();
       log_.before = done.filename().string();
-      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // at all times one folder is unfinished
+      if (r + 1 < repetitions) folder = new_folder(parent);  // at all times one folder is unfinished
       if (ranks_.first()) RunLog::remove(done);
     }
     return all;
@@ -440,7 +443,7 @@ class Session {
         pages_.show(so_far);
       };
       if (signals > 0) stopping.request_stop();
-      const RunSummary part = files.run(simulation, run);
+      const RunSummary part = files.run(simulation.survey(), run);
       if (part.complete && part.echoes == 0)
         empty_legs_ += (empty_legs_.empty() ? "" : ", ") + std::to_string(leg.number);
       all.add(part);
@@ -489,7 +492,7 @@ void print_info(const Options& options, const SurveyFile& file, std::uint64_t se
     std::cout << "extent   x " << a.x << " to " << b.x << " m, y " << a.y << " to " << b.y << " m, z " << a.z << " to "
               << b.z << " m\n";
   }
-  if (simulation.runs() > 1) std::cout << "runs     " << simulation.runs() << '\n';
+  if (simulation.repetitions() > 1) std::cout << "runs     " << simulation.repetitions() << '\n';
   std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]        pulses\n";
   for (const auto& leg : compiled.legs) {
     const std::string name = leg.active ? prefix_of(leg) : "(inactive)";
@@ -519,7 +522,8 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   Picture picture(path);
   for_each_raster(file.survey,
                   [&](const Raster& raster, const Placement& placement) { picture.add_ground(raster, placement); });
-  const RunSummary summary = simulation.run({.threads = options.threads, .stride = stride}, picture);
+  const RunSummary summary =
+      pulsecast::run(simulation.survey(), {.threads = options.threads, .stride = stride}, picture);
   picture.close();
   if (!options.quiet)
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string()

@@ -19,7 +19,7 @@ struct SceneStore {
 };
 
 /// Limits of the command `forecast`.
-struct ForecastOptions {
+struct ForecastLimits {
   std::optional<double> range_error{};      ///< maximum [m]
   std::optional<double> intensity_error{};  ///< maximum, relative
   std::optional<double> time{};             ///< maximum per run [s]
@@ -55,7 +55,7 @@ struct Options {
        verbose = false;
   bool strict = false;  ///< treat notes about the survey and its files as errors
   SceneStore store{};
-  ForecastOptions forecast{};
+  ForecastLimits forecast{};
   std::vector<std::string> notes{};  ///< accepted options without effect
 
   bool adjusted_time = false;               ///< times are adjusted standard GPS time; else seconds of a GPS week

@@ -9,6 +9,7 @@
 
 #include <pulsecast/echo.hpp>
 #include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/raster.hpp>

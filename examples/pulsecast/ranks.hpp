@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/any_survey.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
 
 #include "options.hpp"
@@ -20,8 +21,7 @@ class LegRun {
   virtual ~LegRun() = default;
   std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< receives the shots with echoes; with one process only
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
-  virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation,
-                                    const pulsecast::RunOptions& options) = 0;
+  virtual pulsecast::RunSummary run(const pulsecast::AnySurvey& survey, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
   /// Pulses with more returns than LAS numbers, once closed, on the first process.
   [[nodiscard]] virtual std::uint64_t pulses_cut() const = 0;

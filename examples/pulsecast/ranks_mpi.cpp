@@ -71,12 +71,12 @@ class SharedLegRun final : public LegRun {
     if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.recorded(), interval);
   }
 
-  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
+  RunSummary run(const AnySurvey& survey, const RunOptions& options) override {
     std::vector<MpiOutput*> outputs;
     for (const auto& output : outputs_) outputs.push_back(output.get());
     const auto simulate = [&](const RunOptions& part, const mpi::MpiPartSink& sink) {
-      if (!miss_points_) return simulation.run(part, sink);
-      return simulation.run(part, [&](const EchoBatch& batch) { sink((*miss_points_)(batch)); });
+      if (!miss_points_) return pulsecast::run(survey, part, sink);
+      return pulsecast::run(survey, part, [&](const EchoBatch& batch) { sink((*miss_points_)(batch)); });
     };
     return mpi::run_parts(group_, options.end, options, simulate, outputs);
   }

@@ -24,8 +24,8 @@ class OneLegRun final : public LegRun {
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
     files_.add_trajectory(leg, start, interval);
   }
-  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
-    return simulation.run(options, *this);
+  RunSummary run(const AnySurvey& survey, const RunOptions& options) override {
+    return pulsecast::run(survey, options, *this);
   }
   void operator()(const EchoBatch& batch) {
     files_(batch);

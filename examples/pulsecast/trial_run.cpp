@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -20,14 +21,14 @@
 #include <utility>
 
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/run.hpp>
 
 #include "outputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
 using helios::CompiledSurvey;
-using helios::Sample;
-using helios::SampleBlock;
 using helios::Simulation;
 
 namespace {
@@ -107,7 +108,7 @@ class TrialWriter {
       std::vector<SampleBlock> blocks;
       for (; from < end && blocks.size() < at_once; from = blocks.back().end)
         blocks.push_back({from, from, std::min(end, from + length), counted_ != PulseLines::none});
-      for (const Sample& sample : simulation_.sample(blocks, options_.threads)) {
+      for (const Sample& sample : sample(simulation_.survey(), blocks, options_.threads)) {
         const double before = processor_time();
         files(sample.batch());
         all.seconds += processor_time() - before;
@@ -184,7 +185,7 @@ std::uint64_t filling_points(const Options& options) {
 /// memory.
 struct TrialFiles {
   LegFiles files;
-  const Allowance& allowance;
+  const ProcessorBudget& allowance;
   std::uint64_t enough;  ///< points
   std::stop_source stop{};
   std::uint64_t points = 0;
@@ -208,7 +209,7 @@ struct TrialFiles {
 void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
           PulseLines counted, const fs::path& folder, TrialRun& trial) {
   const CompiledSurvey& compiled = simulation.compiled();
-  const Allowance allowance(3, std::min(thread_count(options.threads), thread_count(0)));
+  const ProcessorBudget allowance(3, std::min(thread_count(options.threads), thread_count(0)));
   // Compressors take more memory when they fill their buffers again, by what the heap leaves between.
   const std::uint64_t enough = options.format == "laz" ? 3 * trial.filling : trial.filling;
   const auto legs_of = legs_by_files(compiled);
@@ -221,11 +222,12 @@ void play(const Simulation& simulation, const Options& options, const std::vecto
     auto& files = open[prefix];
     if (!files) files.reset(new TrialFiles{LegFiles(folder, prefix, options, start_time, channels), allowance, enough});
     files->files.add_trajectory(compiled.source.legs()[k], leg.start, leg.trajectory_interval);
-    const RunSummary run = simulation.run(
+    const RunSummary summary = pulsecast::run(
+        simulation.survey(),
         {.threads = options.threads, .first = leg.first, .end = leg.end, .stop = files->stop.get_token()}, *files);
-    trial.points += static_cast<double>(run.echoes);
-    trial.lines += lines(run, counted);
-    trial.complete = trial.complete && run.complete;
+    trial.points += static_cast<double>(summary.echoes);
+    trial.lines += lines(summary, counted);
+    trial.complete = trial.complete && summary.complete;
     trial.most_points = std::max(trial.most_points, static_cast<double>(files->points));
     if (legs_of.at(prefix).back() != k) continue;
     files->files.close();
@@ -268,7 +270,7 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   constexpr double stretch = 25'000;  // results: enough for a compressor to adapt
   constexpr std::size_t min_stretches = 8;
   constexpr PulseIndex longest = 1 << 18;
-  const Allowance allowance(1, std::min(thread_count(options.threads), thread_count(0)));
+  const ProcessorBudget allowance(1, std::min(thread_count(options.threads), thread_count(0)));
   for (const PulseIndex from : starts) {
     if (all.size() >= min_stretches && !allowance.left()) break;
     const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),

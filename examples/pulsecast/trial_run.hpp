@@ -2,30 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <ctime>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <pulsecast/forecast.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
 #include "options.hpp"
-
-/// Estimate with limits that contain the true value 19 times in 20.
-struct Estimate {
-  double value = 0, low = 0, high = 0;
-};
-
-/// Budget of processor time. Samples thus do not depend on other load.
-class Allowance {
- public:
-  Allowance(double seconds, double workers) : ticks_(seconds * workers * CLOCKS_PER_SEC) {}
-  [[nodiscard]] bool left() const { return static_cast<double>(std::clock() - start_) < ticks_; }
-
- private:
-  std::clock_t start_ = std::clock();
-  double ticks_;
-};
 
 /// Cost of writing a survey: a part that grows with the results, and one that does not.
 struct WritingCost {
@@ -70,7 +54,7 @@ struct TrialRun {
   double most_points = 0;        ///< of a set of files
 
   /// Peak memory of a run of at most `of_run` points [byte].
-  [[nodiscard]] Estimate memory(double of_run, const Options& options) const;
+  [[nodiscard]] pulsecast::Estimate memory(double of_run, const Options& options) const;
 };
 
 /// Tries a run in a child process. The simulation must be new, as in a run.

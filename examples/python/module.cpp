@@ -19,6 +19,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <pulsecast/helios/document.hpp>
+#include <pulsecast/helios/make_simulation.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/material/water_types.hpp>
@@ -182,7 +184,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                  .assets = std::move(assets),
                                  .meshes = std::move(meshes),
                                  .threads = threads});
-    if (run > 0) simulation->begin(run);
+    if (run > 0) simulation = simulation->repetition(run);
   }
   warn(simulation->warnings());
   return simulation;
@@ -360,7 +362,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "legs", &legs_of,
           "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")
-      .def_property_readonly("repetitions", &Simulation::runs, "Number of repetitions, each with its own scene.")
+      .def_property_readonly("repetitions", &Simulation::repetitions, "Number of repetitions, each with its own scene.")
       .def_property_readonly(
           "bounds",
           [](const Simulation& s) -> py::object {
@@ -375,9 +377,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
   const auto runner = [](const Simulation& s) {
-    return [&s](const RunOptions& options, const auto& sink) {
-      return s.run(options, [&](const EchoBatch& batch) { sink(batch); });
-    };
+    return [&s](const RunOptions& options, const auto& sink) { return pulsecast::run(s.survey(), options, sink); };
   };
   python::bind_run(simulation, runner, [](const Simulation& s) {
     return python::PointExtras{s.colours(), s.attributes()};

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <pulsecast/survey.hpp>
+#include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -14,6 +14,7 @@
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/material/pure_water.hpp>
+#include <pulsecast/run.hpp>
 
 #include "support/temporary_folder.hpp"
 
@@ -52,7 +53,7 @@ struct Lake {
     const std::vector<std::filesystem::path> assets{catalogue, folder.path()};
     const auto document = helios::read_survey(path, {.assets = assets});
     const auto simulation = helios::make_simulation(document.survey, {.assets = assets});
-    simulation->run({.threads = 1}, [&](const EchoBatch& batch) {
+    run(simulation->survey(), {.threads = 1}, [&](const EchoBatch& batch) {
       for (const Shot& shot : batch.shots)
         for (const Echo& echo : batch.echoes_of(shot)) visit(shot, echo);
     });

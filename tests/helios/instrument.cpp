@@ -108,8 +108,9 @@ TEST_CASE(
     write_survey(folder / "survey.xml", settings);
     const SurveySettings survey = read_survey(folder / "survey.xml").survey;
     Record by_xml;
-    make_simulation(survey, {.seed = 5, .echo_width = true, .waveform_noise = true, .platform_noise = false})
-        ->run({}, [&](const EchoBatch& batch) { by_xml(batch); });
+    const auto simulation =
+        make_simulation(survey, {.seed = 5, .echo_width = true, .waveform_noise = true, .platform_noise = false});
+    run(simulation->survey(), {}, [&](const EchoBatch& batch) { by_xml(batch); });
     CHECK(by_xml.cloud.size() > 100);
 
     const LegPlatformSettings &from = survey.legs[0].platform, &to = survey.legs[1].platform;

@@ -16,7 +16,10 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/cloud.hpp>
+#include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/material/weather.hpp>
+#include <pulsecast/run.hpp>
 
 #include "support/laws.hpp"
 #include "support/relative.hpp"
@@ -52,7 +55,7 @@ Simulation::Mesh plane() {
 
 Cloud run(const Simulation& simulation, unsigned threads = 1) {
   Cloud cloud;
-  simulation.run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
+  pulsecast::run(simulation.survey(), {.threads = threads}, cloud);
   return cloud;
 }
 
@@ -65,7 +68,7 @@ double farthest_from_plane(const Cloud& cloud) {
 TEST_CASE("each pulse that points down at a plane has one echo on it, on any number of threads") {
   const auto simulation = make_simulation(survey(), {.meshes = {plane()}});
   REQUIRE(simulation->compiled().source.size() == 2000);
-  CHECK(simulation->runs() == 1);
+  CHECK(simulation->repetitions() == 1);
   CHECK(simulation->warnings().empty());
   const Simulation::Scene scene = simulation->scene();
   CHECK_FALSE(scene.empty);
@@ -81,52 +84,16 @@ TEST_CASE("each pulse that points down at a plane has one echo on it, on any num
   CHECK(same.points == cloud.points);
 }
 
-TEST_CASE("samples and counts are those of a run") {
-  SurveySettings s = survey();
-  s.scanner.channels[0].accuracy = 0.1;
-  const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
-  const Cloud cloud = run(*simulation);
-  const std::vector<PulseIndex> slots{3, 1999, 700};
-  for (const SlotCount& count : simulation->count(slots, 2)) {
-    CHECK(count.fate == Fate::returned);
-    CHECK(count.echoes == 1);
-  }
-  const std::vector<SampleBlock> blocks{{0, 10, 20}, {990, 1000, 1500}};
-  const std::vector<Sample> samples = simulation->sample(blocks, 2);
-  REQUIRE(samples.size() == 2);
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const EchoBatch batch = samples[k].batch();
-    REQUIRE(batch.echoes.size() == blocks[k].end - blocks[k].from);
-    for (std::size_t i = 0; i < batch.echoes.size(); ++i)
-      CHECK(batch.echoes[i].range == cloud.echoes[blocks[k].from + i].range);
-  }
-}
-
-TEST_CASE("a sample counts shots without echoes, and keeps them where they are read") {
-  const auto simulation = make_simulation(survey(), {.seed = 3, .meshes = {plane()}});
-  Simulation::Mesh above = plane();
-  for (Vec3& vertex : above.data.vertices) vertex.z = 2 * height;
-  const auto nothing = make_simulation(survey(), {.seed = 3, .meshes = {above}});
-  for (const bool empty_shots : {true, false}) {
-    const std::vector<SampleBlock> blocks{{0, 10, 200, empty_shots}};
-    const Sample met = simulation->sample(blocks, 1)[0], missed = nothing->sample(blocks, 1)[0];
-    CHECK(met.shots.size() == 190);
-    CHECK(missed.shots.size() == (empty_shots ? 190 : 0));
-    CHECK(missed.counts.slots == 190);
-    CHECK(missed.counts.count(Fate::missed) == 190);
-  }
-}
-
-TEST_CASE("ideal receivers take the noise away, and those of the survey bring it back") {
+TEST_CASE("ideal receivers have no noise, and those of the survey keep it") {
   SurveySettings s = survey();
   s.scanner.channels[0].accuracy = 1;
   const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
   const Cloud noisy = run(*simulation);
   CHECK(farthest_from_plane(noisy) > 1);
-  simulation->receive({.rings = 1, .ideal = true});
-  CHECK(farthest_from_plane(run(*simulation)) < 0.05);
-  simulation->receive({});
+  const auto ideal = simulation->with_receivers({.rings = 1, .ideal = true});
+  CHECK(farthest_from_plane(run(*ideal)) < 0.05);
   CHECK(run(*simulation).points == noisy.points);
+  CHECK(run(*ideal->with_receivers({})).points == noisy.points);
 }
 
 TEST_CASE("a repetition draws noise of its own, and a receiver without rings has its central ray") {
@@ -138,15 +105,38 @@ TEST_CASE("a repetition draws noise of its own, and a receiver without rings has
   part.swaps.push_back({.removes = true});
   s.scene.parts = {part};
   const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
-  REQUIRE(simulation->runs() == 2);
+  REQUIRE(simulation->repetitions() == 2);
   const Cloud first = run(*simulation);
-  simulation->begin(1);
-  CHECK(run(*simulation).points != first.points);
-  simulation->begin(0);
+  const auto second = simulation->repetition(1);
+  CHECK(run(*second).points != first.points);
+  CHECK(second->scene().parts == 1);
   CHECK(run(*simulation).points == first.points);
-  simulation->receive({.rings = 0});
-  const RunSummary summary = simulation->run({}, [](const EchoBatch&) {});
+  CHECK(run(*second->repetition(0)).points == first.points);
+  const RunSummary summary = pulsecast::run(simulation->with_receivers({.rings = 0})->survey(), {});
   CHECK(summary.rays == summary.pulses());
+}
+
+TEST_CASE("surveys and colours outlive their simulation") {
+  auto simulation = make_simulation(survey(), {.seed = 3, .meshes = {plane()}});
+  const Cloud before = run(*simulation);
+  const AnySurvey kept = simulation->survey();
+  const PointColours colours = simulation->colours();
+  simulation.reset();
+  std::size_t coloured = 0;
+  Cloud after;
+  pulsecast::run(kept, {.threads = 2}, after, [&](const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      for (const Echo& echo : batch.echoes_of(shot)) coloured += colours(batch, shot, echo) ? 1 : 0;
+  });
+  CHECK(after.points == before.points);
+  CHECK(coloured == after.size());
+}
+
+TEST_CASE("warnings of other receivers belong to their simulation") {
+  const auto simulation = make_simulation(survey(), {.waveforms = true, .las_waveforms = true, .meshes = {plane()}});
+  CHECK(simulation->warnings().empty());
+  CHECK(simulation->with_receivers({.bin_size = 0.2505e-9})->warnings().size() == 1);
+  CHECK(simulation->warnings().empty());
 }
 
 TEST_CASE("waveform noise has a quarter of the least received power as its deviation") {
@@ -157,7 +147,7 @@ TEST_CASE("waveform noise has a quarter of the least received power as its devia
   const double probable_error =
       0.6745 * 0.25 * s.scanner.channels[0].received_power_min;  // half of normal draws are within it
   std::size_t all = 0, within = 0;
-  simulation->run({}, [&](const EchoBatch& batch) {
+  pulsecast::run(simulation->survey(), {}, [&](const EchoBatch& batch) {
     all += batch.samples.size();
     for (const float sample : batch.samples) within += std::fabs(static_cast<double>(sample)) < probable_error ? 1 : 0;
   });
@@ -209,15 +199,19 @@ TEST_CASE("a provider may give parts that were made before, and what it gives co
     return run == 0 ? parts : BuiltParts{};
   };
   const auto simulation = make_simulation(s, {.meshes = {plane()}}, provider);
-  CHECK(simulation->runs() == 2);
+  CHECK(simulation->repetitions() == 2);
   CHECK(built == 1);
   CHECK(simulation->scene().parts == 2);
   CHECK(simulation->warnings() == std::vector<std::string>{"odd"});
-  simulation->begin(1);
+  const auto second = simulation->repetition(1);
   CHECK(runs == std::vector<int>{0, 1});
   CHECK(built == 0);
-  CHECK(simulation->scene().parts == 1);
+  CHECK(second->scene().parts == 1);
+  CHECK(second->warnings().empty());
+  CHECK(simulation->scene().parts == 2);
   CHECK(simulation->warnings() == std::vector<std::string>{"odd"});
+  (void)simulation->with_receivers({.rings = 1});
+  CHECK(runs.size() == 2);  // the scene is shared
 }
 
 TEST_CASE("light goes on from what passes it on, if the scene or the program says so, and else does not") {
@@ -283,7 +277,7 @@ TEST_CASE(
     std::string first;
     for (const unsigned threads : {1U, 2U, 3U}) {
       support::LawfulSink sink;
-      simulation->run({.threads = threads}, [&](const EchoBatch& batch) { sink(batch); });
+      pulsecast::run(simulation->survey(), {.threads = threads}, sink);
       CHECK(sink.broken() == "");
       if (first.empty()) first = sink.checksum();
       CHECK(sink.checksum() == first);

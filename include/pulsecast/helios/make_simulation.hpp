@@ -3,30 +3,22 @@
 #ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <set>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
 /// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it in one source file of a
 /// program.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Parts of a scene and the warnings from building it.
-struct BuiltParts {
-  std::vector<SurveyPart> parts{};          ///< parts of the scene
-  std::vector<std::string> warnings{};      ///< warnings of the construction
-  std::set<std::filesystem::path> files{};  ///< files that were looked for, those that are missing, too
-};
+struct BuiltParts;
+struct SurveySettings;
 
-/// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.
-using PartProvider = std::function<BuiltParts(int run, const std::function<BuiltParts()>& build)>;
+/// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one. Parts:
+/// helios/scene.hpp.
+using PartProvider = std::function<BuiltParts(int repetition, const std::function<BuiltParts()>& build)>;
 
 /// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` with leg or part
 /// and attribute, or a `FileError`.

@@ -47,6 +47,13 @@ struct SceneBuildOptions {
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
 
+/// Parts of a scene and the warnings from building it.
+struct BuiltParts {
+  std::vector<SurveyPart> parts{};          ///< parts of the scene
+  std::vector<std::string> warnings{};      ///< warnings of the construction
+  std::set<std::filesystem::path> files{};  ///< files that were looked for, those that are missing, too
+};
+
 /// Raster of heights in the world.
 struct PlacedRaster {
   Raster raster;          ///< heights, in the frame of the part

@@ -40,6 +40,10 @@ struct CompiledSurvey {
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                             const SurveyBuildOptions& options = {});
 
+/// Checks legs and scanner, without loading the scene. Throws a `SettingError` or `FileError`; returns warnings.
+[[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey,
+                                                           const std::vector<std::string>& leg_places = {});
+
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_SURVEY)
@@ -50,9 +54,11 @@ struct CompiledSurvey {
 
 #include <pulsecast/helios/detail/leg_paths.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/xml/writer.hpp>
 #include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/platform/platform.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -182,6 +188,21 @@ PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, con
   if (options.leg_places.empty())
     compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else reported by the reader
   return compiled;
+}
+
+PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey,
+                                                              const std::vector<std::string>& leg_places) {
+  const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
+  std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  for (const ChannelSettings& channel : survey.scanner.channels) {
+    const Receiver receiver = survey_receiver(channel);
+    receiver.validate();
+    const std::string odd = air_warning(channel.wavelength, receiver);
+    if (!odd.empty() && std::find(warnings.begin(), warnings.end(), odd) == warnings.end()) warnings.push_back(odd);
+    survey_waveform(channel).validate();
+    (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
+  }
+  return warnings;
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

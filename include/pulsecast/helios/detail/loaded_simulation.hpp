@@ -10,31 +10,23 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include <time.h>
-
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/detector/gaussian_fit.hpp>
-#include <pulsecast/helios/detail/any_survey.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
+#include <pulsecast/helios/detail/survey_pipeline.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/run.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
-#include <pulsecast/transport/light_paths.hpp>
 
 /// Surveys with their scenes, ready to run.
 namespace PULSECAST_NAMESPACE::helios {
@@ -59,13 +51,6 @@ namespace detail {
   }
   for (const ChannelSettings& channel : survey.scanner.channels) all.wavelengths.push_back(channel.wavelength);
   return all;
-}
-
-/// Processor time of this thread [s].
-[[nodiscard]] inline double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 /// Detectors of a survey: waveform settings of its channels within the limits of batches and files, with a warning for
@@ -125,70 +110,151 @@ class WaveformLimits {
   return channels.front().wavelength;
 }
 
-/// Transport of a survey whose scene has `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap,
-/// and presets beyond the wavelength
-[[nodiscard]] inline LightPaths light_paths(const SurveySettings& survey, bool library_physics) {
+/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one. @throws SettingError for boxes of
+/// media that overlap, and presets beyond the wavelength
+[[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, bool follows_light, bool library_physics) {
+  if (!follows_light) return SurveyLight(DirectLight{.spread_planes = library_physics});
   const SceneSettings& scene = survey.scene;
   const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
   const bool by_wavelength =
       std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
-  return {.passages = static_cast<std::size_t>(light.passages),
-          .share_min = light.share_min,
-          .spread_planes = library_physics,
-          .scattering = {.orders = static_cast<std::size_t>(light.orders),
-                         .paths = static_cast<std::size_t>(light.paths),
-                         .field_of_view = light.field_of_view},
-          .air = scene.air(by_wavelength ? wavelength_of(survey) : MediumSettings::known_wavelength)};
+  return SurveyLight(
+      LightPaths{.passages = static_cast<std::size_t>(light.passages),
+                 .share_min = light.share_min,
+                 .spread_planes = library_physics,
+                 .scattering = {.orders = static_cast<std::size_t>(light.orders),
+                                .paths = static_cast<std::size_t>(light.paths),
+                                .field_of_view = light.field_of_view},
+                 .air = scene.air(by_wavelength ? wavelength_of(survey) : MediumSettings::known_wavelength)});
+}
+
+/// Inputs of a simulation, for all repetitions.
+struct SimulationInputs {
+  SurveySettings survey;
+  Simulation::Settings settings;
+  PartProvider provider;
+  std::vector<SurveyPart> meshes{};  ///< in addition to the survey's own parts
+
+  SimulationInputs(const SurveySettings& of_survey, const Simulation::Settings& with, const PartProvider& parts)
+      : survey(of_survey), settings(with), provider(parts) {
+    for (const Simulation::Mesh& mesh : settings.meshes)
+      meshes.push_back({.geometry = std::make_shared<const MaskedMesh<>>(mesh.data, settings.threads),
+                        .materials = material_table({mesh.material}),
+                        .object = mesh.object,
+                        .attributes = mesh.attributes});
+  }
+
+  [[nodiscard]] SceneBuilder builder() const {
+    return {survey.scene,
+            {.spectra = spectra_of(survey, spectra_folders(settings.assets)),
+             .pulse_rate = first_pulse_rate(survey),
+             .seed = settings.seed,
+             .fixed_incidence = settings.fixed_incidence,
+             .tilted_leaves = settings.library_physics,
+             .threads = settings.threads,
+             .city_models = settings.city_models}};
+  }
+};
+
+inline void add_new(std::vector<std::string>& known, const std::vector<std::string>& texts) {
+  for (const std::string& text : texts)
+    if (std::find(known.begin(), known.end(), text) == known.end()) known.push_back(text);
+}
+
+/// Scene and legs of a repetition.
+struct LoadedRepetition {
+  std::shared_ptr<const SimulationInputs> inputs;
+  SceneBuilder builder;  ///< with the files read so far
+  std::uint64_t seed;
+  std::vector<std::string> warnings{};
+  std::shared_ptr<const SurveyScene> scene{};
+  std::optional<CompiledSurvey> compiled{};
+
+  LoadedRepetition(std::shared_ptr<const SimulationInputs> all, SceneBuilder with_files, int number)
+      : inputs(std::move(all)),
+        builder(std::move(with_files)),
+        seed(inputs->settings.seed + static_cast<std::uint64_t>(number) * 0x9e3779b97f4a7c15U) {
+    const auto build = [&] { return BuiltParts{builder.parts(number), builder.warnings(), builder.files()}; };
+    BuiltParts built = inputs->provider ? inputs->provider(number, build) : build();
+    std::vector<SurveyPart>& parts = built.parts;
+    parts.insert(parts.end(), inputs->meshes.begin(), inputs->meshes.end());
+    scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = 1});
+    const auto ground = [&](const Vec2& at, auto... near) { return scene->ground_height(at, near...); };
+    const Simulation::Settings& s = inputs->settings;
+    compiled = compile_survey(inputs->survey, ground, {s.seed, s.platform_noise, s.leg_noise, s.leg_places});
+    const double duration = compiled->source.duration().seconds();
+    if (std::any_of(parts.begin(), parts.end(), [](const SurveyPart& p) { return p.motion != nullptr; }))
+      scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = std::max(1e-3, duration)});
+    add_new(warnings, built.warnings);
+    warnings.insert(warnings.end(), compiled->warnings.begin(), compiled->warnings.end());
+  }
+};
+
+[[nodiscard]] inline ScannerSettings overridden(ScannerSettings scanner, const ReceiverOverrides& overrides) {
+  for (ChannelSettings& channel : scanner.channels) {
+    channel.waveform.rings = overrides.rings.value_or(channel.waveform.rings);
+    channel.waveform.bin_size = overrides.bin_size.value_or(channel.waveform.bin_size);
+    if (!overrides.ideal) continue;
+    channel.accuracy = 0;
+    channel.errors.range_noise.clear();
+  }
+  return scanner;
+}
+
+/// Footprint, receiver and detector of a channel.
+template <class Receiver, EchoWidth Width>
+[[nodiscard]] ReceiverUnit<RingFootprint, SurveyDetector<Receiver>> receiver_unit(const ChannelSettings& channel,
+                                                                                  const WaveformSettings& waveform,
+                                                                                  bool noisy) {
+  const auto unit = [&] {
+    if constexpr (std::same_as<Receiver, ReceiverNoise>)
+      return survey_receiver_unit<Width>(channel, waveform, noisy);
+    else
+      return library_receiver_unit<Width>(channel, waveform, noisy);
+  }();
+  return {unit.footprint, unit.receiver, SurveyDetector<Receiver>(unit.detector)};
+}
+
+/// Survey of scene, legs and receivers. Adds warnings of the receivers.
+template <class Receiver>
+[[nodiscard]] AnySurvey joined(const LoadedRepetition& loaded, const ReceiverOverrides& overrides,
+                               std::vector<std::string>& warnings) {
+  const SurveySettings& survey = loaded.inputs->survey;
+  const Simulation::Settings& settings = loaded.inputs->settings;
+  const WaveformLimits limits(survey, settings);
+  const ScannerSettings scanner = limits.sampled_alike(overridden(survey.scanner, overrides), warnings);
+  const bool library = settings.library_physics, follows_light = settings.light_paths || survey.scene.follows_light(),
+             waveforms = settings.waveforms && !overrides.ideal, noisy = settings.waveform_noise && !overrides.ideal,
+             widths = settings.echo_width && !overrides.ideal;
+  const Box bounds = loaded.scene->bounds();
+  const double extent = bounds.empty() ? 0 : length(bounds.size());
+  auto units = ReceiverGroups(survey.scanner).units(scanner, [&](const ChannelSettings& channel) {
+    const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
+    WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light);
+    limits.limit_record(waveform, warnings);
+    auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy)
+                       : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy);
+    if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) warnings.push_back(air);
+    return unit;
+  });
+  return {Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, SurveyDetector<Receiver>, SurveyLight>(
+              loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, follows_light, library),
+              loaded.seed),
+          loaded.scene};
 }
 
 /// Only implementation of `Simulation`.
 class LoadedSimulation final : public Simulation {
  public:
-  LoadedSimulation(const SurveySettings& survey, const Settings& settings, const PartProvider& provider)
-      : survey_(survey),
-        settings_(settings),
-        provider_(provider),
-        builder_(survey.scene, {.spectra = spectra_of(survey, spectra_folders(settings.assets)),
-                                .pulse_rate = first_pulse_rate(survey),
-                                .seed = settings.seed,
-                                .fixed_incidence = settings.fixed_incidence,
-                                .tilted_leaves = settings.library_physics,
-                                .threads = settings.threads,
-                                .city_models = settings.city_models}),
-        limits_(survey, settings) {
-    for (const Mesh& mesh : settings.meshes)
-      meshes_.push_back({.geometry = std::make_shared<const MaskedMesh<>>(mesh.data, settings.threads),
-                         .materials = material_table({mesh.material}),
-                         .object = mesh.object,
-                         .attributes = mesh.attributes});
-    begin(0);
-  }
+  explicit LoadedSimulation(std::shared_ptr<const LoadedRepetition> loaded, const ReceiverOverrides& overrides = {})
+      : loaded_(std::move(loaded)), warnings_(loaded_->warnings), survey_(received(overrides)) {}
 
-  [[nodiscard]] int runs() const override { return builder_.runs(); }
-
-  void begin(int run) override {
-    std::vector<SurveyPart> all = parts(run);
-    all.insert(all.end(), meshes_.begin(), meshes_.end());
-    scene_.emplace(all, MovingIndexSettings{.to = 1});
-    const auto ground = [&](const Vec2& at, auto... near) { return scene_->ground_height(at, near...); };
-    const SurveyBuildOptions options{settings_.seed, settings_.platform_noise, settings_.leg_noise,
-                                     settings_.leg_places};
-    compiled_.emplace(compile_survey(survey_, ground, options));
-    const double duration = compiled_->source.duration().seconds();
-    const bool moves = std::any_of(all.begin(), all.end(), [](const SurveyPart& p) { return p.motion != nullptr; });
-    if (moves) scene_.emplace(all, MovingIndexSettings{.to = std::max(1e-3, duration)});
-
-    seed_ = settings_.seed + static_cast<std::uint64_t>(run) * 0x9e3779b97f4a7c15U;
-    warnings_ = scene_warnings_;
-    warnings_.insert(warnings_.end(), compiled_->warnings.begin(), compiled_->warnings.end());
-    receive({});
-  }
-
-  [[nodiscard]] const CompiledSurvey& compiled() const override { return *compiled_; }
-  [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+  [[nodiscard]] const AnySurvey& survey() const noexcept override { return survey_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept override { return warnings_; }
+  [[nodiscard]] const CompiledSurvey& compiled() const noexcept override { return *loaded_->compiled; }
 
   [[nodiscard]] Scene scene() const override {
-    const SurveyScene& s = *scene_;
+    const SurveyScene& s = *loaded_->scene;
     Scene out{.min = s.bounds().min,
               .max = s.bounds().max,
               .parts = s.parts().size(),
@@ -202,139 +268,34 @@ class LoadedSimulation final : public Simulation {
     return out;
   }
 
-  [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(scene_->parts()); }
-  [[nodiscard]] PointColours colours() const override { return colours_of(*scene_); }
-
-  RunSummary run(const RunOptions& options, const Sink& sink) const override {
-    return pulsecast::run(*pipeline_, options, sink);
+  [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(loaded_->scene->parts()); }
+  [[nodiscard]] PointColours colours() const override {
+    return [scene = loaded_->scene, colours = colours_of(*loaded_->scene)](
+               const EchoBatch& batch, const Shot& shot, const Echo& echo) { return colours(batch, shot, echo); };
   }
 
-  void receive(const ReceiverOverrides& overrides) override {
-    std::vector<std::string> warnings;
-    const ScannerSettings scanner = limits_.sampled_alike(scanner_of(overrides), warnings);
-    if (settings_.echo_width && !overrides.ideal)
-      connect<GaussianFit>(scanner, overrides.ideal, warnings);
-    else
-      connect<NoWidth>(scanner, overrides.ideal, warnings);
-    add_new(warnings_, warnings);
+  [[nodiscard]] int repetitions() const override { return loaded_->builder.runs(); }
+  [[nodiscard]] std::unique_ptr<Simulation> repetition(int number) const override {
+    return std::make_unique<LoadedSimulation>(
+        std::make_shared<const LoadedRepetition>(loaded_->inputs, loaded_->builder, number));
   }
-
-  [[nodiscard]] std::vector<Sample> sample(std::span<const SampleBlock> blocks, unsigned threads) const override {
-    constexpr std::size_t at_once = 8;
-    const AnySurvey& survey = *pipeline_;
-    std::vector<Sample> all(blocks.size());
-    for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
-      AnySurvey::Workspace workspace = survey.workspace();
-      ResultBuffer buffer;  // reused, as in a run
-      for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
-        const SampleBlock& block = blocks[k];
-        Sample& sample = all[k];
-        const auto add = [&](const Outcome& outcome) {
-          buffer.append(outcome, block.empty_shots);
-          return outcome.shot.index + 1;
-        };
-        buffer.clear();
-        survey.simulate_in_order(block.first, block.from, workspace, add);
-        buffer.clear();
-        const double start = processor_seconds();
-        survey.simulate_in_order(block.from, block.end, workspace, add);
-        sample.seconds = processor_seconds() - start;
-        sample.sample_interval = survey.sample_interval();
-        static_cast<ResultBuffer&>(sample) = buffer;
-      }
-    });
-    return all;
-  }
-
-  [[nodiscard]] std::vector<SlotCount> count(std::span<const PulseIndex> slots, unsigned threads) const override {
-    constexpr std::size_t at_once = 1024;
-    const AnySurvey& survey = *pipeline_;
-    std::vector<SlotCount> all(slots.size());
-    for_each_index((slots.size() + at_once - 1) / at_once, threads, [&](std::size_t k) {
-      AnySurvey::Workspace workspace = survey.workspace();
-      for (std::size_t i = k * at_once; i < std::min((k + 1) * at_once, slots.size()); ++i) {
-        const Outcome outcome = survey(slots[i], workspace);
-        all[i] = {outcome.shot.fate, static_cast<std::uint8_t>(outcome.echoes.size())};
-      }
-    });
-    return all;
+  [[nodiscard]] std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const override {
+    return std::make_unique<LoadedSimulation>(loaded_, overrides);
   }
 
  private:
-  static void add_new(std::vector<std::string>& known, const std::vector<std::string>& texts) {
-    for (const std::string& text : texts)
-      if (std::find(known.begin(), known.end(), text) == known.end()) known.push_back(text);
+  [[nodiscard]] AnySurvey received(const ReceiverOverrides& overrides) {
+    std::vector<std::string> of_receivers;
+    AnySurvey survey = loaded_->inputs->settings.library_physics
+                           ? joined<BandLimitedReceiver<>>(*loaded_, overrides, of_receivers)
+                           : joined<ReceiverNoise>(*loaded_, overrides, of_receivers);
+    add_new(warnings_, of_receivers);
+    return survey;
   }
 
-  std::vector<SurveyPart> parts(int run) {
-    const auto build = [&] { return BuiltParts{builder_.parts(run), builder_.warnings(), builder_.files()}; };
-    BuiltParts built = provider_ ? provider_(run, build) : build();
-    add_new(scene_warnings_, built.warnings);
-    return std::move(built.parts);
-  }
-
-  [[nodiscard]] ScannerSettings scanner_of(const ReceiverOverrides& overrides) const {
-    ScannerSettings scanner = survey_.scanner;
-    for (ChannelSettings& channel : scanner.channels) {
-      channel.waveform.rings = overrides.rings.value_or(channel.waveform.rings);
-      channel.waveform.bin_size = overrides.bin_size.value_or(channel.waveform.bin_size);
-      if (!overrides.ideal) continue;
-      channel.accuracy = 0;
-      channel.errors.range_noise.clear();
-    }
-    return scanner;
-  }
-
-  template <class Width>
-  void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& warnings) {
-    const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
-    const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal,
-               library = settings_.library_physics;
-    const auto units_by = [&](const auto& receiver_unit) {
-      return ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
-        const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
-        WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light());
-        limits_.limit_record(waveform, warnings);
-        auto unit = receiver_unit(channel, waveform, noisy);
-        if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty())
-          warnings.push_back(air);
-        return unit;
-      });
-    };
-    if (library)
-      connect<BandLimitedWaveform<Width>>(units_by(library_receiver_unit<Width>));
-    else
-      connect<FullWaveform<Width>>(units_by(survey_receiver_unit<Width>));
-  }
-
-  [[nodiscard]] bool follows_light() const { return settings_.light_paths || survey_.scene.follows_light(); }
-
-  template <class Detector>
-  void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units) {
-    if (follows_light())
-      connect(std::move(units), validated(light_paths(survey_, settings_.library_physics)));
-    else
-      connect(std::move(units), DirectLight{.spread_planes = settings_.library_physics});
-  }
-
-  template <class Detector, class Light>
-  void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units, const Light& light) {
-    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector, Light>;
-    pipeline_ =
-        std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, light, seed_));
-  }
-
-  SurveySettings survey_;
-  Settings settings_;
-  PartProvider provider_;
-  SceneBuilder builder_;
-  WaveformLimits limits_;
-  std::optional<CompiledSurvey> compiled_;
-  std::optional<SurveyScene> scene_;
-  std::unique_ptr<const AnySurvey> pipeline_;
-  std::vector<SurveyPart> meshes_;  // in addition to the survey's own parts
-  std::uint64_t seed_ = 0;          // seed of this repetition
-  std::vector<std::string> scene_warnings_, warnings_;
+  std::shared_ptr<const LoadedRepetition> loaded_;
+  std::vector<std::string> warnings_;
+  AnySurvey survey_;
 };
 
 }  // namespace detail
@@ -342,7 +303,9 @@ class LoadedSimulation final : public Simulation {
 PULSECAST_INLINE std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
                                                              const Simulation::Settings& settings,
                                                              const PartProvider& provider) {
-  return std::make_unique<detail::LoadedSimulation>(survey, settings, provider);
+  const auto inputs = std::make_shared<const detail::SimulationInputs>(survey, settings, provider);
+  return std::make_unique<detail::LoadedSimulation>(
+      std::make_shared<const detail::LoadedRepetition>(inputs, inputs->builder(), 0));
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

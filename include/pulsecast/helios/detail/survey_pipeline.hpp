@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
+#define PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/transport/direct_light.hpp>
+#include <pulsecast/transport/light_paths.hpp>
+
+/// Stages that an XML document chooses, as one type each: the pipeline of its survey is then compiled once.
+namespace PULSECAST_NAMESPACE::helios::detail {
+
+/// `FullWaveform` with or without echo widths.
+template <WaveformReceiver Receiver>
+class SurveyDetector {
+  using Plain = FullWaveform<NoWidth, Receiver>;
+  using Fitting = FullWaveform<GaussianFit, Receiver>;
+
+ public:
+  using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser, tag::PreparesForLasers>;
+  using Workspace = std::variant<typename Plain::Workspace, typename Fitting::Workspace>;
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< that of the receiver
+
+  explicit SurveyDetector(Plain detector) : detector_(std::move(detector)) {}
+  explicit SurveyDetector(Fitting detector) : detector_(std::move(detector)) {}
+
+  [[nodiscard]] double sample_interval() const noexcept {
+    return std::visit([](const auto& d) noexcept { return d.sample_interval(); }, detector_);
+  }
+  void validate(const Laser& laser) const {
+    std::visit([&](const auto& d) { d.validate(laser); }, detector_);
+  }
+  void prepare(const Laser& laser) {
+    std::visit([&](auto& d) { d.prepare(laser); }, detector_);
+  }
+  [[nodiscard]] Workspace workspace(std::size_t reflections) const {
+    return std::visit([&](const auto& d) { return Workspace(d.workspace(reflections)); }, detector_);
+  }
+  [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
+    const auto detect = [&]<class D>(const D& d) noexcept {
+      return d.detect(input, *std::get_if<typename D::Workspace>(&w));
+    };
+    return std::visit(detect, detector_);
+  }
+
+ private:
+  std::variant<Plain, Fitting> detector_;
+};
+
+/// `DirectLight`, or `LightPaths` for a scene that asks for it.
+class SurveyLight {
+ public:
+  using Workspace = std::variant<DirectLight::Workspace, LightPaths::Workspace>;
+
+  explicit SurveyLight(DirectLight light) : light_(light) {}
+  explicit SurveyLight(LightPaths light) : light_(validated(std::move(light))) {}
+
+  /// As the concept ValidatesTarget requires.
+  template <SceneQueries Target>
+  void validate(const Target& target) const {
+    if (const auto* paths = std::get_if<LightPaths>(&light_)) paths->validate(target);
+  }
+  [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
+    return std::visit([&](const auto& l) noexcept { return l.reflections(subrays); }, light_);
+  }
+  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
+    return std::visit([&](const auto& l) { return Workspace(l.workspace(subrays)); }, light_);
+  }
+  template <SceneQueries Target>
+  [[nodiscard]] TransportResult trace(const Target& target, const TransportInput& light, Workspace& w,
+                                      std::span<Reflection> reflections) const noexcept {
+    const auto trace = [&]<class Light>(const Light& l) noexcept {
+      return l.trace(target, light, *std::get_if<typename Light::Workspace>(&w), reflections);
+    };
+    return std::visit(trace, light_);
+  }
+
+ private:
+  std::variant<DirectLight, LightPaths> light_;
+};
+
+}  // namespace PULSECAST_NAMESPACE::helios::detail
+
+#endif
