@@ -261,18 +261,18 @@ TEST_CASE("colours that the format has no room for, and names of attributes that
   refused({.waveforms = true, .colours = black}, "LasSettings::colours");
   refused({.near_infrared = true}, "LasSettings::near_infrared");
   refused({.attributes = attributes_of({{1, attributes({{"Range", 1}})}})}, "'Range'");
-  refused({.attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
+  refused({.light_kinds = true, .attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
   refused({.attributes = attributes_of({{1, std::make_shared<const std::vector<Attribute>>(1)}})}, "''");
   refused({.attributes =
                attributes_of({{1, attributes({{std::string(31, 'a') + "b", 1}, {std::string(31, 'a') + "c", 2}})}})},
           "aaac'");
   std::vector<Attribute> many;
-  for (int i = 0; i < 335; ++i) many.push_back({std::to_string(i), 1});
-  refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of names");
+  for (int i = 0; i < 336; ++i) many.push_back({std::to_string(i), 1});
+  refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of extra values");
   CHECK(folder.empty());
   many.pop_back();
   CHECK(Survey::of_points({{1, 2, 3}}).written({.attributes = attributes_of({{1, attributes(many)}})}).extras.size() ==
-        340);
+        341);
 }
 
 TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {

@@ -85,7 +85,7 @@ std::string npz(const EchoBatch& batch, const NpzSettings& settings = {}) {
 PointLayout every_type() {
   std::vector<PointField> fields;
   for (const char* const name : {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"})
-    fields.push_back({name, static_cast<FieldType>(fields.size() + 1), PointQuantity::range});
+    fields.push_back({name, static_cast<NumberType>(fields.size() + 1), column("range")});
   return PointLayout::packed(fields);
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("equal points give equal bytes, in any time zone") {
 TEST_CASE("headers of arrays end at a multiple of 64 bytes for any count") {
   for (std::uint64_t count = 1; count < std::uint64_t{1} << 60; count *= 10) {
     CAPTURE(count);
-    CHECK(array_content(detail::npy_header(FieldType::float64, count), "<f8", count).empty());
+    CHECK(array_content(detail::npy_header(NumberType::float64, count), "<f8", count).empty());
   }
 }
 
@@ -192,7 +192,8 @@ TEST_CASE("settings and buffers that do not fit are refused") {
     return refused_field([&] { NpzWriter(folder / "a.npz", settings); });
   };
   CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
-  CHECK(refused({.layout = PointLayout::packed({{"a/b", FieldType::float32}})}) == "PointField::name (character code)");
+  CHECK(refused({.layout = PointLayout::packed({{"a/b", NumberType::float32}})}) ==
+        "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   NpzWriter writer(folder / "a.npz");
   CHECK(refused_field([&] { writer.add(PointBuffer(layouts::xyzi())); }) == "PointBuffer::layout (index of a field)");

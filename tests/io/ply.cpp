@@ -74,7 +74,7 @@ TEST_CASE("colours and attributes are properties, colours by the names and in th
   };
   const PlySettings settings{.layout = PointLayout::packed(layouts::xyz_float())
                                            .with(layouts::colours())
-                                           .with(layouts::attributes(attributes.names(), FieldType::float32)),
+                                           .with(layouts::attributes(attributes.names(), NumberType::float32)),
                              .points = {.colours = colour, .attributes = attributes}};
   const std::string file = ply(TwoEchoes().batch(), settings);
   const std::string head =
@@ -115,15 +115,14 @@ TEST_CASE("a header names the properties and the number of vertices, and the rec
 }
 
 TEST_CASE("each number type has its name") {
-  using enum PointQuantity;
-  const PointLayout layout = PointLayout::packed({{"a", FieldType::int8, none},
-                                                  {"b", FieldType::uint8, none},
-                                                  {"c", FieldType::int16, none},
-                                                  {"d", FieldType::uint16, none},
-                                                  {"e", FieldType::int32, none},
-                                                  {"f", FieldType::uint32, none},
-                                                  {"g", FieldType::float32, none},
-                                                  {"h", FieldType::float64, none}});
+  const PointLayout layout = PointLayout::packed({{"a", NumberType::int8, nullptr},
+                                                  {"b", NumberType::uint8, nullptr},
+                                                  {"c", NumberType::int16, nullptr},
+                                                  {"d", NumberType::uint16, nullptr},
+                                                  {"e", NumberType::int32, nullptr},
+                                                  {"f", NumberType::uint32, nullptr},
+                                                  {"g", NumberType::float32, nullptr},
+                                                  {"h", NumberType::float64, nullptr}});
   CHECK(ply({}, {.layout = layout}) ==
         header("0",
                "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
@@ -183,7 +182,8 @@ TEST_CASE("settings and buffers that do not fit are refused") {
     return refused_field([&] { PlyWriter(folder / "a.ply", settings); });
   };
   CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
-  CHECK(refused({.layout = PointLayout::packed({{"a b", FieldType::float32}})}) == "PointField::name (character code)");
+  CHECK(refused({.layout = PointLayout::packed({{"a b", NumberType::float32}})}) ==
+        "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   PlyWriter writer(folder / "a.ply");
   CHECK(refused_field([&] { writer.add(PointBuffer(layouts::xyzi())); }) == "PointBuffer::layout (index of a field)");

@@ -158,11 +158,10 @@ std::string any_text(std::size_t length, Generator& any) {
 PointLayout any_layout(Generator& any) {
   PointLayout layout;
   for (std::uint64_t left = 1 + any.whole(9); left > 0; --left) {
-    const auto type = static_cast<FieldType>(1 + any.whole(8));
-    const auto quantity =
-        static_cast<PointQuantity>(1 + any.whole(static_cast<std::uint64_t>(PointQuantity::packed_rgb_bits)));
+    const auto type = static_cast<NumberType>(1 + any.whole(8));
+    const PointColumn* const of = &point_columns[any.whole(point_columns.size())];
     layout.size += static_cast<std::uint32_t>(any.whole(3));
-    layout.fields.push_back({any_text(any.whole(10), any), type, quantity, 1, layout.size});
+    layout.fields.push_back({any_text(any.whole(10), any), type, of, 1, layout.size});
     layout.size += size_of(type);
   }
   layout.size += static_cast<std::uint32_t>(any.whole(4));

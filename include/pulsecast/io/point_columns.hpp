@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_POINT_COLUMNS_HPP
+#define PULSECAST_IO_POINT_COLUMNS_HPP
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
+#include <pulsecast/scene/surface_query.hpp>
+
+/// Table of all columns that a point can have. Every format of points, Python and the page take them from here.
+namespace PULSECAST_NAMESPACE::io {
+
+/// Number type of a column or field. The values up to float64 are those of the data types of sensor_msgs/PointField.
+enum class NumberType : std::uint8_t { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64, int64, uint64 };
+
+/// Axes of the coordinates of points.
+enum class PointAxes : std::uint8_t {
+  right_forward_up,  ///< x right or east, y forward or north, z up
+  forward_left_up    ///< x forward, y left, z up, as ROS has it for robots. Source: ROS REP 103
+};
+
+/// Distortion of a scan by the motion of its sensor.
+enum class MotionDistortion : std::uint8_t {
+  kept,    ///< each point is in the sensor's frame at its emission, as drivers publish it
+  removed  ///< all points are in the sensor's frame at the scan's start
+};
+
+/// Settings of points: their frame, and what columns read besides pulse and echo.
+struct PointSettings {
+  /// Pose of the sensor, for points in its frame, as `Platform::instrument_at` gives it; empty: points are in the world
+  std::function<Pose<frame::Instrument, frame::World>(Tick)> sensor{};
+  MotionDistortion distortion = MotionDistortion::kept;  ///< distortion of points in the sensor's frame
+  PointAxes axes = PointAxes::right_forward_up;          ///< axes of the coordinates
+  Vec3 origin{};                       ///< place in the world that has coordinates 0, for points in the world [m]
+  std::vector<std::uint16_t> rings{};  ///< ring of each channel, see `SpinningSensor::rings`; empty: the channel
+  double start_time = 0;               ///< clock time at tick 0 [s]
+  Laser laser{};                       ///< laser, for the column photons
+  double power_reference = 1e-9;       ///< power of 0 dB, for the column intensity_level [W]
+  SurfaceQuery surfaces{};             ///< surfaces of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};              ///< colours of echoes, see `colours_of`; empty: unknown
+  ObjectAttributes attributes{};       ///< attributes of objects
+
+  void validate() const {
+    require_finite("PointSettings::origin (length)", length(origin), "m");
+    require_finite("PointSettings::start_time", start_time, "s");
+    require_positive("PointSettings::power_reference", power_reference, "W");
+    laser.validate();
+  }
+};
+
+/// Settings of the points of a scene, which must outlive them: surfaces and colours, by one more ray per echo each
+/// where a column needs them, and the attributes of its parts. @throws SettingError
+template <SceneQueries World>
+[[nodiscard]] PointSettings points_of(const World& world) {
+  return {.surfaces = surfaces_of(world), .colours = colours_of(world), .attributes = ObjectAttributes(world.parts())};
+}
+
+/// Reflectance as instruments encode it in a byte: percents up to white surfaces; above, 10 a doubling, up to 255.
+/// Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, but for the doubling, which no maker publishes.
+[[nodiscard]] inline double reflectivity_byte(double reflectance) noexcept {
+  if (!(reflectance > 0)) return 0;
+  return std::min(255.0, reflectance <= 1 ? 100 * reflectance : 100 + 10 * std::log2(reflectance));
+}
+
+/// Photons that a power [W] brings in a laser's pulse length.
+[[nodiscard]] inline double photon_count(double power, const Laser& laser) noexcept {
+  return power * laser.pulse_length * laser.wavelength / (planck_constant * speed_of_light);
+}
+
+/// Level of a ratio of powers [dB]; -200 or more, also for zero.
+[[nodiscard]] inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
+
+/// Point of an echo, as columns read it. What no column needs is left empty.
+struct PointView {
+  const Shot& shot;                             ///< pulse of the echo
+  const Echo& echo;                             ///< echo
+  const PointSettings& settings;                ///< settings of the points
+  Tick scan_start{};                            ///< start of the scan
+  Vec3 position{};                              ///< position in the frame and axes of the points [m]
+  const SurfaceInteraction* surface = nullptr;  ///< surface of the echo in the world; null if unknown
+  Vec3 normal{}, velocity{};                    ///< of the surface, in the axes of the points; 0 if unknown [1, m/s]
+  std::optional<PointColour> colour{};          ///< colour; empty if unknown
+  std::span<const double> attributes{};         ///< attributes of the object, in order of their names
+};
+
+/// Part of a point that a column needs besides pulse and echo.
+enum class PointNeed : std::uint8_t {
+  nothing,   ///< pulse and echo suffice
+  position,  ///< position in the frame and axes of the points
+  surface,   ///< surface, by `PointSettings::surfaces`
+  colour,    ///< colour, by `PointSettings::colours`
+  attribute  ///< attribute of the object, by `PointSettings::attributes`
+};
+
+/// Column of a point.
+struct PointColumn {
+  std::string_view name;                                        ///< name, as in Python
+  std::string_view unit;                                        ///< SI symbol; empty for a pure number
+  NumberType type;                                              ///< number type that suits it
+  double (*get)(const PointView&) noexcept;                     ///< value in its unit; NaN if unknown
+  std::string_view description;                                 ///< meaning, in a few words
+  PointNeed needs = PointNeed::nothing;                         ///< what it reads besides pulse and echo
+  std::uint64_t (*whole)(const PointView&) noexcept = nullptr;  ///< value of a number that may be above 2^53
+};
+
+namespace detail {
+
+template <auto Member>
+[[nodiscard]] double of_echo(const PointView& p) noexcept {
+  return static_cast<double>(p.echo.*Member);
+}
+template <auto Member>
+[[nodiscard]] double of_shot(const PointView& p) noexcept {
+  return static_cast<double>(p.shot.*Member);
+}
+template <auto Member, int Axis>
+[[nodiscard]] double of_vector(const PointView& p) noexcept {
+  return (p.*Member)[Axis];
+}
+template <auto Channel>
+[[nodiscard]] double of_colour(const PointView& p) noexcept {
+  return p.colour ? (*p.colour).*Channel : std::numeric_limits<double>::quiet_NaN();
+}
+template <auto Member>
+[[nodiscard]] double of_surface(const PointView& p) noexcept {
+  return p.surface ? p.surface->*Member : std::numeric_limits<double>::infinity();
+}
+[[nodiscard]] inline double scan_time(const PointView& p) noexcept {
+  return static_cast<double>(p.shot.tick.second - p.scan_start.second) + (p.shot.tick.fraction - p.scan_start.fraction);
+}
+[[nodiscard]] inline double clock_time(const PointView& p) noexcept {
+  return (p.settings.start_time + static_cast<double>(p.shot.tick.second)) + p.shot.tick.fraction;
+}
+[[nodiscard]] inline double ring_of(const PointView& p) noexcept {
+  return p.shot.channel < p.settings.rings.size() ? p.settings.rings[p.shot.channel] : p.shot.channel;
+}
+[[nodiscard]] inline std::uint64_t whole_pulse(const PointView& p) noexcept { return p.shot.index; }
+[[nodiscard]] inline double azimuth_of(const PointView& p) noexcept { return std::atan2(p.position.y, p.position.x); }
+[[nodiscard]] inline double elevation_of(const PointView& p) noexcept {
+  return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y));
+}
+[[nodiscard]] inline double reflectivity_of(const PointView& p) noexcept {
+  return reflectivity_byte(p.echo.reflectance);
+}
+[[nodiscard]] inline double photons_of(const PointView& p) noexcept {
+  return photon_count(p.echo.amplitude, p.settings.laser);
+}
+[[nodiscard]] inline double intensity_level_of(const PointView& p) noexcept {
+  return level_of(p.echo.amplitude / p.settings.power_reference);
+}
+[[nodiscard]] inline double reflectance_level_of(const PointView& p) noexcept { return level_of(p.echo.reflectance); }
+[[nodiscard]] inline double rgb_of(const PointView& p) noexcept {
+  if (!p.colour) return std::numeric_limits<double>::quiet_NaN();
+  const auto byte = [](std::uint16_t channel) { return (channel + 128U) / 257U; };  // to nearest
+  return byte(p.colour->red) << 16 | byte(p.colour->green) << 8 | byte(p.colour->blue);
+}
+[[nodiscard]] inline double rgb_bits_of(const PointView& p) noexcept {
+  return p.colour ? std::bit_cast<float>(static_cast<std::uint32_t>(rgb_of(p))) : 0;
+}
+[[nodiscard]] inline double unknown_of(const PointView& /*p*/) noexcept {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace detail
+
+/// Columns of a point, a row each. Those up to `kind` are the columns that Python has by default.
+inline constexpr std::array point_columns = [] {
+  using namespace detail;
+  using enum NumberType;
+  using enum PointNeed;
+  return std::array{
+      PointColumn{"x", "m", float64, of_vector<&PointView::position, 0>, "coordinate to the east", position},
+      PointColumn{"y", "m", float64, of_vector<&PointView::position, 1>, "coordinate to the north", position},
+      PointColumn{"z", "m", float64, of_vector<&PointView::position, 2>, "coordinate upwards", position},
+      PointColumn{"time", "s", float64, scan_time, "emission since the start"},
+      PointColumn{"range", "m", float64, of_echo<&Echo::range>, "range along the pulse's axis"},
+      PointColumn{"intensity", "W", float32, of_echo<&Echo::amplitude>, "received power at the peak"},
+      PointColumn{"reflectance", "", float32, of_echo<&Echo::reflectance>, "relative to a white target"},
+      PointColumn{"echo_width", "s", float32, of_echo<&Echo::width>, "standard deviation in time"},
+      PointColumn{"cos_incidence", "", float32, of_echo<&Echo::cos_incidence>, "cosine of incidence"},
+      PointColumn{"pulse", "", int64, of_shot<&Shot::index>, "number of the pulse, from 0", nothing, whole_pulse},
+      PointColumn{"object", "", uint32, of_echo<&Echo::object>, "number of the object"},
+      PointColumn{"classification", "", uint16, of_echo<&Echo::classification>, "class of the surface"},
+      PointColumn{"leg", "", uint16, of_shot<&Shot::leg>, "number of the leg, from 0"},
+      PointColumn{"return_number", "", uint8, of_echo<&Echo::number>, "return number, from 1"},
+      PointColumn{"number_of_returns", "", uint8, of_shot<&Shot::echoes>, "returns of the pulse"},
+      PointColumn{"channel", "", uint16, of_shot<&Shot::channel>, "number of the emitter, from 0"},
+      PointColumn{"kind", "", uint8, of_echo<&Echo::kind>, "way of the light, 0: direct"},
+      PointColumn{"red", "", uint16, of_colour<&PointColour::red>, "red, up to 65535", colour},
+      PointColumn{"green", "", uint16, of_colour<&PointColour::green>, "green, up to 65535", colour},
+      PointColumn{"blue", "", uint16, of_colour<&PointColour::blue>, "blue, up to 65535", colour},
+      PointColumn{"near_infrared", "", uint16, of_colour<&PointColour::near_infrared>, "near infrared, up to 65535",
+                  colour},
+      PointColumn{"rgb", "", uint32, rgb_of, "65536 red + 256 green + blue", colour},
+      PointColumn{"rgb_bits", "", float32, rgb_bits_of, "rgb as the bits of a float", colour},
+      PointColumn{"clock", "s", float64, clock_time, "emission by the clock"},
+      PointColumn{"ring", "", uint16, ring_of, "number of the laser, by rings"},
+      PointColumn{"scan_angle", "rad", float32, of_shot<&Shot::scan_angle>, "right of the vertical"},
+      PointColumn{"azimuth", "rad", float64, azimuth_of, "angle from x to y", position},
+      PointColumn{"elevation", "rad", float64, elevation_of, "angle above x and y", position},
+      PointColumn{"radial_velocity", "m/s", float32, of_echo<&Echo::velocity>, "away; NaN: unmeasured"},
+      PointColumn{"reflectivity", "", uint8, reflectivity_of, "reflectance as a byte"},
+      PointColumn{"photons", "", float32, photons_of, "photons in a pulse length"},
+      PointColumn{"intensity_level", "dB", float32, intensity_level_of, "received power at peak"},
+      PointColumn{"reflectance_level", "dB", float32, reflectance_level_of, "re white target"},
+      PointColumn{"normal_x", "", float32, of_vector<&PointView::normal, 0>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_y", "", float32, of_vector<&PointView::normal, 1>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_z", "", float32, of_vector<&PointView::normal, 2>, "normal, 0 if unknown", surface},
+      PointColumn{"velocity_x", "m/s", float32, of_vector<&PointView::velocity, 0>, "of the surface", surface},
+      PointColumn{"velocity_y", "m/s", float32, of_vector<&PointView::velocity, 1>, "of the surface", surface},
+      PointColumn{"velocity_z", "m/s", float32, of_vector<&PointView::velocity, 2>, "of the surface", surface},
+      PointColumn{"part", "", uint32, of_surface<&SurfaceInteraction::part>, "part; largest if unknown", surface},
+      PointColumn{"material", "", uint16, of_surface<&SurfaceInteraction::material_index>,
+                  "material; largest if unknown", surface}};
+}();
+
+/// Column of an attribute of the object, by the name of the field that refers to it. NaN if it has none.
+inline constexpr PointColumn attribute_column{
+    "", "", NumberType::float64, detail::unknown_of, "attribute of the object met", PointNeed::attribute};
+
+namespace detail {
+
+/// Column of a name; null if there is none.
+[[nodiscard]] constexpr const PointColumn* column_or_null(std::string_view name) noexcept {
+  for (const PointColumn& each : point_columns)
+    if (each.name == name) return &each;
+  return nullptr;
+}
+inline void no_point_column_has_this_name() {}  // not constexpr: its call does not compile in `column`
+
+}  // namespace detail
+
+/// Column of a name that is known at compile time, as in `column("range")`. Another name does not compile.
+[[nodiscard]] consteval const PointColumn* column(std::string_view name) {
+  const PointColumn* const found = detail::column_or_null(name);
+  if (!found) detail::no_point_column_has_this_name();
+  return found;
+}
+
+/// Column of a name. @throws SettingError for a name that no column has
+[[nodiscard]] inline const PointColumn& find_column(std::string_view name) {
+  if (const PointColumn* const found = detail::column_or_null(name)) return *found;
+  std::vector<std::string> names;
+  for (const PointColumn& each : point_columns) names.emplace_back(each.name);
+  throw SettingError(text::joined({"column '", name, "'"}),
+                     text::joined({" is not known", text::suggestion(name, names)}));
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif
