@@ -191,7 +191,7 @@ TEST_CASE("settings and buffers that do not fit are refused") {
   const auto refused = [&](const NpzSettings& settings) {
     return refused_field([&] { NpzWriter(folder / "a.npz", settings); });
   };
-  CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
+  CHECK(refused({.layout = {}}) == "PointLayout::size");
   CHECK(refused({.layout = PointLayout::packed({{"a/b", NumberType::float32}})}) ==
         "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");

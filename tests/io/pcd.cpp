@@ -293,7 +293,7 @@ TEST_CASE("settings and buffers that do not fit are refused, and leave no file")
     return PcdSettings{.layout = PointLayout::packed({{"x", NumberType::float32}, {name, NumberType::float32}})};
   };
   CHECK(refused({.encoding = static_cast<PcdEncoding>(3)}) == "PcdSettings::encoding");
-  CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
+  CHECK(refused({.layout = {}}) == "PointLayout::size");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   CHECK(refused(named("")) == "PointField::name (length)");
   CHECK(refused(named("a b")) == "PointField::name (character code)");

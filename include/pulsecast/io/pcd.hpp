@@ -4,8 +4,6 @@
 #define PULSECAST_IO_PCD_HPP
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +12,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -121,23 +118,8 @@ class PcdWriter {
   void write_rows(std::span<const std::byte> records) {
     for (; !records.empty(); records = records.subspan(points_.layout().size)) {
       for (const PointField& field : points_.layout().fields)
-        detail::visit_number_type(field.type,
-                                  [&]<class Number>() { add_number<Number>(records.data() + field.offset); });
+        detail::add_number(row_, field.type, records.data() + field.offset);
       file_.write(row_.end());
-    }
-  }
-
-  template <class Number>
-  void add_number(const std::byte* from) {
-    const auto number = static_cast<Number>(detail::load_number<Number>(from));  // exact: all types are within double
-    if constexpr (std::is_integral_v<Number>) {
-      row_.add(number);
-    } else if (std::isnan(number)) {
-      row_.add(std::string_view("nan"));
-    } else {
-      std::array<char, 32> digits;
-      row_.add(
-          std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
     }
   }
 

@@ -14,6 +14,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
@@ -88,17 +90,23 @@ template <SceneQueries World>
 /// Level of a ratio of powers [dB]; -200 or more, also for zero.
 [[nodiscard]] inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
 
-/// Point of an echo, as columns read it. What no column needs is left empty.
+/// Surface of an echo, as columns read it.
+struct PointSurface {
+  SurfaceInteraction interaction{};  ///< surface in the world
+  Vec3 normal{};                     ///< unit normal, in the axes of the points
+  Vec3 velocity{};                   ///< velocity in the world, in the axes of the points [m/s]
+};
+
+/// Point of an echo, as columns read it. A sink or file fills in what its columns need.
 struct PointView {
-  const Shot& shot;                             ///< pulse of the echo
-  const Echo& echo;                             ///< echo
-  const PointSettings& settings;                ///< settings of the points
-  Tick scan_start{};                            ///< start of the scan
-  Vec3 position{};                              ///< position in the frame and axes of the points [m]
-  const SurfaceInteraction* surface = nullptr;  ///< surface of the echo in the world; null if unknown
-  Vec3 normal{}, velocity{};                    ///< of the surface, in the axes of the points; 0 if unknown [1, m/s]
-  std::optional<PointColour> colour{};          ///< colour; empty if unknown
-  std::span<const double> attributes{};         ///< attributes of the object, in order of their names
+  const Shot& shot;                       ///< pulse of the echo
+  const Echo& echo;                       ///< echo
+  const PointSettings& settings;          ///< settings of the points
+  const Tick& scan_start;                 ///< start of the scan
+  Vec3 position{};                        ///< position in the frame and axes of the points [m]
+  const PointSurface* surface = nullptr;  ///< surface; null if unknown
+  const PointColour* colour = nullptr;    ///< colour; null if unknown
+  const double* attributes = nullptr;     ///< attributes of the object, in order of their names
 };
 
 /// Part of a point that a column needs besides pulse and echo.
@@ -118,30 +126,45 @@ struct PointColumn {
   double (*get)(const PointView&) noexcept;                     ///< value in its unit; NaN if unknown
   std::string_view description;                                 ///< meaning, in a few words
   PointNeed needs = PointNeed::nothing;                         ///< what it reads besides pulse and echo
-  std::uint64_t (*whole)(const PointView&) noexcept = nullptr;  ///< value of a number that may be above 2^53
+  std::uint64_t (*whole)(const PointView&) noexcept = nullptr;  ///< value of a whole number, exact
 };
 
 namespace detail {
 
-template <auto Member>
-[[nodiscard]] double of_echo(const PointView& p) noexcept {
-  return static_cast<double>(p.echo.*Member);
+template <class T>
+[[nodiscard]] constexpr T value_of(const PointView& p, T Echo::*member) noexcept {
+  return p.echo.*member;
 }
-template <auto Member>
-[[nodiscard]] double of_shot(const PointView& p) noexcept {
-  return static_cast<double>(p.shot.*Member);
+template <class T>
+[[nodiscard]] constexpr T value_of(const PointView& p, T Shot::*member) noexcept {
+  return p.shot.*member;
 }
-template <auto Member, int Axis>
-[[nodiscard]] double of_vector(const PointView& p) noexcept {
-  return (p.*Member)[Axis];
+/// Column of a member of `Echo` or `Shot`. Whole numbers are exact.
+template <auto Member>
+[[nodiscard]] constexpr PointColumn member(std::string_view name, std::string_view unit, NumberType type,
+                                           std::string_view description) noexcept {
+  PointColumn column{name, unit, type,
+                     [](const PointView& p) noexcept { return static_cast<double>(value_of(p, Member)); }, description};
+  using Value = decltype(value_of(std::declval<const PointView&>(), Member));
+  if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>)
+    column.whole = [](const PointView& p) noexcept { return static_cast<std::uint64_t>(value_of(p, Member)); };
+  return column;
+}
+template <int Axis>
+[[nodiscard]] double of_position(const PointView& p) noexcept {
+  return p.position[Axis];
+}
+template <auto Vector, int Axis>
+[[nodiscard]] double of_surface(const PointView& p) noexcept {
+  return p.surface ? (p.surface->*Vector)[Axis] : 0;
 }
 template <auto Channel>
 [[nodiscard]] double of_colour(const PointView& p) noexcept {
   return p.colour ? (*p.colour).*Channel : std::numeric_limits<double>::quiet_NaN();
 }
-template <auto Member>
-[[nodiscard]] double of_surface(const PointView& p) noexcept {
-  return p.surface ? p.surface->*Member : std::numeric_limits<double>::infinity();
+template <auto Index>
+[[nodiscard]] double of_scene(const PointView& p) noexcept {
+  return p.surface ? p.surface->interaction.*Index : std::numeric_limits<double>::infinity();
 }
 [[nodiscard]] inline double scan_time(const PointView& p) noexcept {
   return static_cast<double>(p.shot.tick.second - p.scan_start.second) + (p.shot.tick.fraction - p.scan_start.fraction);
@@ -152,7 +175,6 @@ template <auto Member>
 [[nodiscard]] inline double ring_of(const PointView& p) noexcept {
   return p.shot.channel < p.settings.rings.size() ? p.settings.rings[p.shot.channel] : p.shot.channel;
 }
-[[nodiscard]] inline std::uint64_t whole_pulse(const PointView& p) noexcept { return p.shot.index; }
 [[nodiscard]] inline double azimuth_of(const PointView& p) noexcept { return std::atan2(p.position.y, p.position.x); }
 [[nodiscard]] inline double elevation_of(const PointView& p) noexcept {
   return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y));
@@ -187,23 +209,23 @@ inline constexpr std::array point_columns = [] {
   using enum NumberType;
   using enum PointNeed;
   return std::array{
-      PointColumn{"x", "m", float64, of_vector<&PointView::position, 0>, "coordinate to the east", position},
-      PointColumn{"y", "m", float64, of_vector<&PointView::position, 1>, "coordinate to the north", position},
-      PointColumn{"z", "m", float64, of_vector<&PointView::position, 2>, "coordinate upwards", position},
+      PointColumn{"x", "m", float64, of_position<0>, "coordinate to the east", position},
+      PointColumn{"y", "m", float64, of_position<1>, "coordinate to the north", position},
+      PointColumn{"z", "m", float64, of_position<2>, "coordinate upwards", position},
       PointColumn{"time", "s", float64, scan_time, "emission since the start"},
-      PointColumn{"range", "m", float64, of_echo<&Echo::range>, "range along the pulse's axis"},
-      PointColumn{"intensity", "W", float32, of_echo<&Echo::amplitude>, "received power at the peak"},
-      PointColumn{"reflectance", "", float32, of_echo<&Echo::reflectance>, "relative to a white target"},
-      PointColumn{"echo_width", "s", float32, of_echo<&Echo::width>, "standard deviation in time"},
-      PointColumn{"cos_incidence", "", float32, of_echo<&Echo::cos_incidence>, "cosine of incidence"},
-      PointColumn{"pulse", "", int64, of_shot<&Shot::index>, "number of the pulse, from 0", nothing, whole_pulse},
-      PointColumn{"object", "", uint32, of_echo<&Echo::object>, "number of the object"},
-      PointColumn{"classification", "", uint16, of_echo<&Echo::classification>, "class of the surface"},
-      PointColumn{"leg", "", uint16, of_shot<&Shot::leg>, "number of the leg, from 0"},
-      PointColumn{"return_number", "", uint8, of_echo<&Echo::number>, "return number, from 1"},
-      PointColumn{"number_of_returns", "", uint8, of_shot<&Shot::echoes>, "returns of the pulse"},
-      PointColumn{"channel", "", uint16, of_shot<&Shot::channel>, "number of the emitter, from 0"},
-      PointColumn{"kind", "", uint8, of_echo<&Echo::kind>, "way of the light, 0: direct"},
+      member<&Echo::range>("range", "m", float64, "range along the pulse's axis"),
+      member<&Echo::amplitude>("intensity", "W", float32, "received power at the peak"),
+      member<&Echo::reflectance>("reflectance", "", float32, "relative to a white target"),
+      member<&Echo::width>("echo_width", "s", float32, "standard deviation in time"),
+      member<&Echo::cos_incidence>("cos_incidence", "", float32, "cosine of incidence"),
+      member<&Shot::index>("pulse", "", int64, "number of the pulse, from 0"),
+      member<&Echo::object>("object", "", uint32, "number of the object"),
+      member<&Echo::classification>("classification", "", uint16, "class of the surface"),
+      member<&Shot::leg>("leg", "", uint16, "number of the leg, from 0"),
+      member<&Echo::number>("return_number", "", uint8, "return number, from 1"),
+      member<&Shot::echoes>("number_of_returns", "", uint8, "returns of the pulse"),
+      member<&Shot::channel>("channel", "", uint16, "number of the emitter, from 0"),
+      member<&Echo::kind>("kind", "", uint8, "way of the light, 0: direct"),
       PointColumn{"red", "", uint16, of_colour<&PointColour::red>, "red, up to 65535", colour},
       PointColumn{"green", "", uint16, of_colour<&PointColour::green>, "green, up to 65535", colour},
       PointColumn{"blue", "", uint16, of_colour<&PointColour::blue>, "blue, up to 65535", colour},
@@ -213,23 +235,23 @@ inline constexpr std::array point_columns = [] {
       PointColumn{"rgb_bits", "", float32, rgb_bits_of, "rgb as the bits of a float", colour},
       PointColumn{"clock", "s", float64, clock_time, "emission by the clock"},
       PointColumn{"ring", "", uint16, ring_of, "number of the laser, by rings"},
-      PointColumn{"scan_angle", "rad", float32, of_shot<&Shot::scan_angle>, "right of the vertical"},
+      member<&Shot::scan_angle>("scan_angle", "rad", float32, "right of the vertical"),
       PointColumn{"azimuth", "rad", float64, azimuth_of, "angle from x to y", position},
       PointColumn{"elevation", "rad", float64, elevation_of, "angle above x and y", position},
-      PointColumn{"radial_velocity", "m/s", float32, of_echo<&Echo::velocity>, "away; NaN: unmeasured"},
+      member<&Echo::velocity>("radial_velocity", "m/s", float32, "away; NaN: unmeasured"),
       PointColumn{"reflectivity", "", uint8, reflectivity_of, "reflectance as a byte"},
       PointColumn{"photons", "", float32, photons_of, "photons in a pulse length"},
       PointColumn{"intensity_level", "dB", float32, intensity_level_of, "received power at peak"},
       PointColumn{"reflectance_level", "dB", float32, reflectance_level_of, "re white target"},
-      PointColumn{"normal_x", "", float32, of_vector<&PointView::normal, 0>, "normal, 0 if unknown", surface},
-      PointColumn{"normal_y", "", float32, of_vector<&PointView::normal, 1>, "normal, 0 if unknown", surface},
-      PointColumn{"normal_z", "", float32, of_vector<&PointView::normal, 2>, "normal, 0 if unknown", surface},
-      PointColumn{"velocity_x", "m/s", float32, of_vector<&PointView::velocity, 0>, "of the surface", surface},
-      PointColumn{"velocity_y", "m/s", float32, of_vector<&PointView::velocity, 1>, "of the surface", surface},
-      PointColumn{"velocity_z", "m/s", float32, of_vector<&PointView::velocity, 2>, "of the surface", surface},
-      PointColumn{"part", "", uint32, of_surface<&SurfaceInteraction::part>, "part; largest if unknown", surface},
-      PointColumn{"material", "", uint16, of_surface<&SurfaceInteraction::material_index>,
-                  "material; largest if unknown", surface}};
+      PointColumn{"normal_x", "", float32, of_surface<&PointSurface::normal, 0>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_y", "", float32, of_surface<&PointSurface::normal, 1>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_z", "", float32, of_surface<&PointSurface::normal, 2>, "normal, 0 if unknown", surface},
+      PointColumn{"velocity_x", "m/s", float32, of_surface<&PointSurface::velocity, 0>, "of the surface", surface},
+      PointColumn{"velocity_y", "m/s", float32, of_surface<&PointSurface::velocity, 1>, "of the surface", surface},
+      PointColumn{"velocity_z", "m/s", float32, of_surface<&PointSurface::velocity, 2>, "of the surface", surface},
+      PointColumn{"part", "", uint32, of_scene<&SurfaceInteraction::part>, "part; largest if unknown", surface},
+      PointColumn{"material", "", uint16, of_scene<&SurfaceInteraction::material_index>, "material; largest if unknown",
+                  surface}};
 }();
 
 /// Column of an attribute of the object, by the name of the field that refers to it. NaN if it has none.

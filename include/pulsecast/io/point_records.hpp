@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -42,6 +43,13 @@ void store_number(double value, std::byte* to) noexcept {
   std::memcpy(to, &number, sizeof number);
 }
 
+/// Writes a whole number as an integer, limited to its range.
+template <std::integral Number>
+void store_whole(std::uint64_t value, std::byte* to) noexcept {
+  const auto number = static_cast<Number>(std::min<std::uint64_t>(value, std::numeric_limits<Number>::max()));
+  std::memcpy(to, &number, sizeof number);
+}
+
 template <class Number>
 [[nodiscard]] double load_number(const std::byte* from) noexcept {
   Number number;
@@ -53,9 +61,9 @@ template <class Number>
 inline constexpr PointColumn absent_column{"", "", NumberType::float64, [](const PointView&) noexcept { return 0.0; },
                                            "not simulated"};
 
-/// Calls `visit.operator()<Number>()` with the number type of a field.
+/// Calls `visit.operator()<Number>()` with the number type of a field. Inlined, as the type may be a constant.
 template <class Visitor>
-decltype(auto) visit_number_type(NumberType type, const Visitor& visit) {
+[[gnu::always_inline]] inline decltype(auto) visit_number_type(NumberType type, const Visitor& visit) {
   switch (type) {
     case NumberType::int8:
       return visit.template operator()<std::int8_t>();
@@ -103,33 +111,22 @@ class PointEncoder {
   /// Sets the start of the scan, from which its times count. Evaluates the sensor's pose for it now.
   void begin_scan(Tick start) {
     start_ = start;
-    if (settings_.sensor && settings_.distortion == MotionDistortion::removed)
-      frame_ = settings_.sensor(start).inverse();
+    if (settings_.sensor && removed()) frame_ = settings_.sensor(start).inverse();
   }
 
-  /// Calls `use(view)` with the `PointView` of each echo of a shot of a batch, which has what the layout needs.
+  /// Calls `use(view)` with the `PointView` of an echo of a batch, which has what the layout needs.
   template <class Use>
-  void for_each(const EchoBatch& batch, const Shot& shot, const Use& use) const {
-    if (shot.echoes == 0) return;
-    const Pose<frame::World, frame::Instrument> frame = frame_at(shot.tick);
-    for (const Echo& echo : batch.echoes_of(shot)) {
-      PointView view{.shot = shot, .echo = echo, .settings = settings_, .scan_start = start_};
-      std::optional<SurfaceInteraction> surface;
-      if (places_) view.position = place(frame, point_of(shot, echo));
-      if (surfaces_ && (surface = settings_.surfaces(batch, shot, echo))) {
-        view.surface = &*surface;
-        view.normal = in_axes(frame.direction(surface->normal));
-        view.velocity = in_axes(frame.direction(surface->velocity));
-      }
-      if (colours_) view.colour = settings_.colours(batch, shot, echo);
-      if (attributes_) view.attributes = settings_.attributes.of(echo.object);
-      use(view);
-    }
+  void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Use& use) const {
+    see(batch, shot, echo, frame_of(shot), use);
   }
 
   /// Writes the record of a point to `layout().size` bytes; those between fields are left as they are.
   void store(const PointView& view, std::byte* record) const noexcept {
     for (const Number& number : numbers_) number.store(number, view, record);
+  }
+  /// Writes the record of an echo of a batch, as above.
+  void store(const EchoBatch& batch, const Shot& shot, const Echo& echo, std::byte* record) const {
+    see(batch, shot, echo, [&](const PointView& view) { store(view, record); });
   }
 
   /// Value of the field of this index, times its scale; NaN if unknown.
@@ -143,11 +140,14 @@ class PointEncoder {
     for (const Shot& shot : batch.shots) count += shot.echoes;
     std::size_t at = records.size();
     records.resize(at + count * layout_.size);
-    for (const Shot& shot : batch.shots)
-      for_each(batch, shot, [&](const PointView& view) {
-        store(view, records.data() + at);
+    for (const Shot& shot : batch.shots) {
+      if (shot.echoes == 0) continue;
+      const Frame frame = frame_of(shot);
+      for (const Echo& echo : batch.echoes_of(shot)) {
+        see(batch, shot, echo, frame, [&](const PointView& view) { store(view, records.data() + at); });
         at += layout_.size;
-      });
+      }
+    }
   }
 
  private:
@@ -169,9 +169,9 @@ class PointEncoder {
   static void store_value(const Number& number, const PointView& view, std::byte* record) noexcept {
     detail::store_number<Stored>(number.of(view), record + number.offset);
   }
+  template <class Stored>
   static void store_whole(const Number& number, const PointView& view, std::byte* record) noexcept {
-    const std::uint64_t whole = number.whole(view);
-    std::memcpy(record + number.offset, &whole, sizeof whole);
+    detail::store_whole<Stored>(number.whole(view), record + number.offset);
   }
 
   [[nodiscard]] Number number_of(const PointField& field) const {
@@ -186,19 +186,44 @@ class PointEncoder {
       number.get = nullptr;
       number.attribute = static_cast<std::size_t>(found - names.begin());
     }
-    number.store = detail::visit_number_type(field.type, []<class Stored>() { return &store_value<Stored>; });
-    if (number.whole && number.scale == 1 && field.type >= NumberType::int64) number.store = &store_whole;
+    detail::visit_number_type(field.type, [&]<class Stored>() {
+      number.store = &store_value<Stored>;
+      if constexpr (std::is_integral_v<Stored>)
+        if (number.whole && number.scale == 1) number.store = &store_whole<Stored>;
+    });
     return number;
   }
 
-  /// Frame of the points of a time, if it is that of a sensor.
-  [[nodiscard]] Pose<frame::World, frame::Instrument> frame_at(Tick tick) const {
-    if (!settings_.sensor) return {};
-    return settings_.distortion == MotionDistortion::kept ? settings_.sensor(tick).inverse() : frame_;
+  using Frame = std::optional<Pose<frame::World, frame::Instrument>>;  // empty: the world
+
+  [[nodiscard]] Frame frame_of(const Shot& shot) const {
+    if (!settings_.sensor) return std::nullopt;
+    return removed() ? frame_ : settings_.sensor(shot.tick).inverse();
   }
 
-  [[nodiscard]] Vec3 place(const Pose<frame::World, frame::Instrument>& frame, const Vec3& point) const noexcept {
-    return in_axes(settings_.sensor ? frame.point(point) : point - settings_.origin);
+  template <class Use>
+  void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Frame& frame, const Use& use) const {
+    PointView view{shot, echo, settings_, start_};
+    std::optional<PointSurface> surface;
+    std::optional<PointColour> colour;
+    if (places_) {
+      const Vec3 point = point_of(shot, echo);
+      view.position = in_axes(frame ? frame->point(point) : point - settings_.origin);
+    }
+    if (surfaces_ && (surface = surface_of(batch, shot, echo, frame))) view.surface = &*surface;
+    if (colours_ && (colour = settings_.colours(batch, shot, echo))) view.colour = &*colour;
+    if (attributes_) view.attributes = settings_.attributes.of(echo.object).data();
+    use(view);
+  }
+
+  [[nodiscard]] bool removed() const noexcept { return settings_.distortion == MotionDistortion::removed; }
+
+  [[nodiscard]] std::optional<PointSurface> surface_of(const EchoBatch& batch, const Shot& shot, const Echo& echo,
+                                                       const Frame& frame) const {
+    const std::optional<SurfaceInteraction> surface = settings_.surfaces(batch, shot, echo);
+    if (!surface) return std::nullopt;
+    const auto direction = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
+    return PointSurface{*surface, direction(surface->normal), direction(surface->velocity)};
   }
   [[nodiscard]] Vec3 in_axes(const Vec3& v) const noexcept {
     return settings_.axes == PointAxes::forward_left_up ? to_forward_left_up(v) : v;

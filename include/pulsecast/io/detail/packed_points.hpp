@@ -4,19 +4,25 @@
 #define PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/point_records.hpp>
 
-/// Points as point files hold them: PCD, PLY, NPZ.
+/// Points as point files hold them: PCD, PLY, NPZ, text.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
@@ -109,6 +115,22 @@ class FieldColumns {
   std::vector<std::vector<std::byte>> columns_;
   PointLayout layout_;
 };
+
+/// Adds a number of a record to a row of text: in the shortest form that reads back the same; nan for NaN.
+inline void add_number(TextRow& row, NumberType type, const std::byte* from) {
+  visit_number_type(type, [&]<class Number>() {
+    Number number;
+    std::memcpy(&number, from, sizeof number);
+    if constexpr (std::is_integral_v<Number>) {
+      row.add(number);
+    } else if (std::isnan(number)) {
+      row.add(std::string_view("nan"));
+    } else {
+      std::array<char, 32> digits;
+      row.add(std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
+    }
+  });
+}
 
 /// Text of a count, and blanks up to the length of the longest: for headers that are written again with another count.
 struct CountText {

@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -94,8 +95,7 @@ class LasEncoder {
       record.put(22, time);
     }
     if (packet) put_packet(record, shot, *packet);
-    columns_.for_each(batch, shot, [&](const PointView& view) {
-      const Echo& echo = view.echo;
+    for (const Echo& echo : batch.echoes_of(shot)) {
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
@@ -104,11 +104,13 @@ class LasEncoder {
       if (packet)
         record.put(layout_.packet + 13,
                    static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
-      columns_.store(view, record.data());
+      put_extras({shot, echo, columns_.settings(), columns_.scan_start()}, record.data() + layout_.extras,
+                 std::make_index_sequence<detail::las_usual_extras.size()>());
+      if (!layout_.columns.fields.empty()) columns_.store(batch, shot, echo, record.data());
       tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude_in(record.data()));
       ++tally_.points_by_return[number - 1];
       put(record, point_of(shot, echo));
-    });
+    }
   }
 
   /// Writes the coordinates of a point into its record and counts it; false if they do not fit.
@@ -184,6 +186,22 @@ class LasEncoder {
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< for a sum over several encoders
 
  private:
+  /// Writes the extra values that each point has. Their columns are constants, so that no call is indirect.
+  template <std::size_t... K>
+  static void put_extras(const PointView& view, std::byte* to, std::index_sequence<K...>) noexcept {
+    ((to = put_extra<K>(view, to)), ...);
+  }
+  template <std::size_t K>
+  [[nodiscard, gnu::always_inline]] static std::byte* put_extra(const PointView& view, std::byte* to) noexcept {
+    constexpr const detail::LasUsualExtra& extra = detail::las_usual_extras[K];
+    return detail::visit_number_type(extra.type, [&]<class Number>() {
+      if constexpr (std::is_integral_v<Number>)
+        detail::store_whole<Number>(extra.column->whole(view), to);
+      else
+        detail::store_number<Number>(extra.column->get(view) * extra.scale, to);
+      return to + sizeof(Number);
+    });
+  }
   /// Amplitude of a record, its second extra value [dB].
   [[nodiscard]] float amplitude_in(const std::byte* record) const noexcept {
     float level;

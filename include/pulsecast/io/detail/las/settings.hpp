@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,22 @@ struct LasSettings;
 }
 
 namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Extra value that each point has.
+struct LasUsualExtra {
+  std::string_view name, description;  ///< texts for readers
+  NumberType type;                     ///< number type
+  const PointColumn* column;           ///< column
+  double scale = 1;                    ///< number per unit of the column
+};
+inline constexpr std::array las_usual_extras{
+    // a float would err by 0.5 mm at 10 km
+    LasUsualExtra{"Range", "from the instrument [m]", NumberType::float64, column("range")},
+    LasUsualExtra{"Amplitude", "received power at peak [dB]", NumberType::float32, column("intensity_level")},
+    LasUsualExtra{"Reflectance", "re white Lambertian target [dB]", NumberType::float32, column("reflectance_level")},
+    LasUsualExtra{"EchoWidth", "standard deviation in time [ns]", NumberType::float32, column("echo_width"), 1e9},
+    LasUsualExtra{"PulseIndex", "number of the pulse, from 0", NumberType::uint64, column("pulse")},
+    LasUsualExtra{"ObjectId", "number of the object met", NumberType::uint32, column("object")}};
 
 /// Extra value of each point, after the standard ones.
 struct LasExtra {
@@ -142,9 +159,9 @@ struct LasSettings {
       const std::string_view name = detail::las_cut(extra->field.name);
       const auto has_name = [&](const detail::LasExtra& other) { return detail::las_cut(other.field.name) == name; };
       if (name.empty() || std::any_of(all.begin(), extra, has_name))
-        throw SettingError(text::joined({"LasSettings, length of the name '", name, "' of an extra value"}),
-                           static_cast<double>(name.size()), "bytes",
-                           "above 0, and names must differ in their first 31 bytes");
+        throw SettingError(
+            text::joined({"LasSettings, length of the name '", extra->field.name, "' of an extra value"}),
+            static_cast<double>(name.size()), "bytes", "above 0, and names must differ in their first 31 bytes");
     }
   }
 };
@@ -152,15 +169,10 @@ struct LasSettings {
 namespace detail {
 
 inline std::vector<LasExtra> las_extras(const LasSettings& s) {
-  using enum NumberType;
-  std::vector<LasExtra> all{
-      {{"Range", float64, column("range")}, "from the instrument [m]"},  // a float would err by 0.5 mm at 10 km
-      {{"Amplitude", float32, column("intensity_level")}, "received power at peak [dB]"},
-      {{"Reflectance", float32, column("reflectance_level")}, "re white Lambertian target [dB]"},
-      {{"EchoWidth", float32, column("echo_width"), 1e9}, "standard deviation in time [ns]"},
-      {{"PulseIndex", uint64, column("pulse")}, "number of the pulse, from 0"},
-      {{"ObjectId", uint32, column("object")}, "number of the object met"}};
-  if (s.light_kinds) all.push_back({{"LightKind", uint8, column("kind")}, "way of the light, 0: direct"});
+  std::vector<LasExtra> all;
+  for (const LasUsualExtra& usual : las_usual_extras)
+    all.push_back({{std::string(usual.name), usual.type, usual.column, usual.scale}, std::string(usual.description)});
+  if (s.light_kinds) all.push_back({{"LightKind", NumberType::uint8, column("kind")}, "way of the light, 0: direct"});
   if (s.attributes)
     for (PointField& field : layouts::attributes(s.attributes->names())) all.push_back(las_extra(std::move(field)));
   for (const PointField& field : s.columns) all.push_back(las_extra(field));
@@ -203,6 +215,8 @@ struct LasLayout {
     if (colour_size == 6) columns.fields.pop_back();
     columns.size = static_cast<std::uint32_t>(extras);
     for (const LasExtra& extra : las_extras(s)) columns = columns.with({extra.field});
+    const auto usual = columns.fields.begin() + (colour_size / 2);  // which `LasEncoder` stores
+    columns.fields.erase(usual, usual + las_usual_extras.size());
   }
 
   /// Size of a point [byte].
@@ -215,7 +229,7 @@ struct LasLayout {
   std::size_t colour, colour_size;       ///< offset and size of red, green, blue and near infrared in a point [byte]
   std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
   std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
-  PointLayout columns{};                 ///< colours and extra values in a point
+  PointLayout columns{};                 ///< colours and further extra values in a point
 };
 
 }  // namespace detail
