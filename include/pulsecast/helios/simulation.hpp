@@ -143,6 +143,8 @@ class Simulation {
   [[nodiscard]] virtual ObjectAttributes attributes() const = 0;
   /// Colours of points of the current scene, by one more ray a point; valid until `begin`.
   [[nodiscard]] virtual PointColours colours() const = 0;
+  /// Surfaces of its points, by one more ray each, as `surfaces_of`.
+  [[nodiscard]] virtual SurfaceQuery surfaces() const = 0;
   [[nodiscard]] virtual const std::vector<std::string>& warnings()
       const = 0;  ///< warnings of scene, legs and receivers, each once
 

@@ -203,7 +203,7 @@ template <auto Index>
 
 }  // namespace detail
 
-/// Columns of a point, a row each. Those up to `kind` are the columns that Python has by default.
+/// Columns of a point, a row each.
 inline constexpr std::array point_columns = [] {
   using namespace detail;
   using enum NumberType;
@@ -253,6 +253,11 @@ inline constexpr std::array point_columns = [] {
       PointColumn{"material", "", uint16, of_scene<&SurfaceInteraction::material_index>, "material; largest if unknown",
                   surface}};
 }();
+
+/// Columns that points have by default in Python, and are read from pulse and echo alone: those up to the kind of
+/// light.
+inline constexpr std::span<const PointColumn> usual_point_columns(point_columns.data(), 17);
+static_assert(usual_point_columns.back().name == "kind");
 
 /// Column of an attribute of the object, by the name of the field that refers to it. NaN if it has none.
 inline constexpr PointColumn attribute_column{

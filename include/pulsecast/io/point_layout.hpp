@@ -156,6 +156,12 @@ namespace layouts {
   for (const PointColumn* each : all) fields.push_back({std::string(each->name), each->type, each});
   return fields;
 }
+/// As above, of consecutive rows of the table, such as all `point_columns`.
+[[nodiscard]] inline std::vector<PointField> columns(std::span<const PointColumn> all) {
+  std::vector<PointField> fields;
+  for (const PointColumn& each : all) fields.push_back({std::string(each.name), each.type, &each});
+  return fields;
+}
 
 /// Columns as the table has them, by their names, to append to a layout; other names are those of `attributes`.
 /// @throws SettingError for a name that neither a column nor an attribute has

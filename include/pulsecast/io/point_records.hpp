@@ -90,6 +90,13 @@ template <class Visitor>
 
 }  // namespace detail
 
+/// Number of echoes of the shots of a batch.
+[[nodiscard]] inline std::size_t count_echoes(const EchoBatch& batch) noexcept {
+  std::size_t count = 0;
+  for (const Shot& shot : batch.shots) count += shot.echoes;
+  return count;
+}
+
 /// Encoder of echoes as point records, in pulse order. Allocates nothing but what the vector of the records needs.
 class PointEncoder {
  public:
@@ -136,16 +143,19 @@ class PointEncoder {
 
   /// Appends a record for each echo of the shots of a batch.
   void encode(const EchoBatch& batch, std::vector<std::byte>& records) const {
-    std::size_t count = 0;
-    for (const Shot& shot : batch.shots) count += shot.echoes;
-    std::size_t at = records.size();
-    records.resize(at + count * layout_.size);
+    const std::size_t at = records.size();
+    records.resize(at + count_echoes(batch) * layout_.size);
+    encode(batch, records.data() + at);
+  }
+
+  /// Writes a record for each echo of the shots of a batch to `count_echoes(batch)` times `layout().size` bytes.
+  void encode(const EchoBatch& batch, std::byte* records) const {
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
       const Frame frame = frame_of(shot);
       for (const Echo& echo : batch.echoes_of(shot)) {
-        see(batch, shot, echo, frame, [&](const PointView& view) { store(view, records.data() + at); });
-        at += layout_.size;
+        see(batch, shot, echo, frame, [&](const PointView& view) { store(view, records); });
+        records += layout_.size;
       }
     }
   }
