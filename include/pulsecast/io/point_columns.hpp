@@ -175,6 +175,9 @@ template <auto Index>
 [[nodiscard]] inline double ring_of(const PointView& p) noexcept {
   return p.shot.channel < p.settings.rings.size() ? p.settings.rings[p.shot.channel] : p.shot.channel;
 }
+[[nodiscard]] inline double incidence_of(const PointView& p) noexcept {
+  return std::acos(std::clamp(p.echo.cos_incidence, -1.0, 1.0));
+}
 [[nodiscard]] inline double azimuth_of(const PointView& p) noexcept { return std::atan2(p.position.y, p.position.x); }
 [[nodiscard]] inline double elevation_of(const PointView& p) noexcept {
   return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y));
@@ -238,6 +241,7 @@ inline constexpr std::array point_columns = [] {
       member<&Shot::scan_angle>("scan_angle", "rad", float32, "right of the vertical"),
       PointColumn{"azimuth", "rad", float64, azimuth_of, "angle from x to y", position},
       PointColumn{"elevation", "rad", float64, elevation_of, "angle above x and y", position},
+      PointColumn{"incidence", "rad", float32, incidence_of, "angle of incidence"},
       member<&Echo::velocity>("radial_velocity", "m/s", float32, "away; NaN: unmeasured"),
       PointColumn{"reflectivity", "", uint8, reflectivity_of, "reflectance as a byte"},
       PointColumn{"photons", "", float32, photons_of, "photons in a pulse length"},

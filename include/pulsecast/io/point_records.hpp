@@ -50,13 +50,6 @@ void store_whole(std::uint64_t value, std::byte* to) noexcept {
   std::memcpy(to, &number, sizeof number);
 }
 
-template <class Number>
-[[nodiscard]] double load_number(const std::byte* from) noexcept {
-  Number number;
-  std::memcpy(&number, from, sizeof number);
-  return static_cast<double>(number);
-}
-
 /// Column of fields that are not simulated.
 inline constexpr PointColumn absent_column{"", "", NumberType::float64, [](const PointView&) noexcept { return 0.0; },
                                            "not simulated"};
@@ -89,6 +82,15 @@ template <class Visitor>
 }
 
 }  // namespace detail
+
+/// Number in a field of a record, as it is stored.
+[[nodiscard]] inline double number_in(const std::byte* record, const PointField& field) noexcept {
+  return detail::visit_number_type(field.type, [from = record + field.offset]<class Number>() {
+    Number number;
+    std::memcpy(&number, from, sizeof number);
+    return static_cast<double>(number);
+  });
+}
 
 /// Number of echoes of the shots of a batch.
 [[nodiscard]] inline std::size_t count_echoes(const EchoBatch& batch) noexcept {
@@ -273,8 +275,7 @@ class PointBuffer {
 
   /// Number in a field of this layout of a point, as it is stored.
   [[nodiscard]] double number(std::size_t point, const PointField& field) const noexcept {
-    const std::byte* const from = records_.data() + point * layout().size + field.offset;
-    return detail::visit_number_type(field.type, [&]<class Number>() { return detail::load_number<Number>(from); });
+    return number_in(records_.data() + point * layout().size, field);
   }
 
  private:
