@@ -152,7 +152,7 @@ TEST_CASE("points have colours in every run of a server that has them") {
     CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
   }
   const Address a(plain.address());
-  plain.begin({}, {.colours = red});
+  plain.begin({}, {.points = {.colours = red}});
   give(plain, 0, 10);
   CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
   plain.begin({}, {});

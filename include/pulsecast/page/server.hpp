@@ -79,12 +79,12 @@ class PageServer {
   /// URL of the page.
   [[nodiscard]] std::string address() const { return "http://127.0.0.1" + host_ + '/' + token_ + '/'; }
 
-  /// Removes all points and starts another run, whose columns have the values of the settings.
-  void begin(PageSurvey survey) { begin(std::move(survey), settings_.points); }
-  /// As above, with other values, such as those of another scene.
-  void begin(PageSurvey survey, io::PointSettings points) {
+  /// Removes all points and starts another run.
+  void begin(PageSurvey survey) { begin(std::move(survey), settings_); }
+  /// As above, with other settings, such as the values of columns of another scene. @throws SettingError
+  void begin(PageSurvey survey, const PageSettings& settings) {
     const std::lock_guard lock(mutex_);
-    settings_.points = std::move(points);
+    settings_ = validated(settings);
     survey_ = std::move(survey);
     sample_ = PageSample(settings_.points_max, settings_.points, settings_.columns);
     progress_ = {};
