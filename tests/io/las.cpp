@@ -21,6 +21,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 
 #include "support/detect.hpp"
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/las_reader.hpp"
 #include "support/relative.hpp"
@@ -248,6 +249,30 @@ TEST_CASE("attributes of objects follow the other extra values, by the object of
     CHECK(las_real(file, file.points[2], "age") == 12);
     CHECK(las_real(file, file.points[2], u) == 1e300);
   }
+}
+
+TEST_CASE("every column of the table is an extra value of its type, name and unit") {
+  const support::EveryColumn all;
+  const TemporaryFolder folder;
+  LasWriter writer(folder / "points.las", {.columns = all.fields, .points = all.settings});
+  writer(all.batch());
+  writer.close();
+  const LasFile file = read_las(folder / "points.las");
+  REQUIRE(file.points.size() == 2);
+  CHECK(file.extras.size() == 6 + point_columns.size());
+  const PointBuffer expected = all.records();
+  const std::size_t begin = file.extra("x").offset, size = expected.layout().size;
+  CHECK(file.points[0].bytes.substr(begin) + file.points[1].bytes.substr(begin) == all.bytes(expected));
+  for (const PointField& field : expected.layout().fields) {
+    CAPTURE(field.name);
+    constexpr std::array types{0, 2, 1, 4, 3, 6, 5, 9, 10, 8, 7};  // by NumberType
+    const support::LasExtraField& extra = file.extra(field.name);
+    CHECK(extra.offset == begin + field.offset);
+    CHECK(extra.type == types[static_cast<std::size_t>(field.type)]);
+    CHECK(extra.description.starts_with(field.column->description));
+    if (!field.column->unit.empty()) CHECK(extra.description.ends_with("[" + std::string(field.column->unit) + "]"));
+  }
+  CHECK(file.points[0].bytes.size() == begin + size);
 }
 
 TEST_CASE("colours that the format has no room for, and names of attributes that cannot be told apart, are refused") {

@@ -18,6 +18,7 @@
 
 #include <pulsecast/io/scan_splitter.hpp>
 
+#include "support/every_column.hpp"
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
 #include "support/temporary_folder.hpp"
@@ -146,6 +147,25 @@ std::string pcd(const EchoBatch& batch, const PcdSettings& settings) {
   writer(batch);
   writer.close();
   return content(folder / "a.pcd");
+}
+
+TEST_CASE("every column of the table is a field in every encoding, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  const PointBuffer expected = all.records(false);
+  for (const PcdEncoding encoding : encodings) {
+    const PcdFile file(
+        pcd(all.batch(), {.encoding = encoding, .layout = PointLayout::packed(all.fields), .points = all.settings}));
+    const std::vector<std::vector<double>> columns = file.columns();
+    REQUIRE(columns.size() == point_columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      CAPTURE(all.fields[k].name);
+      CHECK(file.header.at("FIELDS")[k] == all.fields[k].name);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double value = expected.number(i, expected.layout().fields[k]);
+        CHECK((columns[k][i] == value || (std::isnan(columns[k][i]) && std::isnan(value))));
+      }
+    }
+  }
 }
 
 TEST_CASE("a header names fields, sizes, types and the number of points, and the records follow it") {

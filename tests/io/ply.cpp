@@ -19,6 +19,7 @@
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
+#include "support/every_column.hpp"
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
 #include "support/size_limit.hpp"
@@ -62,6 +63,17 @@ std::string records(const std::string& file) {
 std::string header(const std::string& count, const std::string& properties) {
   return "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + std::string(20 - count.size(), ' ') +
          "\nelement vertex " + count + "\n" + properties + "end_header\n";
+}
+
+TEST_CASE("every column of the table is a property, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  const PlySettings settings{.layout = PointLayout::packed(all.fields), .points = all.settings};
+  CHECK(records(ply(all.batch(), settings)) == all.bytes(all.records(false)));
+  const TemporaryFolder folder;
+  PlyWriter writer(folder / "a.ply", settings);
+  writer.add(all.records());
+  writer.close();
+  CHECK(content(folder / "a.ply") == ply(all.batch(), settings));
 }
 
 TEST_CASE("colours and attributes are properties, colours by the names and in the type that readers know") {

@@ -18,6 +18,7 @@
 #include <pulsecast/base/error.hpp>
 
 #include "support/allocations.hpp"
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 
 namespace pulsecast::io {
@@ -166,6 +167,18 @@ PointLayout any_layout(Generator& any) {
   }
   layout.size += static_cast<std::uint32_t>(any.whole(4));
   return layout;
+}
+
+TEST_CASE("every column of the table is a field of a message, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  std::vector<std::byte> message, in_doubles;
+  serialize_point_cloud2(all.records(), "lidar", message);
+  serialize_point_cloud2(all.records(false), "lidar", in_doubles);
+  CHECK(message == in_doubles);
+  const Message found = by_rules(message);
+  REQUIRE(found.fields.size() == point_columns.size());
+  CHECK(std::string(found.data.begin(), found.data.end()) == all.bytes(all.records(false)));
+  for (const Field& field : found.fields) CHECK(field.type <= 8);
 }
 
 TEST_CASE("libfastcdr, and a reader by the rules of CDR, read from a message what its scan holds") {

@@ -19,6 +19,7 @@
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -85,6 +86,29 @@ TEST_CASE("colours and attributes are further columns of a point, in this order,
   const std::vector<PointField> more = layouts::columns({column("pulse"), column("x"), column("reflectivity")});
   CHECK(written(more) == first + " 0 0 0\n" + second + " 0 0 0\n");
   CHECK(written({{"share", NumberType::float32, &attribute_column, 0.5}}) == first + " 0.05\n" + second + " nan\n");
+}
+
+TEST_CASE("every column of the table is a further column that reads back the same") {
+  const support::EveryColumn all;
+  const TemporaryFolder folder;
+  XyzWriter writer(folder / "points.xyz", {}, {all.fields, all.settings});
+  writer(all.batch());
+  writer.close();
+  const PointBuffer expected = all.records();
+  std::istringstream lines(content(folder / "points.xyz"));
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::string word;
+    for (int standard = 0; standard < 11; ++standard) lines >> word;
+    for (const PointField& field : expected.layout().fields) {
+      CAPTURE(field.name);
+      REQUIRE(static_cast<bool>(lines >> word));
+      const double value = expected.number(i, field);
+      if (word == "nan")
+        CHECK((std::isnan(value) || (i == 1 && value == 0)));  // integers of a record have no NaN
+      else
+        CHECK((field.type == NumberType::float32 ? double{std::stof(word)} : std::stod(word)) == value);
+    }
+  }
 }
 
 TEST_CASE("pulses without echoes make no lines, and no points make an empty file") {
