@@ -43,11 +43,10 @@ PointWriter point_writer(const fs::path& path, const Options& o, double start_ti
 }  // namespace
 
 void take_columns(Options& o, const helios::Simulation& simulation) {
-  if (o.colours) o.point_colours = simulation.colours();
-  o.attributes = std::make_shared<const ObjectAttributes>(simulation.attributes());
+  o.points = simulation.points();
+  if (o.colours) o.point_colours = o.points.colours;
+  o.attributes = std::make_shared<const ObjectAttributes>(o.points.attributes);
   if (o.attributes->empty()) o.attributes.reset();
-  o.points = {
-      .surfaces = simulation.surfaces(), .colours = simulation.colours(), .attributes = simulation.attributes()};
   o.fields = io::layouts::columns(o.columns, o.points.attributes.names());
 }
 

@@ -380,7 +380,7 @@ void bind_simulation(py::module_& m) {
     };
   };
   python::bind_run(simulation, runner, [](const Simulation& s) {
-    return io::PointSettings{.surfaces = s.surfaces(), .colours = s.colours(), .attributes = s.attributes()};
+    return s.points();
   });
 }
 

@@ -21,8 +21,6 @@
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
@@ -138,13 +136,9 @@ class Simulation {
   [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
   /// Size of the current scene.
   [[nodiscard]] virtual Scene scene() const = 0;
-  /// Named numbers of the objects of the current scene. @throws SettingError if two parts of one object have different
-  /// ones
-  [[nodiscard]] virtual ObjectAttributes attributes() const = 0;
-  /// Colours of points of the current scene, by one more ray a point; valid until `begin`.
-  [[nodiscard]] virtual PointColours colours() const = 0;
-  /// Surfaces of its points, by one more ray each, as `surfaces_of`.
-  [[nodiscard]] virtual SurfaceQuery surfaces() const = 0;
+  /// Surfaces, colours and attributes of points of the current scene, as `io::points_of`; valid until `begin`.
+  /// @throws SettingError if two parts of one object have different attributes of a name
+  [[nodiscard]] virtual io::PointSettings points() const = 0;
   [[nodiscard]] virtual const std::vector<std::string>& warnings()
       const = 0;  ///< warnings of scene, legs and receivers, each once
 
@@ -169,6 +163,7 @@ class Simulation {
 #include <algorithm>
 
 #include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

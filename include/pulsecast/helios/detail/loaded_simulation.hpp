@@ -202,9 +202,7 @@ class LoadedSimulation final : public Simulation {
     return out;
   }
 
-  [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(scene_->parts()); }
-  [[nodiscard]] PointColours colours() const override { return colours_of(*scene_); }
-  [[nodiscard]] SurfaceQuery surfaces() const override { return surfaces_of(*scene_); }
+  [[nodiscard]] io::PointSettings points() const override { return io::points_of(*scene_); }
 
   RunSummary run(const RunOptions& options, const Sink& sink) const override {
     return pulsecast::run(*pipeline_, options, sink);
