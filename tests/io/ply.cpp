@@ -127,14 +127,14 @@ TEST_CASE("a header names the properties and the number of vertices, and the rec
 }
 
 TEST_CASE("each number type has its name") {
-  const PointLayout layout = PointLayout::packed({{"a", NumberType::int8, nullptr},
-                                                  {"b", NumberType::uint8, nullptr},
-                                                  {"c", NumberType::int16, nullptr},
-                                                  {"d", NumberType::uint16, nullptr},
-                                                  {"e", NumberType::int32, nullptr},
-                                                  {"f", NumberType::uint32, nullptr},
-                                                  {"g", NumberType::float32, nullptr},
-                                                  {"h", NumberType::float64, nullptr}});
+  const PointLayout layout = PointLayout::packed({{"a", NumberType::int8},
+                                                  {"b", NumberType::uint8},
+                                                  {"c", NumberType::int16},
+                                                  {"d", NumberType::uint16},
+                                                  {"e", NumberType::int32},
+                                                  {"f", NumberType::uint32},
+                                                  {"g", NumberType::float32},
+                                                  {"h", NumberType::float64}});
   CHECK(ply({}, {.layout = layout}) ==
         header("0",
                "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"

@@ -19,6 +19,7 @@
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
+#include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
@@ -163,7 +164,6 @@ class Simulation {
 #include <algorithm>
 
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

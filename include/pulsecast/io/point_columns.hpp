@@ -31,7 +31,7 @@
 namespace PULSECAST_NAMESPACE::io {
 
 /// Number type of a column or field. The values up to float64 are those of the data types of sensor_msgs/PointField.
-enum class NumberType : std::uint8_t { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64, int64, uint64 };
+enum class NumberType { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64, int64, uint64 };
 
 /// Axes of the coordinates of points.
 enum class PointAxes : std::uint8_t {
@@ -200,10 +200,6 @@ template <auto Index>
 [[nodiscard]] inline double rgb_bits_of(const PointView& p) noexcept {
   return p.colour ? std::bit_cast<float>(static_cast<std::uint32_t>(rgb_of(p))) : 0;
 }
-[[nodiscard]] inline double unknown_of(const PointView& /*p*/) noexcept {
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace detail
 
 /// Columns of a point, a row each.
@@ -265,7 +261,10 @@ static_assert(usual_point_columns.back().name == "kind");
 
 /// Column of an attribute of the object, by the name of the field that refers to it. NaN if it has none.
 inline constexpr PointColumn attribute_column{
-    "", "", NumberType::float64, detail::unknown_of, "attribute of the object met", PointNeed::attribute};
+    "", "", NumberType::float64, nullptr, "attribute of the object met", PointNeed::attribute};
+/// Column of a field that is not simulated: 0.
+inline constexpr PointColumn absent_column{"", "", NumberType::float64, [](const PointView&) noexcept { return 0.0; },
+                                           "not simulated"};
 
 namespace detail {
 

@@ -23,11 +23,11 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Field of a point record: a column times a scale.
 struct PointField {
-  std::string name{};                     ///< name in the file or message; of an attribute, its name
-  NumberType type = NumberType::float32;  ///< number type; integers are rounded, and limited to its range
-  const PointColumn* column = nullptr;    ///< column; null for a field that is not simulated
-  double scale = 1;                       ///< number in the record per unit of the column
-  std::uint32_t offset = 0;               ///< position in the record [byte]
+  std::string name{};                          ///< name in the file or message; of an attribute, its name
+  NumberType type = NumberType::float32;       ///< number type; integers are rounded, and limited to its range
+  const PointColumn* column = &absent_column;  ///< column; that of a field that is not simulated by default
+  double scale = 1;                            ///< number in the record per unit of the column
+  std::uint32_t offset = 0;                    ///< position in the record [byte]
 };
 
 /// Layout of a point record. Numbers are little-endian.
@@ -64,7 +64,7 @@ struct PointLayout {
 
   /// True if a column of a field has this need.
   [[nodiscard]] bool needs(PointNeed need) const noexcept {
-    return std::ranges::any_of(fields, [need](const PointField& f) { return f.column && f.column->needs == need; });
+    return std::ranges::any_of(fields, [need](const PointField& f) { return f.column->needs == need; });
   }
 
   /// This layout with float64 in place of 64-bit integers, for formats without them: exact up to 2^53.
@@ -78,62 +78,59 @@ struct PointLayout {
 /// Point layouts of drivers and of maps.
 namespace layouts {
 
+using enum NumberType;
+
 /// Coordinates in single precision. Its spacing is 8 um at 100 m, and 0.5 m at 5,000 km: for points about a sensor.
 [[nodiscard]] inline std::vector<PointField> xyz_float() {
-  return {{"x", NumberType::float32, column("x")},
-          {"y", NumberType::float32, column("y")},
-          {"z", NumberType::float32, column("z")}};
+  return {{"x", float32, column("x")}, {"y", float32, column("y")}, {"z", float32, column("z")}};
 }
 
 /// Points of a map: coordinates in double precision, and all values of an echo.
 [[nodiscard]] inline PointLayout map() {
-  return PointLayout::packed({{"x", NumberType::float64, column("x")},
-                              {"y", NumberType::float64, column("y")},
-                              {"z", NumberType::float64, column("z")},
-                              {"reflectance", NumberType::float32, column("reflectance")},
-                              {"time", NumberType::float64, column("clock")},
-                              {"channel", NumberType::uint16, column("ring")},
-                              {"return_number", NumberType::uint8, column("return_number")},
-                              {"returns", NumberType::uint8, column("number_of_returns")},
-                              {"classification", NumberType::uint16, column("classification")},
-                              {"object", NumberType::uint32, column("object")}});
+  return PointLayout::packed({{"x", float64, column("x")},
+                              {"y", float64, column("y")},
+                              {"z", float64, column("z")},
+                              {"reflectance", float32, column("reflectance")},
+                              {"time", float64, column("clock")},
+                              {"channel", uint16, column("ring")},
+                              {"return_number", uint8, column("return_number")},
+                              {"returns", uint8, column("number_of_returns")},
+                              {"classification", uint16, column("classification")},
+                              {"object", uint32, column("object")}});
 }
 
 /// Coordinates and intensity, as PCL's PointXYZI.
 [[nodiscard]] inline PointLayout xyzi() {
-  return PointLayout::packed(xyz_float()).with({{"intensity", NumberType::float32, column("reflectivity")}});
+  return PointLayout::packed(xyz_float()).with({{"intensity", float32, column("reflectivity")}});
 }
 
 /// Fields of Velodyne's ROS driver, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time from scan start [s].
 [[nodiscard]] inline PointLayout velodyne() {
-  return xyzi().with({{"ring", NumberType::uint16, column("ring")}, {"time", NumberType::float32, column("time")}});
+  return xyzi().with({{"ring", uint16, column("ring")}, {"time", float32, column("time")}});
 }
 
 /// Fields of the ROS driver of Hesai, 26 bytes. Source: HesaiTechnology/HesaiLidar_ROS_2.0: timestamp by the clock [s].
 [[nodiscard]] inline PointLayout hesai() {
-  return xyzi().with(
-      {{"ring", NumberType::uint16, column("ring")}, {"timestamp", NumberType::float64, column("clock")}});
+  return xyzi().with({{"ring", uint16, column("ring")}, {"timestamp", float64, column("clock")}});
 }
 
 /// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns].
 [[nodiscard]] inline PointLayout livox() {
-  return xyzi().with({{"tag", NumberType::uint8, nullptr},
-                      {"line", NumberType::uint8, column("ring")},
-                      {"timestamp", NumberType::float64, column("clock"), 1e9}});
+  return xyzi().with({{"tag", uint8}, {"line", uint8, column("ring")}, {"timestamp", float64, column("clock"), 1e9}});
 }
 
 /// Fields of the ROS driver of Ouster, 48 bytes. Source: ouster-lidar/ouster-ros, its default point type: t since the
 /// scan's start [ns], intensity in photons, range [mm], all in the places that a C++ structure aligned to 16 bytes has.
 [[nodiscard]] inline PointLayout ouster() {
-  return {{{"x", NumberType::float32, column("x"), 1, 0},
-           {"y", NumberType::float32, column("y"), 1, 4},
-           {"z", NumberType::float32, column("z"), 1, 8},
-           {"intensity", NumberType::float32, column("photons"), 1, 16},
-           {"t", NumberType::uint32, column("time"), 1e9, 20},
-           {"reflectivity", NumberType::uint16, column("reflectivity"), 1, 24},
-           {"ring", NumberType::uint16, column("ring"), 1, 26},
-           {"ambient", NumberType::uint16, nullptr, 1, 28},
-           {"range", NumberType::uint32, column("range"), 1e3, 32}},
+  return {{{"x", float32, column("x"), 1, 0},
+           {"y", float32, column("y"), 1, 4},
+           {"z", float32, column("z"), 1, 8},
+           {"intensity", float32, column("photons"), 1, 16},
+           {"t", uint32, column("time"), 1e9, 20},
+           {"reflectivity", uint16, column("reflectivity"), 1, 24},
+           {"ring", uint16, column("ring"), 1, 26},
+           {"ambient", uint16, &absent_column, 1, 28},
+           {"range", uint32, column("range"), 1e3, 32}},
           48};
 }
 
@@ -141,13 +138,13 @@ namespace layouts {
 /// since the scan's start [ns]; return types are left out.
 [[nodiscard]] inline PointLayout autoware() {
   return PointLayout::packed(xyz_float())
-      .with({{"intensity", NumberType::uint8, column("reflectivity")},
-             {"return_type", NumberType::uint8, nullptr},
-             {"channel", NumberType::uint16, column("ring")},
-             {"azimuth", NumberType::float32, column("azimuth")},
-             {"elevation", NumberType::float32, column("elevation")},
-             {"distance", NumberType::float32, column("range")},
-             {"time_stamp", NumberType::uint32, column("time"), 1e9}});
+      .with({{"intensity", uint8, column("reflectivity")},
+             {"return_type", uint8},
+             {"channel", uint16, column("ring")},
+             {"azimuth", float32, column("azimuth")},
+             {"elevation", float32, column("elevation")},
+             {"distance", float32, column("range")},
+             {"time_stamp", uint32, column("time"), 1e9}});
 }
 
 /// Columns as the table has them, to append to a layout: `columns({column("pulse"), column("leg")})`.
@@ -187,9 +184,9 @@ namespace layouts {
 /// Red, green and blue of a point in 8 bits each, by the names that readers of PLY expect, to append to another layout.
 /// Colours need `PointSettings::colours`. 0 if unknown, which is black.
 [[nodiscard]] inline std::vector<PointField> colours() {
-  return {{"red", NumberType::uint8, column("red"), 1 / 257.0},
-          {"green", NumberType::uint8, column("green"), 1 / 257.0},
-          {"blue", NumberType::uint8, column("blue"), 1 / 257.0}};
+  return {{"red", uint8, column("red"), 1 / 257.0},
+          {"green", uint8, column("green"), 1 / 257.0},
+          {"blue", uint8, column("blue"), 1 / 257.0}};
 }
 
 /// Red, green, blue and near infrared of a point in 16 bits each, as LAS has them.
@@ -199,13 +196,10 @@ namespace layouts {
 
 /// Red, green and blue of a point in one field, as PCL and the viewers of ROS have them.
 /// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
-[[nodiscard]] inline std::vector<PointField> packed_colour() {
-  return {{"rgb", NumberType::float32, column("rgb_bits")}};
-}
+[[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", float32, column("rgb_bits")}}; }
 
 /// Attributes of a point's object, to append to a layout: `ObjectAttributes::names`. NaN if it has none, 0 in integers.
-[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names,
-                                                        NumberType type = NumberType::float64) {
+[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, NumberType type = float64) {
   std::vector<PointField> fields;
   for (const std::string& name : names) fields.push_back({name, type, &attribute_column});
   return fields;

@@ -50,10 +50,6 @@ void store_whole(std::uint64_t value, std::byte* to) noexcept {
   std::memcpy(to, &number, sizeof number);
 }
 
-/// Column of fields that are not simulated.
-inline constexpr PointColumn absent_column{"", "", NumberType::float64, [](const PointView&) noexcept { return 0.0; },
-                                           "not simulated"};
-
 /// Calls `visit.operator()<Number>()` with the number type of a field. Inlined, as the type may be a constant.
 template <class Visitor>
 [[gnu::always_inline]] inline decltype(auto) visit_number_type(NumberType type, const Visitor& visit) {
@@ -187,7 +183,7 @@ class PointEncoder {
   }
 
   [[nodiscard]] Number number_of(const PointField& field) const {
-    const PointColumn& column = field.column ? *field.column : detail::absent_column;
+    const PointColumn& column = *field.column;
     Number number{nullptr, column.get, column.whole, 0, field.scale, field.offset};
     if (column.needs == PointNeed::attribute) {
       const std::vector<std::string>& names = settings_.attributes.names();
@@ -195,7 +191,6 @@ class PointEncoder {
       if (found == names.end())
         throw SettingError("PointSettings::attributes (number of names '" + field.name + "')", 0, "",
                            "1: the layout has such a field");
-      number.get = nullptr;
       number.attribute = static_cast<std::size_t>(found - names.begin());
     }
     detail::visit_number_type(field.type, [&]<class Stored>() {

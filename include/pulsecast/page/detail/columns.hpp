@@ -148,7 +148,7 @@ inline PageCodes codes_of(const PagePoints& all, std::size_t column) {
   PageCodes codes = linear_codes(name, count, step_of(all, column), value,
                                  how.coding == PageCoding::from_zero ? std::optional(0.0) : std::nullopt);
   codes.differences = how.coding == PageCoding::similar;
-  if (how.further && how.field.column) codes.unit = how.field.column->unit;
+  if (how.further) codes.unit = how.field.column->unit;
   return codes;
 }
 

@@ -58,7 +58,7 @@ inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
 
 /// Extra value as a column of the table has it, with its unit; of an attribute of the object, too.
 [[nodiscard]] inline LasExtra las_extra(PointField field) {
-  const PointColumn& column = field.column ? *field.column : absent_column;
+  const PointColumn& column = *field.column;
   const std::string unit = column.unit.empty() ? "" : text::joined({" [", column.unit, "]"});
   return {std::move(field), text::joined({las_cut(column.description, 32 - unit.size()), unit})};
 }
