@@ -109,7 +109,9 @@ struct RunRequest {
 [[nodiscard]] inline KeptData kept_by(const RunRequest& request, io::PointSettings points) {
   const std::vector<std::string>& attributes = points.attributes.names();
   const auto* const names = std::get_if<std::vector<std::string>>(&request.columns);
-  std::vector<io::PointField> usual = names ? io::layouts::columns(*names, attributes) : usual_fields(), more;
+  std::vector<io::PointField> usual = names ? io::layouts::columns(*names, attributes)
+                                            : io::layouts::columns(io::usual_point_columns),
+                              more;
   if (request.colours) more = io::layouts::deep_colours();
   if (!names) std::ranges::copy(io::layouts::attributes(attributes), std::back_inserter(more));
   const bool rows = !names && !std::get<bool>(request.columns);
@@ -206,7 +208,7 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
        "keeps points by column, as Arrow takes them, in place of rows; a list of names keeps these alone: of "
        "attributes, "
        "or of " +
-       described(io::layouts::columns(io::point_columns)) +
+       described(io::point_columns) +
        ". colours=True keeps their colours, by one more ray each. Raises Interrupted on Ctrl-C; its `result` is "
        "complete "
        "up to there.")
@@ -220,7 +222,7 @@ namespace PULSECAST_NAMESPACE::python {
 
 /// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by
 /// `.def(pybind11::init(...))`; a survey that refers to a scene held by Python needs `pybind11::keep_alive`.
-/// `extras(survey)` gives the `io::PointSettings` of its points, such as `extras_of(scene)`.
+/// `extras(survey)` gives the `io::PointSettings` of its points, such as `io::points_of(scene)`.
 template <PulseSurvey Survey, class Extras>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name,
                                                               const Extras& extras) {

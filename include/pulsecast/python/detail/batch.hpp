@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -181,11 +182,12 @@ class RowSink {
 }
 
 /// Names of columns, with their units.
-[[nodiscard]] inline std::string described(const std::vector<io::PointField>& fields) {
+[[nodiscard]] inline std::string described(std::span<const io::PointColumn> columns) {
   std::string all;
-  for (const io::PointField& field : fields) {
-    const std::string_view unit = field.column->unit;
-    all += text::joined({all.empty() ? "" : ", ", field.name, unit.empty() ? "" : " [", unit, unit.empty() ? "" : "]"});
+  for (const io::PointColumn& column : columns) {
+    const std::string_view unit = column.unit;
+    all +=
+        text::joined({all.empty() ? "" : ", ", column.name, unit.empty() ? "" : " [", unit, unit.empty() ? "" : "]"});
   }
   return all;
 }
@@ -199,11 +201,12 @@ inline void bind_batch(pybind11::module_& m) {
     return all;
   };
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
-      .def_property_readonly("points", &points_of,
-                             ("Structured array, one row per echo, in the world: " + described(usual_fields()) +
-                              ". Kinds of light: 0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the "
-                              "air, 5 scattered more than once. AttributeError after run(columns=True).")
-                                 .c_str())
+      .def_property_readonly(
+          "points", &points_of,
+          ("Structured array, one row per echo, in the world: " + described(io::usual_point_columns) +
+           ". Kinds of light: 0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the "
+           "air, 5 scattered more than once. AttributeError after run(columns=True).")
+              .c_str())
       .def_property_readonly(
           "columns", &columns_of,
           "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "

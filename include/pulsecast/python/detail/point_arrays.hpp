@@ -21,20 +21,9 @@
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Settings of the points of a scene, which must outlive the survey: surfaces and colours, and attributes of its parts.
-template <class World>
-[[nodiscard]] io::PointSettings extras_of(const World& world) {
-  return io::points_of(world);
-}
-
-/// Columns that points have by default, as the table has them.
-[[nodiscard]] inline std::vector<io::PointField> usual_fields() {
-  return io::layouts::columns(io::usual_point_columns);
-}
-
 /// Layout of a row, which ends at a multiple of 8 bytes, as a C++ structure does.
 [[nodiscard]] inline io::PointLayout row_layout() {
-  io::PointLayout layout = io::PointLayout::packed(usual_fields());
+  io::PointLayout layout = io::PointLayout::packed(io::layouts::columns(io::usual_point_columns));
   layout.size = (layout.size + 7) / 8 * 8;
   return layout;
 }

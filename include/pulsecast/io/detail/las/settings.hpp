@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,12 +41,6 @@ inline constexpr std::array las_usual_extras{
     LasUsualExtra{"PulseIndex", "number of the pulse, from 0", NumberType::uint64, column("pulse")},
     LasUsualExtra{"ObjectId", "number of the object met", NumberType::uint32, column("object")}};
 
-/// Extra value of each point, after the standard ones.
-struct LasExtra {
-  PointField field{};         ///< name, number type, column and scale
-  std::string description{};  ///< text for readers
-};
-
 // sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
 inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
 
@@ -56,15 +51,14 @@ inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
   return text.substr(0, size);
 }
 
-/// Extra value as a column of the table has it, with its unit; of an attribute of the object, too.
-[[nodiscard]] inline LasExtra las_extra(PointField field) {
-  const PointColumn& column = *field.column;
+/// Description of the extra value of a column, with its unit.
+[[nodiscard]] inline std::string las_description(const PointColumn& column) {
   const std::string unit = column.unit.empty() ? "" : text::joined({" [", column.unit, "]"});
-  return {std::move(field), text::joined({las_cut(column.description, 32 - unit.size()), unit})};
+  return text::joined({las_cut(column.description, 32 - unit.size()), unit});
 }
 
 /// Extra values of each point, in order.
-[[nodiscard]] std::vector<LasExtra> las_extras(const LasSettings& settings);
+[[nodiscard]] std::vector<PointField> las_extras(const LasSettings& settings);
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
 
@@ -152,30 +146,29 @@ struct LasSettings {
 
   /// Names must remain different from each other.
   void validate_extras() const {
-    const std::vector<detail::LasExtra> all = detail::las_extras(*this);
+    const std::vector<PointField> all = detail::las_extras(*this);
     require_within("LasSettings, number of extra values", static_cast<double>(all.size()), 0,
                    65535 / detail::las_descriptor_size, "");
     for (auto extra = all.begin(); extra != all.end(); ++extra) {
-      const std::string_view name = detail::las_cut(extra->field.name);
-      const auto has_name = [&](const detail::LasExtra& other) { return detail::las_cut(other.field.name) == name; };
+      const std::string_view name = detail::las_cut(extra->name);
+      const auto has_name = [&](const PointField& other) { return detail::las_cut(other.name) == name; };
       if (name.empty() || std::any_of(all.begin(), extra, has_name))
-        throw SettingError(
-            text::joined({"LasSettings, length of the name '", extra->field.name, "' of an extra value"}),
-            static_cast<double>(name.size()), "bytes", "above 0, and names must differ in their first 31 bytes");
+        throw SettingError(text::joined({"LasSettings, length of the name '", extra->name, "' of an extra value"}),
+                           static_cast<double>(name.size()), "bytes",
+                           "above 0, and names must differ in their first 31 bytes");
     }
   }
 };
 
 namespace detail {
 
-inline std::vector<LasExtra> las_extras(const LasSettings& s) {
-  std::vector<LasExtra> all;
+inline std::vector<PointField> las_extras(const LasSettings& s) {
+  std::vector<PointField> all;
   for (const LasUsualExtra& usual : las_usual_extras)
-    all.push_back({{std::string(usual.name), usual.type, usual.column, usual.scale}, std::string(usual.description)});
-  if (s.light_kinds) all.push_back({{"LightKind", NumberType::uint8, column("kind")}, "way of the light, 0: direct"});
-  if (s.attributes)
-    for (PointField& field : layouts::attributes(s.attributes->names())) all.push_back(las_extra(std::move(field)));
-  for (const PointField& field : s.columns) all.push_back(las_extra(field));
+    all.push_back({std::string(usual.name), usual.type, usual.column, usual.scale});
+  if (s.light_kinds) all.push_back({"LightKind", NumberType::uint8, column("kind")});
+  if (s.attributes) std::ranges::copy(layouts::attributes(s.attributes->names()), std::back_inserter(all));
+  std::ranges::copy(s.columns, std::back_inserter(all));
   return all;
 }
 
@@ -214,7 +207,7 @@ struct LasLayout {
     if (colour_size > 0) columns = columns.with(layouts::deep_colours());
     if (colour_size == 6) columns.fields.pop_back();
     columns.size = static_cast<std::uint32_t>(extras);
-    for (const LasExtra& extra : las_extras(s)) columns = columns.with({extra.field});
+    columns = columns.with(las_extras(s));
     const auto usual = columns.fields.begin() + (colour_size / 2);  // which `LasEncoder` stores
     columns.fields.erase(usual, usual + las_usual_extras.size());
   }

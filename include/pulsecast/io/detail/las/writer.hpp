@@ -231,13 +231,14 @@ class LasFileWriter {
   /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
     constexpr std::array<std::uint8_t, 11> types{0, 2, 1, 4, 3, 6, 5, 9, 10, 8, 7};  // by `NumberType`
-    const std::vector<LasExtra> extras = las_extras(settings());
+    const std::vector<PointField> extras = las_extras(settings());
     write_record_header("LASF_Spec", 4, extras.size() * las_descriptor_size, "Extra Bytes");
-    for (const LasExtra& extra : extras) {
+    for (std::size_t k = 0; k < extras.size(); ++k) {
       LasBytes<las_descriptor_size> descriptor{};
-      descriptor.put(2, types[static_cast<std::size_t>(extra.field.type)]);
-      descriptor.put_text(4, las_cut(extra.field.name));
-      descriptor.put_text(160, extra.description);
+      descriptor.put(2, types[static_cast<std::size_t>(extras[k].type)]);
+      descriptor.put_text(4, las_cut(extras[k].name));
+      descriptor.put_text(160, k < las_usual_extras.size() ? std::string(las_usual_extras[k].description)
+                                                           : las_description(*extras[k].column));
       file_.write(descriptor);
     }
   }
