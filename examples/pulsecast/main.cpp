@@ -336,6 +336,7 @@ class Session {
         << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses
         << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
+    for (const std::string& column : options_.columns) out << " column=" << column;
     if (options_.misses_at) out << " misses=" << text::to_text(*options_.misses_at);
     return out.str();
   }
@@ -422,7 +423,7 @@ class Session {
     for (const auto& leg : compiled.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
 
-    if (total > 0) pages_.begin(folder, compiled, options_.point_colours);
+    if (total > 0) pages_.begin(folder, compiled, options_);
     std::map<std::string, std::unique_ptr<LegRun>> open;
     RunSummary all;
     ProgressLine line;

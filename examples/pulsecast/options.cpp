@@ -101,6 +101,14 @@ constexpr Unused unused_options[] = {{"parallelization", true, "work is always s
                                      {"logFile", false, "the log goes to standard error"},
                                      {"logFileOnly", false, "the log goes to standard error"}};
 
+/// Names of the columns that points can have, in order.
+std::string names_of_columns() {
+  std::string all;
+  for (const pulsecast::io::PointColumn& column : pulsecast::io::point_columns)
+    all.append(all.empty() ? "" : ", ").append(column.name);
+  return all;
+}
+
 /// Options of the program and their values.
 class CommandLine {
  public:
@@ -199,6 +207,11 @@ class CommandLine {
     app_.add_flag(both("lightPaths"), o_.light_paths, "Follow light from mirrors, glass and water");
     app_.add_flag("--colours", o_.colours, "Points in LAS with the colours of their surfaces");
     app_.add_flag(both("nearInfrared"), o_.near_infrared, "Colours with near infrared, by the spectra of surfaces");
+    app_.add_option("--columns", o_.columns,
+                    "Further columns of points, in every format and on the page: attributes of objects, or of " +
+                        names_of_columns())
+        ->type_name("NAME,NAME")
+        ->delimiter(',');
     app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");
     app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "No platform noise");
     app_.add_flag(both("disableLegNoise"), no_leg_noise_, "No random offset of the start of legs");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
 
@@ -46,6 +47,7 @@ struct Options {
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
        library_physics = false, light_paths = false;
   bool colours = false, near_infrared = false;  ///< columns of points in LAS
+  std::vector<std::string> columns{};           ///< further columns of points, in every format
   bool write_misses = false;                    ///< write a table of the pulses without echoes
   std::optional<double> misses_at{};  ///< range of points for pulses without echoes; default: no such points [m]
   bool geojson = false;               ///< write trajectories and footprints
@@ -60,6 +62,8 @@ struct Options {
 
   bool adjusted_time = false;               ///< times are adjusted standard GPS time; else seconds of a GPS week
   pulsecast::PointColours point_colours{};  ///< of the scene, once it is loaded; empty unless `colours`
+  std::vector<pulsecast::io::PointField> fields{};                  ///< `columns`, once the scene is loaded
+  pulsecast::io::PointSettings points{};                            ///< values of `fields`
   std::shared_ptr<const pulsecast::ObjectAttributes> attributes{};  ///< of the scene, once it is loaded; null without
 };
 

@@ -34,19 +34,23 @@ PointWriter point_writer(const fs::path& path, const Options& o, double start_ti
   if (o.format == "laz")
     return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return PointWriter(std::in_place_type<io::LasWriter>, path, las_settings(o, start_time));
+  const io::TextFileSettings text{.start_time = start_time};
   if (o.format == "xyz.gz")
-    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path),
-                       io::TextFileSettings{.start_time = start_time});
-  return PointWriter(std::in_place_type<io::XyzWriter>, path, io::TextFileSettings{.start_time = start_time});
+    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path), text, text_columns(o));
+  return PointWriter(std::in_place_type<io::XyzWriter>, path, text, text_columns(o));
 }
 
 }  // namespace
 
 void take_columns(Options& o, const helios::Simulation& simulation) {
-  if (o.colours) o.point_colours = simulation.colours();
-  o.attributes = std::make_shared<const ObjectAttributes>(simulation.attributes());
+  o.points = simulation.points();
+  if (o.colours) o.point_colours = o.points.colours;
+  o.attributes = std::make_shared<const ObjectAttributes>(o.points.attributes);
   if (o.attributes->empty()) o.attributes.reset();
+  o.fields = io::layouts::columns(o.columns, o.points.attributes.names());
 }
+
+io::PointTextColumns text_columns(const Options& o) { return {o.fields, o.points}; }
 
 std::vector<std::string> file_channels(const Options& o, const helios::SurveySettings& survey) {
   std::vector<std::string> ids;
@@ -95,6 +99,9 @@ io::LasSettings las_settings(const Options& o, double start_time) {
   settings.colours = o.point_colours;
   settings.near_infrared = o.near_infrared && o.point_colours;
   settings.attributes = o.attributes;
+  for (const io::PointField& field : o.fields)
+    if (field.column != &io::attribute_column) settings.columns.push_back(field);  // LAS has all attributes
+  settings.points = o.points;
   if (o.format == "las" && o.las_1_0) settings.format = io::LasFormat::las_1_0;
   settings.waveforms = o.format == "las" && o.write_waveform && !o.las_1_0;
   return settings;

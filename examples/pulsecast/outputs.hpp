@@ -11,6 +11,7 @@
 #include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/raster.hpp>
 
@@ -35,6 +36,9 @@ std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder
 
 /// Settings for LAS, LAZ and COPC files.
 pulsecast::io::LasSettings las_settings(const Options& options, double start_time);
+
+/// Further columns of text files.
+pulsecast::io::PointTextColumns text_columns(const Options& options);
 
 /// Files of one leg, or of all legs of a strip. A file appears only when it is complete.
 class LegFiles {

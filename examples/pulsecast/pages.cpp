@@ -32,10 +32,12 @@ Pages::~Pages() = default;
 
 std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
 
-void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled,
-                  const PointColours& colours) {
+void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled, const Options& options) {
   if (!inside_->file && !inside_->server) return;
-  inside_->settings.colours = colours;
+  inside_->settings.columns = options.fields;
+  inside_->settings.points = options.points;
+  if (!options.colours && !io::PointLayout::packed(options.fields).needs(io::PointNeed::colour))
+    inside_->settings.points.colours = {};  // a page has colours if these have
   page::PageSurvey survey = inside_->survey;
   const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(compiled.legs.size(), 1)), 2, 1000);
   for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
@@ -45,7 +47,7 @@ void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSur
     survey.legs.push_back(page::page_leg(name, compiled.source.legs()[k].path(), leg.start, leg.duration, moments));
   }
   if (inside_->file) inside_->writer.emplace(folder / "page.html", survey, inside_->settings);
-  if (inside_->server) inside_->server->begin(std::move(survey), colours);
+  if (inside_->server) inside_->server->begin(std::move(survey), inside_->settings);
 }
 
 void Pages::operator()(const EchoBatch& batch) {

@@ -24,7 +24,7 @@ class Pages {
 
   /// Starts a run with results in a folder.
   void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled,
-             const pulsecast::PointColours& colours);
+             const Options& options);
   void operator()(const pulsecast::EchoBatch& batch);
   void show(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;

@@ -35,10 +35,14 @@ std::unique_ptr<MpiOutput> shared_points(MpiGroup& group, const fs::path& path, 
   if (o.format == "las") return std::make_unique<mpi::MpiLas>(group, path, las_settings(o, start_time));
   const io::TextFileSettings settings{.start_time = start_time};
   if (o.format == "xyz")
-    return std::make_unique<mpi::MpiRows<io::XyzWriter, io::TextFileSettings>>(group, path, settings);
+    return std::make_unique<mpi::MpiRows<io::XyzWriter, io::TextFileSettings, io::PointTextColumns>>(
+        group, path, settings, text_columns(o));
   const auto file = group.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
   return std::make_unique<mpi::MpiStream<io::XyzWriter>>(
-      group, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
+      group,
+      [settings, more = text_columns(o)](io::OutputFile piece) {
+        return io::XyzWriter(std::move(piece), settings, more);
+      },
       [file](const mpi::MpiMessage& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
 }
 

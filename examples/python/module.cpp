@@ -380,7 +380,7 @@ void bind_simulation(py::module_& m) {
     return [&s](const RunOptions& options, const auto& sink) { return pulsecast::run(s.survey(), options, sink); };
   };
   python::bind_run(simulation, runner, [](const Simulation& s) {
-    return python::PointExtras{s.colours(), s.attributes()};
+    return s.points();
   });
 }
 

@@ -23,6 +23,7 @@
 #include <pulsecast/io/las.hpp>
 
 #include "support/copc_reader.hpp"
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/las_reader.hpp"
 #include "support/temporary_folder.hpp"
@@ -299,6 +300,11 @@ TEST_CASE("colours, near infrared, attributes and kinds of light are those of th
   CHECK(checked(random_points(1), settings).record == 36 + 33 + 8);
   settings.near_infrared = true;
   CHECK(checked(random_points(1), settings).record == 38 + 33 + 8);
+}
+
+TEST_CASE("every column of the table is that of the LAS file") {
+  const support::EveryColumn all;
+  checked(random_points(2), {.columns = all.fields, .points = all.settings});
 }
 
 TEST_CASE("intensities that are scaled to the greatest amplitude are those of the LAS file") {

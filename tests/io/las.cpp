@@ -21,6 +21,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 
 #include "support/detect.hpp"
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/las_reader.hpp"
 #include "support/relative.hpp"
@@ -250,6 +251,30 @@ TEST_CASE("attributes of objects follow the other extra values, by the object of
   }
 }
 
+TEST_CASE("every column of the table is an extra value of its type, name and unit") {
+  const support::EveryColumn all;
+  const TemporaryFolder folder;
+  LasWriter writer(folder / "points.las", {.columns = all.fields, .points = all.settings});
+  writer(all.batch());
+  writer.close();
+  const LasFile file = read_las(folder / "points.las");
+  REQUIRE(file.points.size() == 2);
+  CHECK(file.extras.size() == 6 + point_columns.size());
+  const PointBuffer expected = all.records();
+  const std::size_t begin = file.extra("x").offset, size = expected.layout().size;
+  CHECK(file.points[0].bytes.substr(begin) + file.points[1].bytes.substr(begin) == all.bytes(expected));
+  for (const PointField& field : expected.layout().fields) {
+    CAPTURE(field.name);
+    constexpr std::array types{0, 2, 1, 4, 3, 6, 5, 9, 10, 8, 7};  // by NumberType
+    const support::LasExtraField& extra = file.extra(field.name);
+    CHECK(extra.offset == begin + field.offset);
+    CHECK(extra.type == types[static_cast<std::size_t>(field.type)]);
+    CHECK(extra.description.starts_with(field.column->description));
+    if (!field.column->unit.empty()) CHECK(extra.description.ends_with("[" + std::string(field.column->unit) + "]"));
+  }
+  CHECK(file.points[0].bytes.size() == begin + size);
+}
+
 TEST_CASE("colours that the format has no room for, and names of attributes that cannot be told apart, are refused") {
   const TemporaryFolder folder;
   const auto refused = [&](const LasSettings& settings, const char* part) {
@@ -261,18 +286,18 @@ TEST_CASE("colours that the format has no room for, and names of attributes that
   refused({.waveforms = true, .colours = black}, "LasSettings::colours");
   refused({.near_infrared = true}, "LasSettings::near_infrared");
   refused({.attributes = attributes_of({{1, attributes({{"Range", 1}})}})}, "'Range'");
-  refused({.attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
+  refused({.light_kinds = true, .attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
   refused({.attributes = attributes_of({{1, std::make_shared<const std::vector<Attribute>>(1)}})}, "''");
   refused({.attributes =
                attributes_of({{1, attributes({{std::string(31, 'a') + "b", 1}, {std::string(31, 'a') + "c", 2}})}})},
           "aaac'");
   std::vector<Attribute> many;
-  for (int i = 0; i < 335; ++i) many.push_back({std::to_string(i), 1});
-  refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of names");
+  for (int i = 0; i < 336; ++i) many.push_back({std::to_string(i), 1});
+  refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of extra values");
   CHECK(folder.empty());
   many.pop_back();
   CHECK(Survey::of_points({{1, 2, 3}}).written({.attributes = attributes_of({{1, attributes(many)}})}).extras.size() ==
-        340);
+        341);
 }
 
 TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {

@@ -18,6 +18,7 @@
 
 #include <pulsecast/io/las.hpp>
 
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/laz_reader.hpp"
 #include "support/temporary_folder.hpp"
@@ -100,6 +101,11 @@ TEST_CASE("and with several scanner channels, and with whatever else may be set"
       {.scale = 1e-2, .offset = Vec3{1, 2, 3}, .wkt = "LOCAL_CS[]", .gps_time = GpsTime::week, .start_time = 1e8});
   Pulses(3'000).same({.light_kinds = true});
   Pulses(3'000).same({.epsg = 31467, .intensity = LasIntensity::amplitude, .intensity_full_scale = 1e-7});
+}
+
+TEST_CASE("and with every column of the table") {
+  const support::EveryColumn all;
+  Pulses(3'000).same({.columns = all.fields, .points = all.settings});
 }
 
 /// Settings with colours of all kinds: grey, none, in 8 bits, in 16 bits.

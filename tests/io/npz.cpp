@@ -17,6 +17,7 @@
 
 #include <pulsecast/io/scan_splitter.hpp>
 
+#include "support/every_column.hpp"
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
 #include "support/size_limit.hpp"
@@ -85,7 +86,7 @@ std::string npz(const EchoBatch& batch, const NpzSettings& settings = {}) {
 PointLayout every_type() {
   std::vector<PointField> fields;
   for (const char* const name : {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"})
-    fields.push_back({name, static_cast<FieldType>(fields.size() + 1), PointQuantity::range});
+    fields.push_back({name, static_cast<NumberType>(fields.size() + 1), column("range")});
   return PointLayout::packed(fields);
 }
 
@@ -108,6 +109,23 @@ TEST_CASE("each field is an array of its name and type, with the numbers of all 
   CHECK(numbers("u4", "<", std::uint32_t{3}, std::uint32_t{70'000}));
   CHECK(numbers("f4", "<", 3.0F, 70'000.25F));
   CHECK(numbers("f8", "<", 3.0, 70'000.25));
+}
+
+TEST_CASE("every column of the table is an array of its type") {
+  const support::EveryColumn all;
+  const std::map<std::string, std::string> found =
+      members(npz(all.batch(), {.layout = PointLayout::packed(all.fields), .points = all.settings}));
+  CHECK(found.size() == point_columns.size());
+  constexpr std::array types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8", "<i8", "<u8"};
+  const PointBuffer expected = all.records();
+  for (const PointField& field : expected.layout().fields) {
+    CAPTURE(field.name);
+    const std::size_t size = size_of(field.type);
+    std::string numbers;
+    for (std::size_t i = 0; i < 2; ++i)
+      numbers += all.bytes(expected).substr(i * expected.layout().size + field.offset, size);
+    CHECK(array_content(found.at(field.name + ".npy"), types[static_cast<std::size_t>(field.type)], 2) == numbers);
+  }
 }
 
 TEST_CASE("random points of scans are the columns of a buffer, padded or not") {
@@ -157,7 +175,7 @@ TEST_CASE("equal points give equal bytes, in any time zone") {
 TEST_CASE("headers of arrays end at a multiple of 64 bytes for any count") {
   for (std::uint64_t count = 1; count < std::uint64_t{1} << 60; count *= 10) {
     CAPTURE(count);
-    CHECK(array_content(detail::npy_header(FieldType::float64, count), "<f8", count).empty());
+    CHECK(array_content(detail::npy_header(NumberType::float64, count), "<f8", count).empty());
   }
 }
 
@@ -191,8 +209,9 @@ TEST_CASE("settings and buffers that do not fit are refused") {
   const auto refused = [&](const NpzSettings& settings) {
     return refused_field([&] { NpzWriter(folder / "a.npz", settings); });
   };
-  CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
-  CHECK(refused({.layout = PointLayout::packed({{"a/b", FieldType::float32}})}) == "PointField::name (character code)");
+  CHECK(refused({.layout = {}}) == "PointLayout::size");
+  CHECK(refused({.layout = PointLayout::packed({{"a/b", NumberType::float32}})}) ==
+        "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   NpzWriter writer(folder / "a.npz");
   CHECK(refused_field([&] { writer.add(PointBuffer(layouts::xyzi())); }) == "PointBuffer::layout (index of a field)");

@@ -18,6 +18,7 @@
 
 #include <pulsecast/io/scan_splitter.hpp>
 
+#include "support/every_column.hpp"
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
 #include "support/temporary_folder.hpp"
@@ -126,19 +127,18 @@ struct TwoEchoes {
 
 /// Layout with all number types, signs, and quantities that may be NaN or infinite.
 PointLayout every_type() {
-  using enum PointQuantity;
-  return PointLayout::packed({{"i8", FieldType::int8, object, -1e-8},
-                              {"u8", FieldType::uint8, reflectivity},
-                              {"i16", FieldType::int16, x, 7},
-                              {"u16", FieldType::uint16, classification},
-                              {"i32", FieldType::int32, y, 1e3},
-                              {"u32", FieldType::uint32, object},
-                              {"f32", FieldType::float32, z},
-                              {"f64", FieldType::float64, x},
-                              {"width", FieldType::float32, width},
-                              {"velocity", FieldType::float64, radial_velocity},
-                              {"part", FieldType::float32, part},
-                              {"ring", FieldType::uint16, ring}});
+  return PointLayout::packed({{"i8", NumberType::int8, column("object"), -1e-8},
+                              {"u8", NumberType::uint8, column("reflectivity")},
+                              {"i16", NumberType::int16, column("x"), 7},
+                              {"u16", NumberType::uint16, column("classification")},
+                              {"i32", NumberType::int32, column("y"), 1e3},
+                              {"u32", NumberType::uint32, column("object")},
+                              {"f32", NumberType::float32, column("z")},
+                              {"f64", NumberType::float64, column("x")},
+                              {"width", NumberType::float32, column("echo_width")},
+                              {"velocity", NumberType::float64, column("radial_velocity")},
+                              {"part", NumberType::float32, column("part")},
+                              {"ring", NumberType::uint16, column("ring")}});
 }
 
 std::string pcd(const EchoBatch& batch, const PcdSettings& settings) {
@@ -147,6 +147,25 @@ std::string pcd(const EchoBatch& batch, const PcdSettings& settings) {
   writer(batch);
   writer.close();
   return content(folder / "a.pcd");
+}
+
+TEST_CASE("every column of the table is a field in every encoding, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  const PointBuffer expected = all.records(false);
+  for (const PcdEncoding encoding : encodings) {
+    const PcdFile file(
+        pcd(all.batch(), {.encoding = encoding, .layout = PointLayout::packed(all.fields), .points = all.settings}));
+    const std::vector<std::vector<double>> columns = file.columns();
+    REQUIRE(columns.size() == point_columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      CAPTURE(all.fields[k].name);
+      CHECK(file.header.at("FIELDS")[k] == all.fields[k].name);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double value = expected.number(i, expected.layout().fields[k]);
+        CHECK((columns[k][i] == value || (std::isnan(columns[k][i]) && std::isnan(value))));
+      }
+    }
+  }
 }
 
 TEST_CASE("a header names fields, sizes, types and the number of points, and the records follow it") {
@@ -167,11 +186,11 @@ TEST_CASE("a header names fields, sizes, types and the number of points, and the
 }
 
 TEST_CASE("text has a line a point, with the shortest numbers that read back the same") {
-  const PointLayout layout = PointLayout::packed({{"x", FieldType::float32, PointQuantity::x, 0.1},
-                                                  {"x_double", FieldType::float64, PointQuantity::x, 0.1},
-                                                  {"object", FieldType::uint32, PointQuantity::object},
-                                                  {"class", FieldType::uint8, PointQuantity::classification},
-                                                  {"velocity", FieldType::float32, PointQuantity::radial_velocity}});
+  const PointLayout layout = PointLayout::packed({{"x", NumberType::float32, column("x"), 0.1},
+                                                  {"x_double", NumberType::float64, column("x"), 0.1},
+                                                  {"object", NumberType::uint32, column("object")},
+                                                  {"class", NumberType::uint8, column("classification")},
+                                                  {"velocity", NumberType::float32, column("radial_velocity")}});
   const std::string bytes = pcd(TwoEchoes().batch(), {.encoding = PcdEncoding::ascii, .layout = layout});
   CHECK(PcdFile(bytes).data == "1.1 1.1 70000 6 nan\n2.1 2.1 0 0 -3.5\n");
 }
@@ -291,10 +310,10 @@ TEST_CASE("settings and buffers that do not fit are refused, and leave no file")
     return refused_field([&] { PcdWriter(folder / "a.pcd", settings); });
   };
   const auto named = [](const std::string& name) {
-    return PcdSettings{.layout = PointLayout::packed({{"x", FieldType::float32}, {name, FieldType::float32}})};
+    return PcdSettings{.layout = PointLayout::packed({{"x", NumberType::float32}, {name, NumberType::float32}})};
   };
   CHECK(refused({.encoding = static_cast<PcdEncoding>(3)}) == "PcdSettings::encoding");
-  CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
+  CHECK(refused({.layout = {}}) == "PointLayout::size");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   CHECK(refused(named("")) == "PointField::name (length)");
   CHECK(refused(named("a b")) == "PointField::name (character code)");

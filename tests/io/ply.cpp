@@ -19,6 +19,7 @@
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
+#include "support/every_column.hpp"
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
 #include "support/size_limit.hpp"
@@ -64,6 +65,17 @@ std::string header(const std::string& count, const std::string& properties) {
          "\nelement vertex " + count + "\n" + properties + "end_header\n";
 }
 
+TEST_CASE("every column of the table is a property, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  const PlySettings settings{.layout = PointLayout::packed(all.fields), .points = all.settings};
+  CHECK(records(ply(all.batch(), settings)) == all.bytes(all.records(false)));
+  const TemporaryFolder folder;
+  PlyWriter writer(folder / "a.ply", settings);
+  writer.add(all.records());
+  writer.close();
+  CHECK(content(folder / "a.ply") == ply(all.batch(), settings));
+}
+
 TEST_CASE("colours and attributes are properties, colours by the names and in the type that readers know") {
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 70'000;
@@ -74,7 +86,7 @@ TEST_CASE("colours and attributes are properties, colours by the names and in th
   };
   const PlySettings settings{.layout = PointLayout::packed(layouts::xyz_float())
                                            .with(layouts::colours())
-                                           .with(layouts::attributes(attributes.names(), FieldType::float32)),
+                                           .with(layouts::attributes(attributes.names(), NumberType::float32)),
                              .points = {.colours = colour, .attributes = attributes}};
   const std::string file = ply(TwoEchoes().batch(), settings);
   const std::string head =
@@ -115,15 +127,14 @@ TEST_CASE("a header names the properties and the number of vertices, and the rec
 }
 
 TEST_CASE("each number type has its name") {
-  using enum PointQuantity;
-  const PointLayout layout = PointLayout::packed({{"a", FieldType::int8, none},
-                                                  {"b", FieldType::uint8, none},
-                                                  {"c", FieldType::int16, none},
-                                                  {"d", FieldType::uint16, none},
-                                                  {"e", FieldType::int32, none},
-                                                  {"f", FieldType::uint32, none},
-                                                  {"g", FieldType::float32, none},
-                                                  {"h", FieldType::float64, none}});
+  const PointLayout layout = PointLayout::packed({{"a", NumberType::int8},
+                                                  {"b", NumberType::uint8},
+                                                  {"c", NumberType::int16},
+                                                  {"d", NumberType::uint16},
+                                                  {"e", NumberType::int32},
+                                                  {"f", NumberType::uint32},
+                                                  {"g", NumberType::float32},
+                                                  {"h", NumberType::float64}});
   CHECK(ply({}, {.layout = layout}) ==
         header("0",
                "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
@@ -182,8 +193,9 @@ TEST_CASE("settings and buffers that do not fit are refused") {
   const auto refused = [&](const PlySettings& settings) {
     return refused_field([&] { PlyWriter(folder / "a.ply", settings); });
   };
-  CHECK(refused({.layout = {}}) == "PointLayout::fields (number)");
-  CHECK(refused({.layout = PointLayout::packed({{"a b", FieldType::float32}})}) == "PointField::name (character code)");
+  CHECK(refused({.layout = {}}) == "PointLayout::size");
+  CHECK(refused({.layout = PointLayout::packed({{"a b", NumberType::float32}})}) ==
+        "PointField::name (character code)");
   CHECK(refused({.points = {.start_time = std::numeric_limits<double>::infinity()}}) == "PointSettings::start_time");
   PlyWriter writer(folder / "a.ply");
   CHECK(refused_field([&] { writer.add(PointBuffer(layouts::xyzi())); }) == "PointBuffer::layout (index of a field)");

@@ -18,6 +18,7 @@
 #include <pulsecast/base/error.hpp>
 
 #include "support/allocations.hpp"
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 
 namespace pulsecast::io {
@@ -158,15 +159,26 @@ std::string any_text(std::size_t length, Generator& any) {
 PointLayout any_layout(Generator& any) {
   PointLayout layout;
   for (std::uint64_t left = 1 + any.whole(9); left > 0; --left) {
-    const auto type = static_cast<FieldType>(1 + any.whole(8));
-    const auto quantity =
-        static_cast<PointQuantity>(1 + any.whole(static_cast<std::uint64_t>(PointQuantity::packed_rgb_bits)));
+    const auto type = static_cast<NumberType>(1 + any.whole(8));
+    const PointColumn* const of = &point_columns[any.whole(point_columns.size())];
     layout.size += static_cast<std::uint32_t>(any.whole(3));
-    layout.fields.push_back({any_text(any.whole(10), any), type, quantity, 1, layout.size});
+    layout.fields.push_back({any_text(any.whole(10), any), type, of, 1, layout.size});
     layout.size += size_of(type);
   }
   layout.size += static_cast<std::uint32_t>(any.whole(4));
   return layout;
+}
+
+TEST_CASE("every column of the table is a field of a message, of 64-bit integers as a double") {
+  const support::EveryColumn all;
+  std::vector<std::byte> message, in_doubles;
+  serialize_point_cloud2(all.records(), "lidar", message);
+  serialize_point_cloud2(all.records(false), "lidar", in_doubles);
+  CHECK(message == in_doubles);
+  const Message found = by_rules(message);
+  REQUIRE(found.fields.size() == point_columns.size());
+  CHECK(std::string(found.data.begin(), found.data.end()) == all.bytes(all.records(false)));
+  for (const Field& field : found.fields) CHECK(field.type <= 8);
 }
 
 TEST_CASE("libfastcdr, and a reader by the rules of CDR, read from a message what its scan holds") {

@@ -33,21 +33,20 @@ TEST_CASE("the layouts of drivers have the sizes and offsets of what they publis
 TEST_CASE("fields behind a padded layout begin behind its padding") {
   const PointLayout layout = layouts::ouster().with(layouts::labels());
   CHECK(layout.fields[9].offset == 48);
-  CHECK(layout.has(PointQuantity::normal_x, PointQuantity::velocity_z));
-  CHECK_FALSE(layouts::ouster().has(PointQuantity::normal_x, PointQuantity::velocity_z));
+  CHECK(layout.needs(PointNeed::surface));
+  CHECK_FALSE(layouts::ouster().needs(PointNeed::surface));
 }
 
 TEST_CASE("attributes have a field each, by their names") {
   const std::vector<std::string> names{"age", "species"};
   const PointLayout layout =
-      layouts::xyzi().with(layouts::attributes(names, FieldType::uint16)).with(layouts::colours());
+      layouts::xyzi().with(layouts::attributes(names, NumberType::uint16)).with(layouts::colours());
   REQUIRE(layout.fields.size() == 9);
   CHECK((layout.fields[4].name == "age" && layout.fields[5].name == "species" && layout.fields[6].name == "red"));
   CHECK((layout.fields[4].offset == 16 && layout.fields[5].offset == 18 && layout.fields[6].offset == 20 &&
          layout.size == 23));
-  CHECK((layout.has(PointQuantity::attribute, PointQuantity::attribute) &&
-         layout.has(PointQuantity::red, PointQuantity::blue)));
-  CHECK_FALSE(layout.has(PointQuantity::near_infrared, PointQuantity::packed_rgb_bits));
+  CHECK((layout.needs(PointNeed::attribute) && layout.needs(PointNeed::colour)));
+  CHECK_FALSE(layouts::map().needs(PointNeed::colour));
 }
 
 TEST_CASE("fields that overlap or leave the record are refused") {

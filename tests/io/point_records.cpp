@@ -55,49 +55,18 @@ struct TwoEchoes {
   [[nodiscard]] EchoBatch batch() const { return {.shots = shots, .echoes = echoes, .samples = {}}; }
 };
 
-/// Layout of one field a quantity, of one type.
-PointLayout every_quantity(FieldType type) {
+/// Layout of one field a column, of one type.
+PointLayout every_column(NumberType type) {
   std::vector<PointField> fields;
-  for (int q = 0; q <= static_cast<int>(PointQuantity::packed_rgb_bits); ++q)
-    fields.push_back({std::to_string(q), type, static_cast<PointQuantity>(q)});
+  for (const PointColumn& each : point_columns) fields.push_back({std::string(each.name), type, &each});
   return PointLayout::packed(fields);
 }
 
-double number(const PointBuffer& points, std::size_t point, PointQuantity quantity) {
+double number(const PointBuffer& points, std::size_t point, const PointColumn* of) {
   for (const PointField& field : points.layout().fields)
-    if (field.quantity == quantity) return points.number(point, field);
-  FAIL("the layout has no such quantity");
+    if (field.column == of) return points.number(point, field);
+  FAIL("the layout has no such column");
   return 0;
-}
-
-TEST_CASE("each quantity of a point is in its field") {
-  using enum PointQuantity;
-  PointBuffer points(
-      every_quantity(FieldType::float64),
-      {.origin = {1, 0, 0}, .rings = {5, 11}, .start_time = 1000, .laser = {.wavelength = 1e-6, .pulse_length = 5e-9}});
-  points.begin_scan({3, 0});
-  const TwoEchoes two;
-  points(two.batch());
-  REQUIRE(points.size() == 2);
-  const auto at = [&](std::size_t point, PointQuantity quantity) { return number(points, point, quantity); };
-  CHECK(at(0, none) == 0);
-  CHECK((at(0, x) == 10 && at(0, y) == 2 && at(0, z) == 3));
-  CHECK(at(1, x) == 20);
-  CHECK(at(0, range) == 10);
-  CHECK(at(0, azimuth) == doctest::Approx(std::atan2(2, 10)));
-  CHECK(at(0, elevation) == doctest::Approx(std::atan2(3, std::hypot(2, 10))));
-  CHECK((at(0, reflectance) == 0.5 && at(0, reflectivity) == 50 && at(1, reflectivity) == 130));
-  CHECK(at(0, photons) == doctest::Approx(2e-9 * 5e-9 * 1e-6 / (6.62607015e-34 * 299792458)));
-  CHECK((at(0, amplitude) == 2e-9 && at(0, width) == 1e-9 && at(0, cos_incidence) == 0.7));
-  CHECK((std::isnan(at(0, radial_velocity)) && at(1, radial_velocity) == -3));
-  CHECK((at(0, time) == 0.25 && at(0, clock) == 1003.25));
-  CHECK((at(0, ring) == 11 && at(0, pulse) == 7 && at(0, leg) == 2));
-  CHECK((at(0, return_number) == 1 && at(1, return_number) == 2 && at(1, returns) == 2));
-  CHECK(
-      (at(0, classification) == 6 && at(0, object) == 9 && at(1, kind) == static_cast<double>(ReflectionKind::glass)));
-  CHECK((at(0, normal_x) == 0 && at(0, velocity_z) == 0 && std::isinf(at(0, part)) && std::isinf(at(0, material))));
-  CHECK((std::isnan(at(0, red)) && std::isnan(at(0, near_infrared)) && std::isnan(at(0, packed_rgb)) &&
-         at(0, packed_rgb_bits) == 0));
 }
 
 TEST_CASE("integers are rounded and limited to the range of their type, and NaN is 0") {
@@ -105,20 +74,20 @@ TEST_CASE("integers are rounded and limited to the range of their type, and NaN 
   two.echoes[0] = {
       .range = 3.6, .reflectance = 1e9, .object = 70'000, .velocity = std::numeric_limits<double>::quiet_NaN()};
   two.shots[0].origin = {-400, 0, 0};
-  for (const FieldType type :
-       {FieldType::int8, FieldType::uint8, FieldType::int16, FieldType::uint16, FieldType::int32, FieldType::uint32}) {
+  for (const NumberType type : {NumberType::int8, NumberType::uint8, NumberType::int16, NumberType::uint16,
+                                NumberType::int32, NumberType::uint32}) {
     CAPTURE(static_cast<int>(type));
-    PointBuffer points(every_quantity(type));
+    PointBuffer points(every_column(type));
     points(two.batch());
-    const bool has_sign = type == FieldType::int8 || type == FieldType::int16 || type == FieldType::int32;
+    const bool has_sign = type == NumberType::int8 || type == NumberType::int16 || type == NumberType::int32;
     const double bits = 8 * size_of(type) - (has_sign ? 1 : 0);
     const double most = std::exp2(bits) - 1, least = has_sign ? -most - 1 : 0;
-    CHECK(number(points, 0, PointQuantity::range) == 4);
-    CHECK(number(points, 0, PointQuantity::x) == std::max(least, -396.0));
-    CHECK(number(points, 0, PointQuantity::object) == std::min(most, 70'000.0));
-    CHECK(number(points, 0, PointQuantity::part) == most);
-    CHECK(number(points, 0, PointQuantity::radial_velocity) == 0);
-    CHECK(number(points, 0, PointQuantity::reflectivity) == std::min(most, 255.0));
+    CHECK(number(points, 0, column("range")) == 4);
+    CHECK(number(points, 0, column("x")) == std::max(least, -396.0));
+    CHECK(number(points, 0, column("object")) == std::min(most, 70'000.0));
+    CHECK(number(points, 0, column("part")) == most);
+    CHECK(number(points, 0, column("radial_velocity")) == 0);
+    CHECK(number(points, 0, column("reflectivity")) == std::min(most, 255.0));
   }
 }
 
@@ -137,15 +106,6 @@ TEST_CASE("records have their numbers at the offsets of the layout, scaled, and 
   for (std::size_t k = 36; k < 48; ++k) CHECK(second[k] == std::byte{});
 }
 
-TEST_CASE("reflectivity is in percent up to white, and grows by 10 a doubling up to its limit") {
-  CHECK(reflectivity_byte(-1) == 0);
-  CHECK(reflectivity_byte(0.25) == 25);
-  CHECK(reflectivity_byte(1) == 100);
-  CHECK(reflectivity_byte(4) == 120);
-  CHECK(reflectivity_byte(1e30) == 255);
-  CHECK(reflectivity_byte(std::numeric_limits<double>::quiet_NaN()) == 0);
-}
-
 TEST_CASE("points of a moving sensor are distorted in its frame, unless the distortion is removed") {
   // two pulses ahead, 0.5 s apart, to a wall at y = 50, from a sensor that drives to it at 10 m/s
   const MeshData wall{.vertices = {{-9, 50, -9}, {9, 50, -9}, {9, 50, 9}, {-9, 50, 9}},
@@ -158,12 +118,12 @@ TEST_CASE("points of a moving sensor are distorted in its frame, unless the dist
   PointSettings settings{.sensor = [&](Tick t) { return platform.instrument_at(t); },
                          .axes = PointAxes::forward_left_up};
   const auto forward = [&](std::size_t point) {
-    PointBuffer points(every_quantity(FieldType::float64), settings);
+    PointBuffer points(every_column(NumberType::float64), settings);
     points.begin_scan({});
     run(survey, {}, points);
-    CHECK(std::fabs(number(points, point, PointQuantity::y)) < 1e-9);
-    CHECK(std::fabs(number(points, point, PointQuantity::z)) < 1e-9);
-    return number(points, point, PointQuantity::x);
+    CHECK(std::fabs(number(points, point, column("y"))) < 1e-9);
+    CHECK(std::fabs(number(points, point, column("z"))) < 1e-9);
+    return number(points, point, column("x"));
   };
   CHECK(forward(0) == doctest::Approx(49));
   CHECK(forward(1) == doctest::Approx(44));
@@ -173,7 +133,6 @@ TEST_CASE("points of a moving sensor are distorted in its frame, unless the dist
 }
 
 TEST_CASE("part, material, normal and velocity of a moving board are in the sensor's axes") {
-  using enum PointQuantity;
   const MeshData board{.vertices = {{-9, 20, -9}, {9, 20, -9}, {9, 20, 9}, {-9, 20, 9}},
                        .triangles = {{0, 1, 2}, {0, 2, 3}},
                        .materials = {1, 1}};
@@ -187,18 +146,18 @@ TEST_CASE("part, material, normal and velocity of a moving board are in the sens
   const Platform platform{Tripod{.heading = -90_deg}, Mount{.boresight = rotation_about(axis::up, -90_deg)},
                           Deflector{FixedBeam{}, Scanner{.pulses = 1}}};
   const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
-  PointBuffer points(every_quantity(FieldType::float64), {.sensor = [&](Tick t) { return platform.instrument_at(t); },
-                                                          .axes = PointAxes::forward_left_up,
-                                                          .surfaces = surfaces_of(scene)});
+  PointBuffer points(every_column(NumberType::float64), {.sensor = [&](Tick t) { return platform.instrument_at(t); },
+                                                         .axes = PointAxes::forward_left_up,
+                                                         .surfaces = surfaces_of(scene)});
   run(survey, {}, points);
   REQUIRE(points.size() == 1);
-  const auto at = [&](PointQuantity quantity) { return number(points, 0, quantity); };
+  const auto at = [&](const PointColumn* of) { return number(points, 0, of); };
   const Pose<frame::World, frame::Instrument> frame = platform.instrument_at({}).inverse();
   const Vec3 towards = to_forward_left_up(frame.direction({0, -1, 0})),
              along = to_forward_left_up(frame.direction({2, 0, 0}));
-  CHECK((at(part) == 1 && at(material) == 1 && at(object) == 4));
-  CHECK(length(Vec3{at(normal_x), at(normal_y), at(normal_z)} - towards) < 1e-12);
-  CHECK(length(Vec3{at(velocity_x), at(velocity_y), at(velocity_z)} - along) < 1e-12);
+  CHECK((at(column("part")) == 1 && at(column("material")) == 1 && at(column("object")) == 4));
+  CHECK(length(Vec3{at(column("normal_x")), at(column("normal_y")), at(column("normal_z"))} - towards) < 1e-12);
+  CHECK(length(Vec3{at(column("velocity_x")), at(column("velocity_y")), at(column("velocity_z"))} - along) < 1e-12);
 }
 
 /// Colours by return number: of the first echo, none of the others.
@@ -210,15 +169,14 @@ std::optional<PointColour> of_first(const EchoBatch&, const Shot&, const Echo& e
 TEST_CASE(
     "colours of points are shares of white, numbers of 8 and 16 bits, or packed in one, and unknown ones are NaN or "
     "0") {
-  using enum PointQuantity;
   const TwoEchoes two;
-  PointBuffer shares(every_quantity(FieldType::float64), {.colours = of_first});
+  PointBuffer shares(every_column(NumberType::float64), {.colours = of_first});
   shares(two.batch());
-  const auto share = [&](PointQuantity quantity) { return number(shares, 0, quantity); };
-  CHECK(
-      (share(red) == 1 && share(green) == 128 / 255.0 && share(blue) == 899 / 65535.0 && share(near_infrared) == 0.2));
-  for (const PointQuantity quantity : {red, green, blue, near_infrared, packed_rgb})
-    CHECK(std::isnan(number(shares, 1, quantity)));
+  const auto share = [&](const PointColumn* of) { return number(shares, 0, of); };
+  CHECK((share(column("red")) == 65535 && share(column("green")) == 257 * 128 && share(column("blue")) == 899 &&
+         share(column("near_infrared")) == 13107));
+  for (const PointColumn* of : {column("red"), column("green"), column("blue"), column("near_infrared"), column("rgb")})
+    CHECK(std::isnan(number(shares, 1, of)));
 
   const auto check = [&](const std::vector<PointField>& fields, const std::vector<double>& expected) {
     PointBuffer points(PointLayout::packed(fields), {.colours = of_first});
@@ -232,7 +190,7 @@ TEST_CASE(
   };
   check(layouts::colours(), {255, 128, 3});  // 899 / 257 is 3.498
   check(layouts::deep_colours(), {65535, 32896, 899, 13107});
-  check({{"rgba", FieldType::uint32, packed_rgb}}, {0xFF8003});
+  check({{"rgba", NumberType::uint32, column("rgb")}}, {0xFF8003});
   PointBuffer packed(PointLayout::packed(layouts::packed_colour()), {.colours = of_first});
   packed(two.batch());
   std::uint32_t bits = 0;
@@ -282,9 +240,9 @@ TEST_CASE(
   trees[0].attributes = pulsecast::attributes({{"age", 80.25}, {"species", 3}});
   const ObjectAttributes attributes{std::span(std::as_const(trees))};
   const TwoEchoes two;
-  PointBuffer points(PointLayout::packed({{"species", FieldType::uint8, PointQuantity::attribute},
-                                          {"object", FieldType::uint32, PointQuantity::object},
-                                          {"age", FieldType::float64, PointQuantity::attribute, 12}}),
+  PointBuffer points(PointLayout::packed({{"species", NumberType::uint8, &attribute_column},
+                                          {"object", NumberType::uint32, column("object")},
+                                          {"age", NumberType::float64, &attribute_column, 12}}),
                      {.attributes = attributes});
   points(two.batch());
   const auto at = [&](std::size_t point, std::size_t field) {

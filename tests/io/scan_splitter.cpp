@@ -26,7 +26,7 @@ struct Scan {
 /// Scans of pulses that come in batches of random lengths.
 std::vector<Scan> scans_of(const RandomPulses& pulses, double rate, std::uint64_t seed) {
   const PointLayout layout = PointLayout::packed(
-      {{"pulse", FieldType::float64, PointQuantity::pulse}, {"time", FieldType::float64, PointQuantity::time}});
+      {{"pulse", NumberType::float64, column("pulse")}, {"time", NumberType::float64, column("time")}});
   std::vector<Scan> scans;
   ScanSplitter splitter(PointBuffer(layout), rate, [&](const PointBuffer& points) {
     Scan scan{points.scan_start().seconds(), {}, {}};

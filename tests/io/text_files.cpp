@@ -19,6 +19,7 @@
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
+#include "support/every_column.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -62,7 +63,7 @@ TEST_CASE("colours and attributes are further columns of a point, in this order,
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 12;
   trees[0].attributes = pulsecast::attributes({{"age", 80.125}, {"species", 3}, {"share", 0.1}});
-  const PointTextColumns more{
+  const PointSettings points{
       .colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
         if (echo.number == 2) return std::nullopt;
         return PointColour{65535, 257 * 128, 899, 0};  // 899 / 257 is 3.498
@@ -70,8 +71,8 @@ TEST_CASE("colours and attributes are further columns of a point, in this order,
       .attributes = ObjectAttributes{std::span(std::as_const(trees))}};
   const std::vector<Shot> shots{{.tick = {7, 0.25}, .direction = {0, 0, -1}, .echoes = 2}};
   const std::vector<Echo> echoes{{.range = 10, .object = 12}, {.range = 20, .object = 3, .number = 2}};
-  const auto written = [&](const PointTextColumns& columns) {
-    XyzWriter writer(folder / "points.xyz", {}, columns);
+  const auto written = [&](const std::vector<PointField>& columns) {
+    XyzWriter writer(folder / "points.xyz", {.start_time = 0}, {columns, points});
     writer(EchoBatch{shots, echoes, {}, 0});
     writer.close();
     return content(folder / "points.xyz");
@@ -79,9 +80,35 @@ TEST_CASE("colours and attributes are further columns of a point, in this order,
   const std::string first = "0.0000 0.0000 -10.0000 0.0000 0.0000 1 2 0 12 0 7.250000000";
   const std::string second = "0.0000 0.0000 -20.0000 0.0000 0.0000 2 2 0 3 0 7.250000000";
   CHECK(written({}) == first + '\n' + second + '\n');
-  CHECK(written({.colours = more.colours}) == first + " 255 128 3\n" + second + " nan nan nan\n");
-  CHECK(written({.attributes = more.attributes}) == first + " 80.125 3 0.1\n" + second + " nan nan nan\n");
-  CHECK(written(more) == first + " 255 128 3 80.125 3 0.1\n" + second + " nan nan nan nan nan nan\n");
+  const std::vector<PointField> attributes = layouts::attributes(points.attributes.names());
+  CHECK(written(layouts::colours()) == first + " 255 128 3\n" + second + " nan nan nan\n");
+  CHECK(written(attributes) == first + " 80.125 3 0.1\n" + second + " nan nan nan\n");
+  const std::vector<PointField> more = layouts::columns({column("pulse"), column("x"), column("reflectivity")});
+  CHECK(written(more) == first + " 0 0 0\n" + second + " 0 0 0\n");
+  CHECK(written({{"share", NumberType::float32, &attribute_column, 0.5}}) == first + " 0.05\n" + second + " nan\n");
+}
+
+TEST_CASE("every column of the table is a further column that reads back the same") {
+  const support::EveryColumn all;
+  const TemporaryFolder folder;
+  XyzWriter writer(folder / "points.xyz", {}, {all.fields, all.settings});
+  writer(all.batch());
+  writer.close();
+  const PointBuffer expected = all.records();
+  std::istringstream lines(content(folder / "points.xyz"));
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::string word;
+    for (int standard = 0; standard < 11; ++standard) lines >> word;
+    for (const PointField& field : expected.layout().fields) {
+      CAPTURE(field.name);
+      REQUIRE(static_cast<bool>(lines >> word));
+      const double value = expected.number(i, field);
+      if (word == "nan")
+        CHECK((std::isnan(value) || (i == 1 && value == 0)));  // integers of a record have no NaN
+      else
+        CHECK((field.type == NumberType::float32 ? double{std::stof(word)} : std::stod(word)) == value);
+    }
+  }
 }
 
 TEST_CASE("pulses without echoes make no lines, and no points make an empty file") {

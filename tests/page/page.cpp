@@ -111,8 +111,8 @@ TEST_CASE("a page has the colours of its points, if its settings have them") {
     return PointColour{.red = static_cast<std::uint16_t>(shot.index * 10), .green = 257, .blue = 65535};
   };
   const std::string plain = page_of({}, {.points_max = 1000}),
-                    coloured = page_of({}, {.points_max = 1000, .colours = colours});
-  PageSample sample(1000, colours);
+                    coloured = page_of({}, {.points_max = 1000, .points = {.colours = colours}});
+  PageSample sample(1000, {.colours = colours});
   give(sample, 5000, 1000);
   const std::string points = base64(page_columns(sample.points()));
   CHECK(count(coloured, points) == 1);

@@ -144,7 +144,7 @@ TEST_CASE("news are what came since, and how far the run is") {
 
 TEST_CASE("points have colours in every run of a server that has them") {
   const auto red = [](const EchoBatch&, const Shot&, const Echo&) { return PointColour{.red = 65535}; };
-  PageServer server({}, {.colours = red}), plain;
+  PageServer server({}, {.points = {.colours = red}}), plain;
   for (int run = 0; run < 2; ++run) {
     server.begin({});
     give(server, 0, 10);
@@ -152,7 +152,7 @@ TEST_CASE("points have colours in every run of a server that has them") {
     CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
   }
   const Address a(plain.address());
-  plain.begin({}, red);
+  plain.begin({}, {.points = {.colours = red}});
   give(plain, 0, 10);
   CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
   plain.begin({}, {});

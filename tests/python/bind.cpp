@@ -52,18 +52,30 @@ LostSurvey lost_survey() {
                 Receiver{}, FirstHit{}};
 }
 
+/// Row of a point, as a C++ program reads it.
+struct PointRow {
+  double x, y, z, time, range;
+  float intensity, reflectance, echo_width, cos_incidence;
+  std::int64_t pulse;
+  std::uint32_t object;
+  std::uint16_t classification, leg;
+  std::uint8_t return_number, number_of_returns;
+  std::uint16_t channel;
+  std::uint8_t kind, spare[3];
+};
+
 /// Throws what a reader throws.
 void fail_to_read() { throw FileError("scene.obj", "line 3", "expected a number"); }
 
 /// Extras of the wall's points: its height, and red above 2 m.
-python::PointExtras wall_extras(const WallSurvey&) {
+io::PointSettings wall_extras(const WallSurvey&) {
   std::vector<Scene<TriangleMesh<>>::Part> parts(1);
   parts[0].object = 42;
   parts[0].attributes = attributes({{"height", 5}});
   const auto colour = [](const EchoBatch&, const Shot& shot, const Echo& echo) {
     return PointColour{.red = static_cast<std::uint16_t>(point_of(shot, echo).z > 2 ? 65535 : 0)};
   };
-  return {colour, ObjectAttributes{std::span(std::as_const(parts))}};
+  return {.colours = colour, .attributes = ObjectAttributes{std::span(std::as_const(parts))}};
 }
 
 PYBIND11_EMBEDDED_MODULE(scans, m) {
@@ -93,11 +105,12 @@ TEST_CASE("points and pulses in Python are those of the same survey in C++, to t
     samples.assign(batch.samples.begin(), batch.samples.end());
   });
   REQUIRE(cloud.size() > 20);
-  const auto points = scope["result"].attr("points").cast<py::array_t<python::PointRow>>();
+  const auto points = scope["result"].attr("points").cast<py::array>();
+  REQUIRE(points.itemsize() == sizeof(PointRow));
   REQUIRE(points.size() == static_cast<py::ssize_t>(cloud.size()));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     CAPTURE(i);
-    const python::PointRow& row = points.at(static_cast<py::ssize_t>(i));
+    const PointRow& row = static_cast<const PointRow*>(points.data())[i];
     const Echo& echo = cloud.echoes[i];
     CHECK(Vec3{row.x, row.y, row.z} == cloud.points[i]);
     CHECK(row.time == cloud.ticks[i].seconds());
@@ -109,6 +122,7 @@ TEST_CASE("points and pulses in Python are those of the same survey in C++, to t
     CHECK(row.object == 42);
     CHECK(row.return_number == echo.number);
     CHECK(row.number_of_returns == 1);
+    CHECK((row.spare[0] == 0 && row.spare[1] == 0 && row.spare[2] == 0));
   }
   const auto pulses = scope["result"].attr("pulses").cast<py::array_t<python::PulseRow>>();
   REQUIRE(pulses.size() == static_cast<py::ssize_t>(shots.size()));
@@ -242,6 +256,46 @@ TEST_CASE("points by column are those of the rows, with their extras") {
   CHECK(said(scope, "len(rows.points) > 20 and set(columns['height']) == {5.0}") == "True");
   CHECK(said(scope, "(columns['red'] == numpy.where(columns['z'] > 2, 65535, 0)).all() and len(set(columns['red']))") ==
         "2");
+}
+
+TEST_CASE("a run keeps the columns of given names alone, whichever the table or the objects have") {
+  py::dict scope = names();
+  py::exec(
+      "survey = scans.WallSurvey(200)\n"
+      "rows = survey.run().points\n"
+      "batch = survey.run(columns=['height', 'range', 'red', 'azimuth', 'pulse', 'kind'])\n"
+      "columns = batch.columns",
+      scope);
+  CHECK(said(scope, "list(columns)") == "['height', 'range', 'red', 'azimuth', 'pulse', 'kind']");
+  CHECK(said(scope, "all((columns[name] == rows[name]).all() for name in ['range', 'pulse', 'kind'])") == "True");
+  CHECK(said(scope, "set(columns['height']) == {5.0} and set(columns['red']) == {0, 65535}") == "True");
+  CHECK(said(scope, "numpy.allclose(columns['azimuth'], numpy.arctan2(rows['y'], rows['x']))") == "True");
+  CHECK(said(scope, "str(batch).startswith(f'<Batch of {len(rows)} points,') and len(rows) > 20") == "True");
+  const auto refusal = [&](const char* asked) {
+    scope["asked"] = py::eval(asked, scope);
+    py::exec("try:\n  survey.run(columns=asked)\n  error = ''\nexcept ValueError as e:\n  error = str(e)", scope);
+    return scope["error"].cast<std::string>();
+  };
+  CHECK(refusal("['rnage']") == "column 'rnage' is not known; did you mean 'range'?");
+  CHECK(refusal("['normal_x']") == "run columns: the points of this survey have no surfaces");
+  CHECK(refusal("['x', 'x']").find("columns 'x' (number) is 2") == 0);
+}
+
+TEST_CASE("every column of the table is an array of its type, and a column of the Arrow stream") {
+  py::dict scope = names();
+  py::list all;
+  for (const io::PointColumn& each : io::point_columns)
+    if (each.needs != io::PointNeed::surface) all.append(std::string(each.name));
+  scope["names"] = all;
+  py::exec("batch = scans.WallSurvey(200).run(columns=names)\nstream = batch.__arrow_c_stream__()", scope);
+  CHECK(said(scope, "list(batch.columns) == names and all(len(c) > 20 for c in batch.columns.values())") == "True");
+  for (const io::PointColumn& each : io::point_columns)
+    if (each.needs != io::PointNeed::surface) {
+      CAPTURE(each.name);
+      const auto column = scope["batch"].attr("columns")[py::str(std::string(each.name))].cast<py::array>();
+      CHECK(column.dtype().is(python::dtype_of(each.type)));
+      CHECK(said(scope, "'" + std::string(each.name) + "' in scans.WallSurvey.run.__doc__") == "True");
+    }
 }
 
 TEST_CASE("a consumer of the Arrow stream may take it apart and keep a column after all else is gone") {

@@ -14,10 +14,9 @@
 #include <pulsecast/any_survey.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>
+#include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/material/material.hpp>
-#include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/part.hpp>
-#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
@@ -87,10 +86,9 @@ class Simulation {
   [[nodiscard]] virtual const CompiledSurvey& compiled() const noexcept = 0;
   /// Size of the scene.
   [[nodiscard]] virtual Scene scene() const = 0;
-  /// Named numbers of the objects of the scene. @throws SettingError if two parts of one object have different ones
-  [[nodiscard]] virtual ObjectAttributes attributes() const = 0;
-  /// Colours of points, by one more ray a point. They may outlive the simulation.
-  [[nodiscard]] virtual PointColours colours() const = 0;
+  /// Surfaces, colours and attributes of points, as `io::points_of`. They may outlive the simulation.
+  /// @throws SettingError if two parts of one object have different attributes of a name
+  [[nodiscard]] virtual io::PointSettings points() const = 0;
 
   /// Number of repetitions of the survey, each with its own scene.
   [[nodiscard]] virtual int repetitions() const = 0;

@@ -100,9 +100,7 @@ class KittiWriter {
 
   [[nodiscard]] static PointLayout layout() {
     return PointLayout::packed(layouts::xyz_float())
-        .with({{"reflectance", FieldType::float32, PointQuantity::reflectance},
-               {"classification", FieldType::uint16, PointQuantity::classification},
-               {"object", FieldType::uint32, PointQuantity::object}});
+        .with(layouts::columns({column("reflectance"), column("classification"), column("object")}));
   }
 
   [[nodiscard]] static PointSettings in_format(PointSettings points) {

@@ -104,8 +104,9 @@ class StoredZip {
 };
 
 /// Header of an array of one dimension, padded to 64 bytes in all. Source: NumPy, numpy.lib.format, version 1.0.
-[[nodiscard]] inline std::string npy_header(FieldType type, std::uint64_t count) {
-  constexpr std::array<std::string_view, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
+[[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count) {
+  constexpr std::array<std::string_view, 11> types{"",    "|i1", "|u1", "<i2", "<u2", "<i4",
+                                                   "<u4", "<f4", "<f8", "<i8", "<u8"};
   std::string text = text::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
                                    "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
   constexpr std::size_t preamble = 10, alignment = 64;  // [byte]

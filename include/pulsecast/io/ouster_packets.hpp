@@ -115,7 +115,7 @@ struct OusterFormat {
     return static_cast<std::uint8_t>(std::nearbyint(reflectivity_byte(echo.reflectance)));
   }
 
-  /// As `PointQuantity::photons`.
+  /// As the column photons.
   [[nodiscard]] static std::uint16_t photons(const PacketSource& source, const Echo& echo) noexcept {
     const double number = photon_count(echo.amplitude, source.sensor.beam);
     return number > 0 ? static_cast<std::uint16_t>(std::nearbyint(std::fmin(number, 0xFFFF))) : std::uint16_t{0};

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_PCD_HPP
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +12,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -68,16 +65,16 @@ static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max(
 }  // namespace detail
 
 /// Writes points as PCD, the format of PCL, as an unorganized cloud without a viewpoint. Source: PCL, PCD file format
-/// 0.7. Streams, unless compressed: memory does not grow with the number of points. Compressed files take up to four
-/// times the memory of their points until `close()`, and are limited to 4.1 GB before compression; more is a
-/// `FileError`. Default coordinates are in single precision: set `PointSettings::origin` for large ones. Times since a
-/// scan's start count from tick 0, except of scans that `add` appends. Only `close()` completes the file: see
-/// `OutputFile`. Throws a `FileError`.
+/// 0.7, whose 64-bit integers not all readers take: they become `float64`. Streams, unless compressed: memory does not
+/// grow with the number of points. Compressed files take up to four times the memory of their points until `close()`,
+/// and are limited to 4.1 GB before compression; more is a `FileError`. Default coordinates are in single precision:
+/// set `PointSettings::origin` for large ones. Times since a scan's start count from tick 0, except of scans that `add`
+/// appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PcdWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PcdWriter(std::filesystem::path path, const PcdSettings& settings = {})
-      : points_(validated(settings).layout, settings.points),
+      : points_(validated(settings).layout.without_int64(), settings.points),
         encoding_(settings.encoding),
         columns_(points_.layout()),
         file_(std::move(path)) {
@@ -121,23 +118,8 @@ class PcdWriter {
   void write_rows(std::span<const std::byte> records) {
     for (; !records.empty(); records = records.subspan(points_.layout().size)) {
       for (const PointField& field : points_.layout().fields)
-        detail::visit_field_type(field.type,
-                                 [&]<class Number>() { add_number<Number>(records.data() + field.offset); });
+        detail::add_number(row_, field.type, records.data() + field.offset);
       file_.write(row_.end());
-    }
-  }
-
-  template <class Number>
-  void add_number(const std::byte* from) {
-    const auto number = static_cast<Number>(detail::load_number<Number>(from));  // exact: all types are within double
-    if constexpr (std::is_integral_v<Number>) {
-      row_.add(number);
-    } else if (std::isnan(number)) {
-      row_.add(std::string_view("nan"));
-    } else {
-      std::array<char, 32> digits;
-      row_.add(
-          std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
     }
   }
 

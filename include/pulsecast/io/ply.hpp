@@ -26,15 +26,15 @@ struct PlySettings {
 };
 
 /// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout. Source:
-/// Turk 1994, The PLY Polygon File Format. Streams: memory does not grow with the number of points. Readers find
-/// coordinates by the names x, y and z, and many keep them in single precision only: set `PointSettings::origin` for
-/// those. Times since a scan's start count from tick 0, except of scans that `add` appends. Only `close()` completes
-/// the file: see `OutputFile`. Throws a `FileError`.
+/// Turk 1994, The PLY Polygon File Format. It has no 64-bit integers, which become `double`. Streams: memory does not
+/// grow with the number of points. Readers find coordinates by the names x, y and z, and many keep them in single
+/// precision only: set `PointSettings::origin` for those. Times since a scan's start count from tick 0, except of scans
+/// that `add` appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PlyWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PlyWriter(std::filesystem::path path, const PlySettings& settings = {})
-      : points_(validated(settings).layout, settings.points), file_(std::move(path)) {
+      : points_(validated(settings).layout.without_int64(), settings.points), file_(std::move(path)) {
     file_.write(header(0));
     points_at_ = file_.position();
   }

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_POINT_CLOUD2_HPP
 #define PULSECAST_IO_POINT_CLOUD2_HPP
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -103,8 +104,8 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 
 /// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`, in place of its former content:
 /// little-endian CDR after an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
-/// `stamp_ns`. Once `message` has grown to the longest scan, it allocates nothing. @throws SettingError for more than
-/// 2^32 - 1 bytes of points, and as `stamp_ns`
+/// `stamp_ns`; 64-bit integers become `float64`. Once `message` has grown to the longest scan, it allocates nothing.
+/// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
 inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
                                    std::vector<std::byte>& message) {
   const PointLayout& layout = scan.layout();
@@ -124,9 +125,15 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
   cdr << std::uint32_t{1} << static_cast<std::uint32_t>(scan.size());  // height, width
   cdr << static_cast<std::uint32_t>(layout.fields.size());
   for (const PointField& field : layout.fields)
-    cdr << field.name << field.offset << static_cast<std::uint8_t>(field.type) << std::uint32_t{1};
+    cdr << field.name << field.offset << static_cast<std::uint8_t>(std::min(field.type, NumberType::float64))
+        << std::uint32_t{1};
   cdr << false << layout.size << length << length;  // is_bigendian, point_step, row_step, length of the data
+  const std::size_t data = message.size();
   message.insert(message.end(), records.begin(), records.end());
+  for (std::size_t k = 0; k < layout.fields.size(); ++k)  // a message has no 64-bit integers
+    for (std::size_t i = 0; layout.fields[k].type >= NumberType::int64 && i < scan.size(); ++i)
+      detail::store_number<double>(scan.number(i, layout.fields[k]),
+                                   message.data() + data + i * layout.size + layout.fields[k].offset);
   message.push_back(std::byte{1});  // is_dense: echoes have finite coordinates
 }
 

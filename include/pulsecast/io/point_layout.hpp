@@ -3,74 +3,31 @@
 #ifndef PULSECAST_IO_POINT_LAYOUT_HPP
 #define PULSECAST_IO_POINT_LAYOUT_HPP
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/point_columns.hpp>
 
 /// Layouts of point records: fields, types and offsets. PCD, PLY, NPZ and PointCloud2 are headers for such records.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Number type of a field. The values are those of the data types of sensor_msgs/PointField.
-enum class FieldType : std::uint8_t { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64 };
-
 /// Size of a number [byte].
-[[nodiscard]] constexpr std::uint32_t size_of(FieldType type) noexcept {
-  return type <= FieldType::uint8 ? 1 : type <= FieldType::uint16 ? 2 : type <= FieldType::float32 ? 4 : 8;
+[[nodiscard]] constexpr std::uint32_t size_of(NumberType type) noexcept {
+  return type <= NumberType::uint8 ? 1 : type <= NumberType::uint16 ? 2 : type <= NumberType::float32 ? 4 : 8;
 }
 
-/// Quantity of a point, in SI units. Positions, normals and velocities are in the frame and axes of `PointSettings`.
-enum class PointQuantity : std::uint8_t {
-  none,             ///< 0: a field of the layout that is not simulated
-  x,                ///< coordinate [m]
-  y,                ///< coordinate [m]
-  z,                ///< coordinate [m]
-  normal_x,         ///< unit normal of the surface; 0 if unknown
-  normal_y,         ///< as above
-  normal_z,         ///< as above
-  velocity_x,       ///< velocity of the surface in the world [m/s]; 0 if unknown
-  velocity_y,       ///< as above
-  velocity_z,       ///< as above
-  range,            ///< range [m]
-  azimuth,          ///< angle of the point from the x axis to the y axis, in the frame of the points [rad]
-  elevation,        ///< angle of the point above the plane of x and y [rad]
-  reflectance,      ///< as `Echo::reflectance`: 1 for a white surface at normal incidence
-  reflectivity,     ///< the same as instruments encode it, from 0 to 255: `reflectivity_byte`
-  photons,          ///< photons at the echo's peak per pulse length: amplitude by photon energy
-  amplitude,        ///< as `Echo::amplitude` [W]
-  width,            ///< as `Echo::width` [s]
-  cos_incidence,    ///< as `Echo::cos_incidence`
-  radial_velocity,  ///< as `Echo::velocity` [m/s]
-  time,             ///< emission since the scan's start [s]
-  clock,            ///< emission by the clock: `PointSettings::start_time` at tick 0 [s]
-  ring,             ///< number of the laser by `PointSettings::rings`
-  return_number,    ///< as `Echo::number`, from 1
-  returns,          ///< echoes of the pulse
-  pulse,            ///< as `Shot::index`
-  leg,              ///< as `Shot::leg`
-  classification,   ///< class of the material
-  object,           ///< object of the part: the instance
-  part,             ///< index of the part in its scene; the type's largest number if unknown
-  material,         ///< index of the material in the part's table; the type's largest number if unknown
-  kind,             ///< as `Echo::kind`
-  red,              ///< as `PointColour::red`, from 0 to 1; NaN if unknown, as the other colours
-  green,            ///< as above
-  blue,             ///< as above
-  near_infrared,    ///< as `PointColour::near_infrared`, from 0 to 1; NaN if unknown
-  packed_rgb,       ///< 65536 red + 256 green + blue, of 8 bits each; NaN if unknown
-  packed_rgb_bits,  ///< float32 of the bits of `packed_rgb`, as PCL and ROS have it; 0 if unknown
-  attribute  ///< attribute of the object, by the field's name, see `PointSettings::attributes`; NaN if it has none
-};
-
-/// Field of a point record: a quantity times a scale.
+/// Field of a point record: a column times a scale.
 struct PointField {
-  std::string name{};                   ///< name in the file or message
-  FieldType type = FieldType::float32;  ///< number type; integers are rounded, and limited to the range of their type
-  PointQuantity quantity = PointQuantity::none;  ///< quantity
-  double scale = 1;                              ///< number in the record per unit of the quantity
-  std::uint32_t offset = 0;                      ///< position in the record [byte]
+  std::string name{};                          ///< name in the file or message; of an attribute, its name
+  NumberType type = NumberType::float32;       ///< number type; integers are rounded, and limited to its range
+  const PointColumn* column = &absent_column;  ///< column; that of a field that is not simulated by default
+  double scale = 1;                            ///< number in the record per unit of the column
+  std::uint32_t offset = 0;                    ///< position in the record [byte]
 };
 
 /// Layout of a point record. Numbers are little-endian.
@@ -94,7 +51,8 @@ struct PointLayout {
 
   /// @throws SettingError for fields that overlap or leave the record
   void validate() const {
-    require_within("PointLayout::fields (number)", static_cast<double>(fields.size()), 1, 1000, "");
+    require_within("PointLayout::fields (number)", static_cast<double>(fields.size()), 0, 1000, "");
+    require_positive("PointLayout::size", size, "byte");
     std::uint32_t end = 0;
     for (const PointField& field : fields) {
       require_within("PointField::offset of " + field.name, field.offset, end,
@@ -104,74 +62,75 @@ struct PointLayout {
     }
   }
 
-  /// True if a field holds one of the quantities from `first` to `last`.
-  [[nodiscard]] bool has(PointQuantity first, PointQuantity last) const noexcept {
-    for (const PointField& field : fields)
-      if (field.quantity >= first && field.quantity <= last) return true;
-    return false;
+  /// True if a column of a field has this need.
+  [[nodiscard]] bool needs(PointNeed need) const noexcept {
+    return std::ranges::any_of(fields, [need](const PointField& f) { return f.column->needs == need; });
+  }
+
+  /// This layout with float64 in place of 64-bit integers, for formats without them: exact up to 2^53.
+  [[nodiscard]] PointLayout without_int64() const {
+    PointLayout layout = *this;
+    for (PointField& field : layout.fields) field.type = std::min(field.type, NumberType::float64);
+    return layout;
   }
 };
 
 /// Point layouts of drivers and of maps.
 namespace layouts {
 
+using enum NumberType;
+
 /// Coordinates in single precision. Its spacing is 8 um at 100 m, and 0.5 m at 5,000 km: for points about a sensor.
 [[nodiscard]] inline std::vector<PointField> xyz_float() {
-  return {{"x", FieldType::float32, PointQuantity::x},
-          {"y", FieldType::float32, PointQuantity::y},
-          {"z", FieldType::float32, PointQuantity::z}};
+  return {{"x", float32, column("x")}, {"y", float32, column("y")}, {"z", float32, column("z")}};
 }
 
 /// Points of a map: coordinates in double precision, and all values of an echo.
 [[nodiscard]] inline PointLayout map() {
-  return PointLayout::packed({{"x", FieldType::float64, PointQuantity::x},
-                              {"y", FieldType::float64, PointQuantity::y},
-                              {"z", FieldType::float64, PointQuantity::z},
-                              {"reflectance", FieldType::float32, PointQuantity::reflectance},
-                              {"time", FieldType::float64, PointQuantity::clock},
-                              {"channel", FieldType::uint16, PointQuantity::ring},
-                              {"return_number", FieldType::uint8, PointQuantity::return_number},
-                              {"returns", FieldType::uint8, PointQuantity::returns},
-                              {"classification", FieldType::uint16, PointQuantity::classification},
-                              {"object", FieldType::uint32, PointQuantity::object}});
+  return PointLayout::packed({{"x", float64, column("x")},
+                              {"y", float64, column("y")},
+                              {"z", float64, column("z")},
+                              {"reflectance", float32, column("reflectance")},
+                              {"time", float64, column("clock")},
+                              {"channel", uint16, column("ring")},
+                              {"return_number", uint8, column("return_number")},
+                              {"returns", uint8, column("number_of_returns")},
+                              {"classification", uint16, column("classification")},
+                              {"object", uint32, column("object")}});
 }
 
 /// Coordinates and intensity, as PCL's PointXYZI.
 [[nodiscard]] inline PointLayout xyzi() {
-  return PointLayout::packed(xyz_float()).with({{"intensity", FieldType::float32, PointQuantity::reflectivity}});
+  return PointLayout::packed(xyz_float()).with({{"intensity", float32, column("reflectivity")}});
 }
 
 /// Fields of Velodyne's ROS driver, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time from scan start [s].
 [[nodiscard]] inline PointLayout velodyne() {
-  return xyzi().with(
-      {{"ring", FieldType::uint16, PointQuantity::ring}, {"time", FieldType::float32, PointQuantity::time}});
+  return xyzi().with({{"ring", uint16, column("ring")}, {"time", float32, column("time")}});
 }
 
 /// Fields of the ROS driver of Hesai, 26 bytes. Source: HesaiTechnology/HesaiLidar_ROS_2.0: timestamp by the clock [s].
 [[nodiscard]] inline PointLayout hesai() {
-  return xyzi().with(
-      {{"ring", FieldType::uint16, PointQuantity::ring}, {"timestamp", FieldType::float64, PointQuantity::clock}});
+  return xyzi().with({{"ring", uint16, column("ring")}, {"timestamp", float64, column("clock")}});
 }
 
 /// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns].
 [[nodiscard]] inline PointLayout livox() {
-  return xyzi().with({{"tag", FieldType::uint8, PointQuantity::none},
-                      {"line", FieldType::uint8, PointQuantity::ring},
-                      {"timestamp", FieldType::float64, PointQuantity::clock, 1e9}});
+  return xyzi().with({{"tag", uint8}, {"line", uint8, column("ring")}, {"timestamp", float64, column("clock"), 1e9}});
 }
 
 /// Fields of the ROS driver of Ouster, 48 bytes. Source: ouster-lidar/ouster-ros, its default point type: t since the
 /// scan's start [ns], intensity in photons, range [mm], all in the places that a C++ structure aligned to 16 bytes has.
 [[nodiscard]] inline PointLayout ouster() {
-  return {{{"x", FieldType::float32, PointQuantity::x, 1, 0},
-           {"y", FieldType::float32, PointQuantity::y, 1, 4},
-           {"z", FieldType::float32, PointQuantity::z, 1, 8},
-           {"intensity", FieldType::float32, PointQuantity::photons, 1, 16},
-           {"t", FieldType::uint32, PointQuantity::time, 1e9, 20},
-           {"reflectivity", FieldType::uint16, PointQuantity::reflectivity, 1, 24},
-           {"ring", FieldType::uint16, PointQuantity::ring, 1, 26},
-           {"ambient", FieldType::uint16, PointQuantity::none, 1, 28},
-           {"range", FieldType::uint32, PointQuantity::range, 1e3, 32}},
+  return {{{"x", float32, column("x"), 1, 0},
+           {"y", float32, column("y"), 1, 4},
+           {"z", float32, column("z"), 1, 8},
+           {"intensity", float32, column("photons"), 1, 16},
+           {"t", uint32, column("time"), 1e9, 20},
+           {"reflectivity", uint16, column("reflectivity"), 1, 24},
+           {"ring", uint16, column("ring"), 1, 26},
+           {"ambient", uint16, &absent_column, 1, 28},
+           {"range", uint32, column("range"), 1e3, 32}},
           48};
 }
 
@@ -179,57 +138,70 @@ namespace layouts {
 /// since the scan's start [ns]; return types are left out.
 [[nodiscard]] inline PointLayout autoware() {
   return PointLayout::packed(xyz_float())
-      .with({{"intensity", FieldType::uint8, PointQuantity::reflectivity},
-             {"return_type", FieldType::uint8, PointQuantity::none},
-             {"channel", FieldType::uint16, PointQuantity::ring},
-             {"azimuth", FieldType::float32, PointQuantity::azimuth},
-             {"elevation", FieldType::float32, PointQuantity::elevation},
-             {"distance", FieldType::float32, PointQuantity::range},
-             {"time_stamp", FieldType::uint32, PointQuantity::time, 1e9}});
+      .with({{"intensity", uint8, column("reflectivity")},
+             {"return_type", uint8},
+             {"channel", uint16, column("ring")},
+             {"azimuth", float32, column("azimuth")},
+             {"elevation", float32, column("elevation")},
+             {"distance", float32, column("range")},
+             {"time_stamp", uint32, column("time"), 1e9}});
+}
+
+/// Columns as the table has them, to append to a layout: `columns({column("pulse"), column("leg")})`.
+[[nodiscard]] inline std::vector<PointField> columns(std::initializer_list<const PointColumn*> all) {
+  std::vector<PointField> fields;
+  for (const PointColumn* each : all) fields.push_back({std::string(each->name), each->type, each});
+  return fields;
+}
+/// As above, of consecutive rows of the table, such as all `point_columns`.
+[[nodiscard]] inline std::vector<PointField> columns(std::span<const PointColumn> all) {
+  std::vector<PointField> fields;
+  for (const PointColumn& each : all) fields.push_back({std::string(each.name), each.type, &each});
+  return fields;
+}
+
+/// Columns as the table has them, by their names, to append to a layout; other names are those of `attributes`.
+/// @throws SettingError for a name that neither a column nor an attribute has
+[[nodiscard]] inline std::vector<PointField> columns(std::span<const std::string> names,
+                                                     std::span<const std::string> attributes = {}) {
+  std::vector<PointField> fields;
+  for (const std::string& name : names) {
+    const bool is_attribute = std::ranges::find(attributes, name) != attributes.end();
+    const PointColumn& of_name = is_attribute ? attribute_column : find_column(name);
+    fields.push_back({name, of_name.type, &of_name});
+  }
+  return fields;
 }
 
 /// Labels of a point, to append to another layout: `layouts::velodyne().with(layouts::labels())`. Part, material,
 /// normal and velocity need `PointSettings::surfaces`.
 [[nodiscard]] inline std::vector<PointField> labels() {
-  return {{"classification", FieldType::uint16, PointQuantity::classification},
-          {"object", FieldType::uint32, PointQuantity::object},
-          {"part", FieldType::uint32, PointQuantity::part},
-          {"material", FieldType::uint16, PointQuantity::material},
-          {"normal_x", FieldType::float32, PointQuantity::normal_x},
-          {"normal_y", FieldType::float32, PointQuantity::normal_y},
-          {"normal_z", FieldType::float32, PointQuantity::normal_z},
-          {"velocity_x", FieldType::float32, PointQuantity::velocity_x},
-          {"velocity_y", FieldType::float32, PointQuantity::velocity_y},
-          {"velocity_z", FieldType::float32, PointQuantity::velocity_z}};
+  return columns({column("classification"), column("object"), column("part"), column("material"), column("normal_x"),
+                  column("normal_y"), column("normal_z"), column("velocity_x"), column("velocity_y"),
+                  column("velocity_z")});
 }
 
 /// Red, green and blue of a point in 8 bits each, by the names that readers of PLY expect, to append to another layout.
 /// Colours need `PointSettings::colours`. 0 if unknown, which is black.
 [[nodiscard]] inline std::vector<PointField> colours() {
-  return {{"red", FieldType::uint8, PointQuantity::red, 255},
-          {"green", FieldType::uint8, PointQuantity::green, 255},
-          {"blue", FieldType::uint8, PointQuantity::blue, 255}};
+  return {{"red", uint8, column("red"), 1 / 257.0},
+          {"green", uint8, column("green"), 1 / 257.0},
+          {"blue", uint8, column("blue"), 1 / 257.0}};
 }
 
 /// Red, green, blue and near infrared of a point in 16 bits each, as LAS has them.
 [[nodiscard]] inline std::vector<PointField> deep_colours() {
-  return {{"red", FieldType::uint16, PointQuantity::red, 65535},
-          {"green", FieldType::uint16, PointQuantity::green, 65535},
-          {"blue", FieldType::uint16, PointQuantity::blue, 65535},
-          {"near_infrared", FieldType::uint16, PointQuantity::near_infrared, 65535}};
+  return columns({column("red"), column("green"), column("blue"), column("near_infrared")});
 }
 
 /// Red, green and blue of a point in one field, as PCL and the viewers of ROS have them.
 /// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
-[[nodiscard]] inline std::vector<PointField> packed_colour() {
-  return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}};
-}
+[[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", float32, column("rgb_bits")}}; }
 
 /// Attributes of a point's object, to append to a layout: `ObjectAttributes::names`. NaN if it has none, 0 in integers.
-[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names,
-                                                        FieldType type = FieldType::float64) {
+[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, NumberType type = float64) {
   std::vector<PointField> fields;
-  for (const std::string& name : names) fields.push_back({name, type, PointQuantity::attribute});
+  for (const std::string& name : names) fields.push_back({name, type, &attribute_column});
   return fields;
 }
 

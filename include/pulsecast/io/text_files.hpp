@@ -3,18 +3,18 @@
 #ifndef PULSECAST_IO_TEXT_FILES_HPP
 #define PULSECAST_IO_TEXT_FILES_HPP
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/packed_points.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/point_colour.hpp>
 
 /// Text files of points, pulses, subrays and waveforms.
 namespace PULSECAST_NAMESPACE::io {
@@ -28,8 +28,8 @@ struct TextFileSettings {
 
 /// Further columns of a text file of points, after the standard ones.
 struct PointTextColumns {
-  PointColours colours{};         ///< colours of echoes, see `colours_of`; empty: no columns of colours
-  ObjectAttributes attributes{};  ///< attributes of objects, a column each
+  std::vector<PointField> columns{};  ///< columns in order, see `layouts::columns`
+  PointSettings points{};             ///< their values; the start time is that of the file
 };
 
 /// Writes points as text, one a line, in these columns, separated by blanks, without a header line:
@@ -39,17 +39,16 @@ struct PointTextColumns {
 /// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals;
 /// gpsTime [s] has 9. The others are integers: return number, returns of the pulse, index of the pulse, object, class.
 /// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated
-/// here. Further columns follow on request: red, green and blue, from 0 to 255, nan if unknown; and the attributes of
-/// the point's object in order of their names, in the shortest form that reads back the same, nan if it has none. Only
+/// here. Further columns follow on request, in the shortest form that reads back the same, nan if unknown. Only
 /// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(std::move(more)), text_(OutputFile(std::move(path))) {}
+      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(OutputFile(std::move(path))) {}
   /// Writes to an open file.
   explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(std::move(more)), text_(std::move(file)) {}
+      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
@@ -60,24 +59,35 @@ class XyzWriter {
   void close() { text_.close(); }
 
  private:
+  [[nodiscard]] static std::optional<PointEncoder> encoder(const TextFileSettings& settings, PointTextColumns more) {
+    if (more.columns.empty()) return std::nullopt;
+    more.points.start_time = settings.start_time;
+    return PointEncoder(PointLayout::packed(more.columns), std::move(more.points));
+  }
+
   void write(const EchoBatch& batch, const Shot& shot, const Echo& echo) {
     constexpr double nano = 1e9;  // per unit
     text_.vector("the position of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
     text_.reals(9, settings_.start_time + shot.tick.seconds());
-    if (more_.colours) write_colour(more_.colours(batch, shot, echo));
-    for (const double value : more_.attributes.of(echo.object)) text_.shortest(value);
+    if (more_) more_->see(batch, shot, echo, [&](const PointView& view) { write_more(view); });
     text_.end_row();
   }
 
-  void write_colour(const std::optional<PointColour>& colour) {
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    for (const auto channel : {&PointColour::red, &PointColour::green, &PointColour::blue})
-      text_.reals(0, colour ? 255 * ((*colour).*channel / 65535.0) : unknown);
+  void write_more(const PointView& view) {
+    more_->store(view, record_.data());
+    for (std::size_t k = 0; k < more_->layout().fields.size(); ++k) {
+      const PointField& field = more_->layout().fields[k];
+      if (std::isnan(more_->value(k, view)))
+        text_.word("nan");
+      else
+        detail::add_number(text_.row(), field.type, record_.data() + field.offset);
+    }
   }
 
   TextFileSettings settings_;
-  PointTextColumns more_;
+  std::optional<PointEncoder> more_;
+  std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);  // of the further columns
   TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);

@@ -16,13 +16,14 @@ namespace PULSECAST_NAMESPACE::mpi {
 
 /// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once,
 /// as do `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
-template <class Writer, class Settings>
+template <class Writer, class... Settings>
 class MpiRows final : public MpiOutput {
  public:
   /// Throws a `FileError` if the file cannot be made.
-  MpiRows(MpiGroup& group, std::filesystem::path path, Settings settings)
+  MpiRows(MpiGroup& group, std::filesystem::path path, Settings... settings)
       : MpiOutput(group),
-        make_([settings = std::move(settings)](io::OutputFile rows) { return Writer(std::move(rows), settings); }),
+        make_(
+            [... settings = std::move(settings)](io::OutputFile rows) { return Writer(std::move(rows), settings...); }),
         file_(std::move(path)) {
     if (group.first()) whole_.emplace(file_.path());
   }

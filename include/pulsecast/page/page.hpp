@@ -19,10 +19,10 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/page/detail/columns.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
-#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/version.hpp>
 
 #if !__has_include(<pulsecast/page/detail/assets.hpp>)
@@ -68,17 +68,18 @@ struct PageSurvey {
 
 /// Settings of a page.
 struct PageSettings {
-  std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; larger clouds are thinned
-  double position_step = 0;            ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
-  int effort = 6;                      ///< compression level, 1 to 9
-  PointColours colours{};              ///< colours of points, see `colours_of`; empty: without
+  std::size_t points_max = 1'000'000;     ///< from 2 to 2^27; larger clouds are thinned
+  double position_step = 0;               ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
+  int effort = 6;                         ///< compression level, 1 to 9
+  std::vector<io::PointField> columns{};  ///< columns beyond the usual ones, see `io::layouts::columns`
+  io::PointSettings points{};  ///< values of columns; the page has colours if these have, and is in the world
 
   void validate() const {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
-    columns().validate();
+    encoding().validate();
   }
   /// Settings of the encoding of points.
-  [[nodiscard]] PageColumnSettings columns() const { return {.position_step = position_step, .effort = effort}; }
+  [[nodiscard]] PageColumnSettings encoding() const { return {.position_step = position_step, .effort = effort}; }
 };
 
 namespace detail {
@@ -154,7 +155,7 @@ class PageWriter {
       : settings_(validated(settings)),
         survey_(std::move(survey)),
         file_(std::move(path)),
-        sample_(settings.points_max, settings.colours) {}
+        sample_(settings.points_max, settings.points, settings.columns) {}
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
@@ -163,7 +164,7 @@ class PageWriter {
   [[nodiscard]] PageSurvey& survey() noexcept { return survey_; }
 
   void close() {
-    file_.write(page_html(survey_, sample_.seen(), page_columns(sample_.points(), settings_.columns())));
+    file_.write(page_html(survey_, sample_.seen(), page_columns(sample_.points(), settings_.encoding())));
     file_.commit();
   }
 

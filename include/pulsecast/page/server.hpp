@@ -44,7 +44,7 @@ class PageServer {
       : settings_(validated(settings)),
         token_(secret()),
         survey_(std::move(survey)),
-        sample_(settings.points_max, settings.colours) {
+        sample_(settings.points_max, settings.points, settings.columns) {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
@@ -79,14 +79,14 @@ class PageServer {
   /// URL of the page.
   [[nodiscard]] std::string address() const { return "http://127.0.0.1" + host_ + '/' + token_ + '/'; }
 
-  /// Removes all points and starts another run, whose points have the colours of the settings.
-  void begin(PageSurvey survey) { begin(std::move(survey), settings_.colours); }
-  /// As above, with other colours of points, such as those of another scene.
-  void begin(PageSurvey survey, PointColours colours) {
+  /// Removes all points and starts another run.
+  void begin(PageSurvey survey) { begin(std::move(survey), settings_); }
+  /// As above, with other settings, such as the values of columns of another scene. @throws SettingError
+  void begin(PageSurvey survey, const PageSettings& settings) {
     const std::lock_guard lock(mutex_);
-    settings_.colours = std::move(colours);
+    settings_ = validated(settings);
     survey_ = std::move(survey);
-    sample_ = PageSample(settings_.points_max, settings_.colours);
+    sample_ = PageSample(settings_.points_max, settings_.points, settings_.columns);
     progress_ = {};
     state_ = "running";
     ++run_;
@@ -160,19 +160,20 @@ class PageServer {
   /// and columns.
   [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
     page::detail::JsonWriter json;
-    std::vector<PagePoint> fresh;
+    PagePoints fresh;
     {
       const std::lock_guard lock(mutex_);
       asked_ = Clock::now();
       const bool other = run != run_;
-      const std::span<const PagePoint> all = sample_.points();
+      const std::vector<PagePoint>& all = sample_.points().points;
       const auto later = [](std::uint64_t pulse, const PagePoint& p) { return pulse < p.pulse; };
       const auto first = other || !after ? all.begin() : std::upper_bound(all.begin(), all.end(), *after, later);
       auto end =
           first + static_cast<std::ptrdiff_t>(std::min(max_at_once, static_cast<std::size_t>(all.end() - first)));
       if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
-      fresh.assign(first, end);
-      const std::string last = !fresh.empty()    ? std::to_string(fresh.back().pulse)
+      fresh = sample_.points().part(static_cast<std::size_t>(first - all.begin()),
+                                    static_cast<std::size_t>(end - all.begin()));
+      const std::string last = first != end      ? std::to_string(fresh.points.back().pulse)
                                : other || !after ? ""
                                                  : std::to_string(*after);
       json.begin_object().member("run", run_).member("state", state_);

@@ -7,18 +7,22 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <future>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
-#include <pulsecast/python/detail/point_columns.hpp>
-#include <pulsecast/python/detail/point_rows.hpp>
+#include <pulsecast/python/detail/point_arrays.hpp>
+#include <pulsecast/python/detail/pulse_rows.hpp>
 #include <pulsecast/run.hpp>
 
 /// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs
@@ -87,8 +91,9 @@ struct RunRequest {
   PulseIndex every_pulses = 0;                   ///< pulses per batch of the callback; 0: no limit
   double every_seconds = 0;                      ///< time per batch of the callback; 0: no limit [s]
   bool pulses = true;                            ///< true to keep pulses and waveforms
-  bool columns = false;                          ///< true to keep points by column
-  bool colours = false;                          ///< true to keep colours of points
+  /// True to keep points by column, or the names of the columns that are kept
+  std::variant<bool, std::vector<std::string>> columns = false;
+  bool colours = false;  ///< true to keep colours of points
 
   void validate() const {
     require_not_negative("run every_seconds", every_seconds, "s");
@@ -99,23 +104,40 @@ struct RunRequest {
   }
 };
 
-/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, colours only
-/// on request. Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the
-/// result. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError` for colours of
-/// a survey without any.
-template <class Run>
-[[nodiscard]] Batch run(const RunRequest& request, PointExtras extras, const Run& run) {
-  request.validate();
-  if (request.colours && !extras.colours)
+/// Data that a run keeps. Throws a `SettingError` for a name that no column has, or a `ValueError` for columns that
+/// need colours or surfaces of a survey without any.
+[[nodiscard]] inline KeptData kept_by(const RunRequest& request, io::PointSettings points) {
+  const std::vector<std::string>& attributes = points.attributes.names();
+  const auto* const names = std::get_if<std::vector<std::string>>(&request.columns);
+  std::vector<io::PointField> usual = names ? io::layouts::columns(*names, attributes)
+                                            : io::layouts::columns(io::usual_point_columns),
+                              more;
+  if (request.colours) more = io::layouts::deep_colours();
+  if (!names) std::ranges::copy(io::layouts::attributes(attributes), std::back_inserter(more));
+  const bool rows = !names && !std::get<bool>(request.columns);
+  KeptData kept{.pulses = request.pulses, .points = std::move(points)};
+  if (rows) kept.rows = row_layout();
+  kept.columns = rows ? io::PointLayout::packed(more) : io::PointLayout::packed(usual).with(more);
+  if (kept.columns.needs(io::PointNeed::colour) && !kept.points.colours)
     throw pybind11::value_error("run colours: the points of this survey have none");
-  if (!request.colours) extras.colours = {};
+  if (kept.columns.needs(io::PointNeed::surface) && !kept.points.surfaces)
+    throw pybind11::value_error("run columns: the points of this survey have no surfaces");
+  return kept;
+}
+
+/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points. Rethrows Python
+/// exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the result. Throws a `TypeError`
+/// for a callback that is not callable, and as `kept_by`.
+template <class Run>
+[[nodiscard]] Batch run(const RunRequest& request, io::PointSettings points, const Run& run) {
+  request.validate();
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) {
     return std::chrono::duration<double>(Clock::now() - from).count();
   };
   const bool has_callback = !request.callback.is_none(), reports = !request.progress.is_none();
   std::stop_source stopping;
-  RowSink rows({request.pulses, request.columns, std::move(extras)});
+  RowSink rows(kept_by(request, std::move(points)));
   auto delivered = Clock::now(), reported = delivered;
 
   InterruptWatch watch(stopping);
@@ -160,7 +182,7 @@ inline void bind_common(pybind11::module_& m) {
 }
 
 /// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink, `extras(self)` the
-/// `PointExtras` of its points.
+/// `io::PointSettings` of its points.
 template <class Class, class Runner, class Extras>
 void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
   namespace py = pybind11;
@@ -169,21 +191,28 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
       "run",
       [runner, extras](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end,
                        PulseIndex stride, py::object callback, PulseIndex every_pulses, double every_seconds,
-                       py::object progress, bool pulses, bool columns, bool colours) {
+                       py::object progress, bool pulses, std::variant<bool, std::vector<std::string>> columns,
+                       bool colours) {
         return python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses,
-                            every_seconds, pulses, columns, colours},
+                            every_seconds, pulses, std::move(columns), colours},
                            extras(self), runner(self));
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1,
       py::arg("callback") = py::none(), py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0,
       py::arg("progress") = py::none(), py::arg("pulses") = true, py::arg("columns") = false,
       py::arg("colours") = false,
-      "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
-      "and returns a Batch. With a callback, batches go to callback(batch) every `every_pulses` pulses or "
-      "`every_seconds` seconds, and at the end, and are not kept. progress(done, total, echoes, seconds) is called "
-      "some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. columns=True "
-      "keeps points by column, as Arrow takes them, in place of rows. colours=True keeps their colours, by one more "
-      "ray each. Raises Interrupted on Ctrl-C; its `result` is complete up to there.");
+      ("Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
+       "and returns a Batch. With a callback, batches go to callback(batch) every `every_pulses` pulses or "
+       "`every_seconds` seconds, and at the end, and are not kept. progress(done, total, echoes, seconds) is called "
+       "some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. columns=True "
+       "keeps points by column, as Arrow takes them, in place of rows; a list of names keeps these alone: of "
+       "attributes, "
+       "or of " +
+       described(io::point_columns) +
+       ". colours=True keeps their colours, by one more ray each. Raises Interrupted on Ctrl-C; its `result` is "
+       "complete "
+       "up to there.")
+          .c_str());
 }
 
 }  // namespace gnu::visibility("hidden")]]python
@@ -193,7 +222,7 @@ namespace PULSECAST_NAMESPACE::python {
 
 /// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by
 /// `.def(pybind11::init(...))`; a survey that refers to a scene held by Python needs `pybind11::keep_alive`.
-/// `extras(survey)` gives the `PointExtras` of its points, such as `extras_of(scene)`.
+/// `extras(survey)` gives the `io::PointSettings` of its points, such as `io::points_of(scene)`.
 template <PulseSurvey Survey, class Extras>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name,
                                                               const Extras& extras) {
@@ -211,7 +240,7 @@ pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_&
 /// As above, of points without colours and attributes.
 template <PulseSurvey Survey>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
-  return bind_survey<Survey>(m, name, [](const Survey&) { return PointExtras{}; });
+  return bind_survey<Survey>(m, name, [](const Survey&) { return io::PointSettings{}; });
 }
 
 }  // namespace PULSECAST_NAMESPACE::python

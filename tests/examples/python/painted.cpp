@@ -61,10 +61,10 @@ using MisnamedSweep = decltype(over(floor(), SunflowerFootprint{1}, 1));
 PYBIND11_MODULE(painted, m) {
   using namespace pybind11::literals;
   python::bind_survey<Sweep>(m, "Sweep", [](const Sweep&) {
-    return python::extras_of(floor());
+    return io::points_of(floor());
   }).def(pybind11::init([](PulseIndex pulses) { return over(floor(), SingleRay{}, pulses); }), "pulses"_a);
   python::bind_survey<MisnamedSweep>(m, "MisnamedSweep",
-                                     [](const MisnamedSweep&) { return python::extras_of(misnamed_floor()); })
+                                     [](const MisnamedSweep&) { return io::points_of(misnamed_floor()); })
       .def(pybind11::init([](PulseIndex pulses) { return over(misnamed_floor(), SunflowerFootprint{1}, pulses); }),
            "pulses"_a);
 }

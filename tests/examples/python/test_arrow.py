@@ -116,6 +116,25 @@ def test_columns_are_those_of_the_rows_bit_for_bit():
     assert repr(batch) == repr(rows) == f"<Batch of {len(rows.points)} points, 5000 pulses, 0 samples>"
 
 
+def test_columns_of_given_names_are_kept_alone_also_those_that_need_surfaces():
+    rows = run(columns=False, colours=True)
+    batch = run(columns=["normal_z", "species", "range", "red", "part", "velocity_x", "clock"])
+    assert list(batch.columns) == ["normal_z", "species", "range", "red", "part", "velocity_x", "clock"]
+    columns = batch.columns
+    assert np.abs(columns["normal_z"] - 1).max() < 1e-6 and (columns["velocity_x"] == 0).all()
+    assert (columns["part"] == np.where(rows.columns["object"] == 1, 0, 1)).all()
+    for name in ("species", "range", "red"):
+        assert columns[name].tobytes() == rows.columns[name].tobytes(), name
+    assert (columns["clock"] == rows.points["time"]).all()
+    stream = Stream(batch.__arrow_c_stream__())
+    schema = stream.schema()
+    assert [schema.children[k].contents.format for k in range(schema.n_children)] == [b"f", b"g", b"g", b"S", b"I", b"f", b"g"]
+    release(schema)
+    stream.release()
+    with pytest.raises(SettingError, match="column 'nrmal_z' is not known; did you mean 'normal_z'"):
+        run(columns=["nrmal_z"])
+
+
 def test_points_by_column_are_no_rows():
     with pytest.raises(AttributeError, match="columns"):
         run().points

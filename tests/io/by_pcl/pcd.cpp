@@ -53,9 +53,7 @@ std::size_t differences(const pcl::PCLPointCloud2& cloud, const PointBuffer& poi
 /// Labels without part and material, which are infinite as long as surfaces are unknown, and NaN for the velocity of
 /// most.
 PointLayout labelled() {
-  return layouts::velodyne()
-      .with(layouts::labels())
-      .with({{"radial", FieldType::float32, PointQuantity::radial_velocity}});
+  return layouts::velodyne().with(layouts::labels()).with({{"radial", NumberType::float32, column("radial_velocity")}});
 }
 
 TEST_CASE("PCL reads the same numbers from all encodings, with labels and NaN") {

@@ -28,10 +28,10 @@ using support::TemporaryFolder;
 TEST_CASE("PCL reads the same numbers from PLY, of all types") {
   const std::vector<PointLayout> all{layouts::map(), layouts::livox(), layouts::velodyne().with(layouts::labels()),
                                      PointLayout::packed(layouts::xyz_float())
-                                         .with({{"a", FieldType::int8, PointQuantity::ring, -1},
-                                                {"b", FieldType::int16, PointQuantity::x, 7},
-                                                {"c", FieldType::int32, PointQuantity::y, 1e3},
-                                                {"d", FieldType::float32, PointQuantity::radial_velocity}})};
+                                         .with({{"a", NumberType::int8, column("ring"), -1},
+                                                {"b", NumberType::int16, column("x"), 7},
+                                                {"c", NumberType::int32, column("y"), 1e3},
+                                                {"d", NumberType::float32, column("radial_velocity")}})};
   for (const PointLayout& layout : all)
     for (std::uint64_t seed = 1; seed < 5; ++seed) {
       CAPTURE(layout.fields.back().name);

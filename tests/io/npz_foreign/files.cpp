@@ -17,9 +17,9 @@ int main(int count, char** words) {
   if (count != 2) return 2;
   const std::filesystem::path folder = words[1];
   PointLayout every_type = layouts::map();
-  for (const FieldType type : {FieldType::int8, FieldType::int16, FieldType::int32})
-    every_type = every_type.with({{"minus_" + std::to_string(size_of(type)), type, PointQuantity::range, -1}});
-  every_type = every_type.with({{"velocity", FieldType::float64, PointQuantity::radial_velocity}});
+  for (const NumberType type : {NumberType::int8, NumberType::int16, NumberType::int32})
+    every_type = every_type.with({{"minus_" + std::to_string(size_of(type)), type, column("range"), -1}});
+  every_type = every_type.with({{"velocity", NumberType::float64, column("radial_velocity")}});
   for (const std::size_t pulses : {0U, 1U, 30'000U}) {
     const std::string name = std::to_string(pulses);
     PointBuffer points(every_type);

@@ -103,8 +103,9 @@ async function checkFile() {
   const { length } = truth, read = JSON.parse(await page(
     `JSON.stringify(${JSON.stringify(names)}.map(name => [...pulsecast.points.arrays[name].subarray(0, ${length})]))`))
   truth.forEach((point, i) => names.forEach((name, k) => {
-    if (point[k] === null) expect(read[k][i] === null, `${name} of point ${i} is unknown`)  // JSON writes NaN as null
-    else near(read[k][i], point[k], errors[k] ?? 0.0102 * point[k], `${name} of point ${i}`)
+    const value = point[name]
+    if (value === null) expect(read[k][i] === null, `${name} of point ${i} is unknown`)  // JSON writes NaN as null
+    else near(read[k][i], value, errors[k] ?? 0.0102 * value, `${name} of point ${i}`)
   }))
 
   // no word of the survey became more than a word
@@ -144,7 +145,7 @@ async function checkFile() {
   await page(`pulsecast.choose('colour'), pulsecast.view.shading = false, pulsecast.view.redraw()`)
   await rest()
   expect(await page(`document.getElementById('kinds').hidden && document.getElementById('amounts').hidden`), 'colours have no list and no histogram')
-  const { share: own, colours } = await seen([...new Set(truth.map(p => p[18]))])
+  const { share: own, colours } = await seen([...new Set(truth.map(p => p.colour))])
   expect(own > 0.8 * all.share && colours > 100, `points have their own colours: ${colours} on ${own} of the picture, of ${all.share}`)
   await page('pulsecast.view.shading = true')
   await page(`pulsecast.choose('object')`)
@@ -158,7 +159,7 @@ async function checkFile() {
   // the histogram counts what is there
   await page(`pulsecast.choose('class')`)
   const kinds = await page('pulsecast.colouring.kinds')
-  for (const [value, count] of kinds) expect(count === truth.filter(p => p[11] === value).length, `class ${value} is counted`)
+  for (const [value, count] of kinds) expect(count === truth.filter(p => p.class === value).length, `class ${value} is counted`)
   await page(`pulsecast.choose('z')`)
   const [low, high] = await page('pulsecast.colouring.ends'), bins = await page('[...pulsecast.colouring.bins]')
   const inside = read[2].filter(z => z >= low && z < high).length
@@ -187,14 +188,14 @@ async function checkFile() {
   near(chosen, target.i, 0, 'the point that is clicked')
   const told = await page(`[...document.querySelectorAll('#point dt')].map(e => [e.textContent, e.nextSibling.textContent])`)
   const value = Object.fromEntries(told), point = truth[chosen]
-  near(parseFloat(value.East), point[0], 0.00051, 'East'), near(parseFloat(value.Height), point[2], 0.00051, 'Height')
-  near(parseFloat(value.Range), point[16], 0.0015, 'Range'), expect(/ [µn]W$/.test(value.Intensity), 'the unit of intensity')
-  near(parseFloat(value.Intensity) * (value.Intensity.endsWith('µW') ? 1e-6 : 1e-9), point[5], 0.016 * point[5], 'Intensity')
-  expect(value.Return === `${point[13]} of ${point[14]}`, 'the return is told')
-  expect(value.Pulse.replace(/\D/g, '') === String(point[4]), 'the pulse is told')
-  expect(value.Class.startsWith(`${point[11]} `) && told.length === 18, `all attributes are told: ${JSON.stringify(value)}`)
+  near(parseFloat(value.East), point.x, 0.00051, 'East'), near(parseFloat(value.Height), point.z, 0.00051, 'Height')
+  near(parseFloat(value.Range), point.range, 0.0015, 'Range'), expect(/ [µn]W$/.test(value.Intensity), 'the unit of intensity')
+  near(parseFloat(value.Intensity) * (value.Intensity.endsWith('µW') ? 1e-6 : 1e-9), point.amplitude, 0.016 * point.amplitude, 'Intensity')
+  expect(value.Return === `${point.return_number} of ${point.returns}`, 'the return is told')
+  expect(value.Pulse.replace(/\D/g, '') === String(point.pulse), 'the pulse is told')
+  expect(value.Class.startsWith(`${point.class} `) && told.length === 18, `all attributes are told: ${JSON.stringify(value)}`)
 
-  expect(value.Colour === (point[18] === null ? '–' : '#' + point[18].toString(16).padStart(6, '0')), `the colour is told: ${value.Colour}`)
+  expect(value.Colour === (point.colour === null ? '–' : '#' + point.colour.toString(16).padStart(6, '0')), `the colour is told: ${value.Colour}`)
 
   // hands and keys move the view
   const azimuth = await page('pulsecast.view.camera.azimuth'), distance = await page('pulsecast.view.camera.distance')

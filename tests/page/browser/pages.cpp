@@ -81,20 +81,21 @@ std::optional<PointColour> colour_of_shot(const EchoBatch&, const Shot& shot, co
                      .blue = static_cast<std::uint16_t>(257 * echo.number)};
 }
 
-void write_truth(const std::string& path, std::span<const page::PagePoint> points) {
+void write_truth(const std::string& path, const page::PagePoints& all) {
   std::ofstream out(path);
   out.precision(17);
   out << '[';
-  for (const page::PagePoint& p : points) {
-    if (&p != points.data()) out << ",\n";
-    out << '[' << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.time << ',' << p.pulse << ','
-        << p.amplitude << ',' << p.reflectance << ',' << p.width * 1e9f << ',' << p.incidence * 180 / pi << ','
-        << p.scan_angle * 180 / pi << ',' << p.object << ',' << p.classification << ',' << p.leg << ',' << int{p.number}
-        << ',' << int{p.returns} << ',' << int{p.channel} << ','
-        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind)
-        << ',';
-    const auto& [red, green, blue] = p.colour;
-    out << (p.coloured ? std::to_string(65536 * red + 256 * green + blue) : "null") << ']';
+  const auto write = [&](double value) { std::isnan(value) ? out << "null" : out << value; };
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const page::PagePoint& p = all.points[i];
+    out << (i == 0 ? "" : ",\n") << "{\"x\":" << p.position.x << ",\"y\":" << p.position.y << ",\"z\":" << p.position.z
+        << ",\"time\":" << p.time << ",\"pulse\":" << p.pulse
+        << ",\"range\":" << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]);
+    for (std::size_t k = 0; k < all.columns.size(); ++k) {
+      out << ",\"" << all.columns[k].field.name << "\":";
+      write(all.value(i, k));
+    }
+    out << '}';
   }
   out << "]\n";
 }
@@ -129,8 +130,9 @@ int main(int argc, char** argv) {
     return 0;
   }
   const Shots shots(0, 60'000, 60'000);
-  page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 70'000, .colours = colour_of_shot});
-  page::PageSample sample(70'000, colour_of_shot);
+  page::PageWriter writer(folder + "/page.html", survey(),
+                          {.points_max = 70'000, .points = {.colours = colour_of_shot}});
+  page::PageSample sample(70'000, {.colours = colour_of_shot});
   writer(shots.batch());
   sample(shots.batch());
   writer.close();

@@ -3,11 +3,13 @@
 #include <pulsecast/page/detail/sample.hpp>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -40,9 +42,19 @@ void give(PageSample& sample, PulseIndex n, PulseIndex a_batch) {
   }
 }
 
+/// Value of a point in a column of the page, in its unit.
+double at(const PagePoints& all, std::size_t point, const std::string& name) {
+  for (std::size_t k = 0; k < all.columns.size(); ++k)
+    if (all.columns[k].field.name == name) return all.value(point, k);
+  FAIL("there is no column " << name);
+  return 0;
+}
+
 std::vector<std::pair<PulseIndex, int>> names(PageSample& sample) {
   std::vector<std::pair<PulseIndex, int>> all;
-  for (const PagePoint& p : sample.points()) all.emplace_back(p.pulse, p.number);
+  const PagePoints& kept = sample.points();
+  for (std::size_t i = 0; i < kept.points.size(); ++i)
+    all.emplace_back(kept.points[i].pulse, at(kept, i, "return_number"));
   return all;
 }
 
@@ -70,27 +82,23 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
   batch.shots = {&shot, 1};
   batch.echoes = echoes;
   sample(batch);
-  REQUIRE(sample.points().size() == 2);
-  const PagePoint& p = sample.points()[0];
+  const PagePoints& all = sample.points();
+  REQUIRE(all.points.size() == 2);
+  const PagePoint& p = all.points[0];
   CHECK(length(p.position - Vec3{1, 8, -5}) < 1e-12);
   CHECK(p.to_instrument[1] == -6.0f);
   CHECK(p.to_instrument[2] == 8.0f);
   CHECK(p.time == 5.25);
   CHECK(p.pulse == 7);
-  CHECK(p.amplitude == 1e-6f);
-  CHECK(p.reflectance == 0.5f);
-  CHECK(p.width == 2e-9f);
-  CHECK(std::abs(p.incidence - static_cast<float>(pi / 3)) < 1e-6f);
-  CHECK(p.scan_angle == 0.5f);
-  CHECK(p.object == 9);
-  CHECK(p.classification == 5);
-  CHECK(p.leg == 3);
-  CHECK(p.channel == 2);
-  CHECK(p.number == 1);
-  CHECK(p.returns == 2);
-  CHECK(p.kind == ReflectionKind::surface);
-  CHECK(sample.points()[1].number == 2);
-  CHECK(sample.points()[1].kind == ReflectionKind::water);
+  CHECK(at(all, 0, "amplitude") == static_cast<double>(1e-6f));
+  CHECK(at(all, 0, "reflectance") == 0.5);
+  CHECK(at(all, 0, "width") == static_cast<double>(2e-9f) * 1e9);
+  CHECK(at(all, 0, "incidence") == doctest::Approx(60));
+  CHECK(at(all, 0, "scan_angle") == doctest::Approx(90 / pi));
+  CHECK(
+      (at(all, 0, "object") == 9 && at(all, 0, "class") == 5 && at(all, 0, "leg") == 3 && at(all, 0, "channel") == 2));
+  CHECK((at(all, 0, "return_number") == 1 && at(all, 0, "returns") == 2 && at(all, 0, "kind") == 0));
+  CHECK((at(all, 1, "return_number") == 2 && at(all, 1, "kind") == 2));
   CHECK(sample.seen() == 2);
 }
 
@@ -101,20 +109,34 @@ TEST_CASE("points have the colours of their echoes, rounded to a byte, and keep 
     if (echo.number == 2) return std::nullopt;
     return PointColour{.red = static_cast<std::uint16_t>(257 * (shot.index % 256)), .green = 65535, .blue = 899};
   };
-  PageSample few(500, colours);
+  PageSample few(500, {.colours = colours});
   give(few, 9000, 100);
-  CHECK(few.points().size() == 500);
+  CHECK(few.points().points.size() == 500);
   CHECK(asked < few.seen());  // only of those that were kept for a moment
-  for (const PagePoint& p : few.points()) {
-    CHECK(p.coloured == (p.number != 2));
-    if (p.coloured)
-      CHECK(p.colour ==
-            std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(p.pulse % 256), 255, 3});  // 899 / 257 is 3.498
+  const PagePoints& all = few.points();
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const double colour = at(all, i, "colour");
+    const double expected = static_cast<double>(all.points[i].pulse % 256 << 16 | 255 << 8 | 3);  // 899 / 257 is 3.498
+    CHECK((at(all, i, "return_number") == 2 ? std::isnan(colour) : colour == expected));
   }
   PageSample without(500);
   give(without, 9000, 100);
   CHECK(names(few) == names(without));
-  CHECK(std::none_of(without.points().begin(), without.points().end(), [](const PagePoint& p) { return p.coloured; }));
+}
+
+TEST_CASE("further columns are kept with their points, but for those that a page has anyway") {
+  const std::vector<std::string> asked{"clock", "range", "leg", "azimuth", "pulse", "number_of_returns"};
+  PageSample sample(500, {.start_time = 1000}, io::layouts::columns(asked));
+  give(sample, 9000, 100);
+  const PagePoints& all = sample.points();
+  std::vector<std::string> further;
+  for (const PageColumn& each : all.columns)
+    if (each.further) further.push_back(each.field.name);
+  CHECK(further == std::vector<std::string>{"clock", "azimuth", "number_of_returns"});
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    CHECK(at(all, i, "clock") == doctest::Approx(1000 + all.points[i].time));
+    CHECK(at(all, i, "azimuth") == std::atan2(all.points[i].position.y, all.points[i].position.x));
+  }
 }
 
 TEST_CASE("of too many, those of the least keys are kept, however they came") {
@@ -170,7 +192,7 @@ TEST_CASE("points that are not finite are passed over, and sizes that cannot be 
   batch.shots = shots;
   batch.echoes = echoes;
   sample(batch);
-  CHECK(sample.points().empty());
+  CHECK(sample.points().points.empty());
   CHECK_THROWS_AS(PageSample(1), SettingError);
   CHECK_THROWS_AS(PageSample(std::size_t{1} << 30), SettingError);
 }

@@ -48,6 +48,17 @@ test('values have the unit of their attribute and the decimals of their step', (
   assert.deepEqual([brief('z', 123.456789), brief('incidence', 0.25), brief('amplitude', 1e-9)], ['123.5 m', '0.25°', '1 nW'])
 })
 
+test('a column beyond those of the page is told by its name and unit', () => {
+  const columns = { return_number: [1], returns: [2], object: [2], class: [6], leg: [0], amplitude: [1e-3], reflectance: [0.5], pulse: [12345],
+                    incidence: [10], scan_angle: [5], channel: [3], time: [7], velocity_x: [1.25], ring: [4] }
+  points.clear()
+  points.append({ ...blockOf([[0, 0, 0]], columns), steps: { x: 0.001, velocity_x: 0.01, ring: 1 }, units: { velocity_x: 'm/s', ring: '' } })
+  const told = Object.fromEntries(description(0))
+  assert.deepEqual([told.velocity_x, told.ring], ['1.25 m/s', '4'])
+  assert.equal(brief('velocity_x', 1.25), '1.25 m/s')
+  delete attributes.velocity_x, delete attributes.ring
+})
+
 test('a point is told with all its attributes, the width of its echo and the way of its light only where they are there', () => {
   const columns = { return_number: [1], returns: [2], object: [2], class: [6], leg: [0], amplitude: [1e-3], reflectance: [0.5], pulse: [12345],
                     incidence: [10], scan_angle: [5], channel: [3], time: [7] }

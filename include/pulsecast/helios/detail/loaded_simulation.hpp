@@ -268,10 +268,16 @@ class LoadedSimulation final : public Simulation {
     return out;
   }
 
-  [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(loaded_->scene->parts()); }
-  [[nodiscard]] PointColours colours() const override {
-    return [scene = loaded_->scene, colours = colours_of(*loaded_->scene)](
-               const EchoBatch& batch, const Shot& shot, const Echo& echo) { return colours(batch, shot, echo); };
+  [[nodiscard]] io::PointSettings points() const override {
+    io::PointSettings points = io::points_of(*loaded_->scene);
+    const auto kept = [&](const auto& of_scene) {
+      return [scene = loaded_->scene, of_scene](const EchoBatch& batch, const Shot& shot, const Echo& echo) {
+        return of_scene(batch, shot, echo);
+      };
+    };
+    points.surfaces = kept(points.surfaces);
+    points.colours = kept(points.colours);
+    return points;
   }
 
   [[nodiscard]] int repetitions() const override { return loaded_->builder.runs(); }

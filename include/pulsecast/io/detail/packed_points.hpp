@@ -4,19 +4,25 @@
 #define PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/point_records.hpp>
 
-/// Points as point files hold them: PCD, PLY, NPZ.
+/// Points as point files hold them: PCD, PLY, NPZ, text.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
@@ -55,22 +61,31 @@ class PackedPoints {
   /// Records of a buffer, valid until the next call. @throws SettingError for a buffer of other fields
   [[nodiscard]] std::span<const std::byte> of(const PointBuffer& points) {
     const std::vector<PointField>&from = points.layout().fields, &to = layout().fields;
+    const bool narrows = std::ranges::none_of(to, [](const PointField& f) { return f.type >= NumberType::int64; });
     for (std::size_t k = 0; k < std::max(from.size(), to.size()); ++k)
-      if (k >= from.size() || k >= to.size() || !same_number(from[k], to[k]))
+      if (k >= from.size() || k >= to.size() || !same_number(from[k], to[k], narrows))
         throw SettingError("PointBuffer::layout (index of a field)", static_cast<double>(k), "",
                            "of fields as those of the file");
-    if (points.layout().size == layout().size) return points.records();
+    if (points.layout().size == layout().size && std::ranges::equal(from, to, {}, &PointField::type, &PointField::type))
+      return points.records();
     records_.resize(points.size() * layout().size);
     for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t k = 0; k < to.size(); ++k)
-        std::memcpy(records_.data() + i * layout().size + to[k].offset,
-                    points.records().data() + i * points.layout().size + from[k].offset, size_of(to[k].type));
+      for (std::size_t k = 0; k < to.size(); ++k) {
+        std::byte* const at = records_.data() + i * layout().size + to[k].offset;
+        if (from[k].type == to[k].type)
+          std::memcpy(at, points.records().data() + i * points.layout().size + from[k].offset, size_of(to[k].type));
+        else
+          store_number<double>(points.number(i, from[k]), at);
+      }
     return records_;
   }
 
  private:
-  [[nodiscard]] static bool same_number(const PointField& a, const PointField& b) {
-    return a.name == b.name && a.type == b.type && a.quantity == b.quantity && a.scale == b.scale;
+  /// `narrows`: 64-bit integers of `a` become doubles.
+  [[nodiscard]] static bool same_number(const PointField& a, const PointField& b, bool narrows) {
+    const bool same_type =
+        a.type == b.type || (narrows && a.type >= NumberType::int64 && b.type == NumberType::float64);
+    return a.name == b.name && same_type && a.column == b.column && a.scale == b.scale;
   }
 
   PointEncoder encoder_;
@@ -100,6 +115,22 @@ class FieldColumns {
   std::vector<std::vector<std::byte>> columns_;
   PointLayout layout_;
 };
+
+/// Adds a number of a record to a row of text: in the shortest form that reads back the same; nan for NaN.
+inline void add_number(TextRow& row, NumberType type, const std::byte* from) {
+  visit_number_type(type, [&]<class Number>() {
+    Number number;
+    std::memcpy(&number, from, sizeof number);
+    if constexpr (std::is_integral_v<Number>) {
+      row.add(number);
+    } else if (std::isnan(number)) {
+      row.add(std::string_view("nan"));
+    } else {
+      std::array<char, 32> digits;
+      row.add(std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr));
+    }
+  });
+}
 
 /// Text of a count, and blanks up to the length of the longest: for headers that are written again with another count.
 struct CountText {

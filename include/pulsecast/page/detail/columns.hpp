@@ -38,9 +38,9 @@ struct PageColumnSettings {
 };
 
 /// Step of coordinates for an extent [m]: the least of 1, 2 and 5 times a power of ten with 2^17 steps across, at least
-/// 0.1 mm.
-[[nodiscard]] inline double page_step(double extent) noexcept {
-  for (double power = 1e-4; power < 1e300; power *= 10)
+/// `least`, by default 0.1 mm.
+[[nodiscard]] inline double page_step(double extent, double least = 1e-4) noexcept {
+  for (double power = least; power < 1e300; power *= 10)
     for (const double step : {power, 2 * power, 5 * power})
       if (extent <= step * 131'072) return step;
   return 1e300;
@@ -51,27 +51,29 @@ namespace detail {
 /// Codes of one attribute of all points (0: no value), with their description for the page.
 struct PageCodes {
   std::string name{};
-  std::string_view kind{};              ///< "linear", "logarithmic" or "listed"
-  double offset = 0, step = 0;          ///< for linear and logarithmic codes
-  std::vector<std::uint32_t> values{};  ///< for listed codes
-  std::optional<double> per_pulse{};    ///< term added, times the number of the pulse
-  bool differences = true;              ///< store differences, for attributes with similar neighbours
+  std::string_view kind{};                 ///< "linear", "logarithmic" or "listed"
+  double offset = 0, step = 0;             ///< for linear and logarithmic codes
+  std::vector<std::uint32_t> values{};     ///< for listed codes
+  std::optional<double> per_pulse{};       ///< term added, times the number of the pulse
+  bool differences = true;                 ///< store differences, for attributes with similar neighbours
+  std::optional<std::string_view> unit{};  ///< unit, of a column that the page does not know
   std::vector<std::uint64_t> codes{};
 };
 
 inline constexpr double max_page_code = 0x1p52;  // up to here, a double represents every integer
 
-/// Linear codes: 1 + the number of steps above the least value.
+/// Linear codes of `value(i)` for the first `count` numbers: 1 + the number of steps above `from`, or the least value.
 template <class Value>
-PageCodes linear_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
+PageCodes linear_codes(std::string name, std::size_t count, double step, const Value& value,
+                       std::optional<double> from = {}) {
   double least = std::numeric_limits<double>::infinity();
-  for (const PagePoint& p : points)
-    if (const double v = value(p); std::isfinite(v)) least = std::min(least, v);
-  const double offset = std::isfinite(least) ? std::floor(least / step) * step : 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const double v = value(i); std::isfinite(v)) least = std::min(least, v);
+  const double offset = from.value_or(std::isfinite(least) ? std::floor(least / step) * step : 0);
   PageCodes out{.name = std::move(name), .kind = "linear", .offset = offset, .step = step};
-  out.codes.reserve(points.size());
-  for (const PagePoint& p : points) {
-    const double code = 1 + std::round((static_cast<double>(value(p)) - offset) / step);
+  out.codes.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double code = 1 + std::round((value(i) - offset) / step);
     out.codes.push_back(std::isfinite(code) ? static_cast<std::uint64_t>(std::clamp(code, 1.0, max_page_code)) : 0);
   }
   return out;
@@ -80,44 +82,74 @@ PageCodes linear_codes(std::string name, std::span<const PagePoint> points, doub
 /// Logarithmic codes: 1 + the number of steps of the logarithm above the least value. Values not above zero have code
 /// 0.
 template <class Value>
-PageCodes logarithmic_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
+PageCodes logarithmic_codes(std::string name, std::size_t count, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
   const auto sound = [](double v) { return v > 0 && std::isfinite(v); };
-  for (const PagePoint& p : points)
-    if (const double v = value(p); sound(v)) least = std::min(least, v);
+  for (std::size_t i = 0; i < count; ++i)
+    if (const double v = value(i); sound(v)) least = std::min(least, v);
   const double offset = std::isfinite(least) ? least : 1;
   PageCodes out{.name = std::move(name), .kind = "logarithmic", .offset = offset, .step = step, .differences = false};
-  for (const PagePoint& p : points) {
-    const double v = value(p);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double v = value(i);
     out.codes.push_back(sound(v) ? static_cast<std::uint64_t>(1 + std::round(std::log(v / least) / step)) : 0);
   }
   return out;
 }
 
-/// Codes of few distinct values: 1 + the index in a list.
+/// Codes of few distinct whole values: 1 + the index in a list.
 template <class Value>
-PageCodes listed_codes(std::string name, std::span<const PagePoint> points, const Value& value) {
+PageCodes listed_codes(std::string name, std::size_t count, const Value& value) {
   std::vector<std::uint32_t> values;
-  for (const PagePoint& p : points)
-    if (values.empty() || values.back() != value(p)) values.push_back(value(p));
+  const auto whole = [&](std::size_t i) { return static_cast<std::uint32_t>(value(i)); };
+  for (std::size_t i = 0; i < count; ++i)
+    if (values.empty() || values.back() != whole(i)) values.push_back(whole(i));
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   PageCodes out{.name = std::move(name), .kind = "listed", .differences = false};
-  for (const PagePoint& p : points)
+  for (std::size_t i = 0; i < count; ++i)
     out.codes.push_back(1 + std::uint64_t{pulsecast::detail::first_not(
-                                values.size(), [&](std::size_t i) { return values[i] < value(p); })});
+                                values.size(), [&](std::size_t k) { return values[k] < whole(i); })});
   out.values = std::move(values);
   return out;
 }
 
-/// Codes of colours: 1 + 65536 red + 256 green + blue.
-inline PageCodes colour_codes(std::span<const PagePoint> points) {
-  PageCodes out{.name = "colour", .kind = "linear", .step = 1, .differences = false};
-  for (const PagePoint& p : points) {
-    const auto& [red, green, blue] = p.colour;
-    out.codes.push_back(p.coloured ? 1 + (std::uint64_t{red} << 16 | std::uint64_t{green} << 8 | blue) : 0);
+/// Step of a column: that of the page, or one of the extent of its values.
+inline double step_of(const PagePoints& all, std::size_t column) noexcept {
+  if (all.columns[column].step > 0) return all.columns[column].step;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const double v = all.value(i, column);
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, v);
+    most = std::max(most, v);
   }
-  return out;
+  return page_step(most > least ? most - least : 0, 1e-15);
+}
+
+/// True if a column has a value that says something.
+inline bool says_something(const PagePoints& all, std::size_t column) noexcept {
+  const std::optional<double>& plain = all.columns[column].plain;
+  if (!plain) return true;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    const double v = all.value(i, column);
+    if (std::isnan(*plain) ? !std::isnan(v) : v != *plain) return true;
+  }
+  return false;
+}
+
+/// Codes of a column of all points.
+inline PageCodes codes_of(const PagePoints& all, std::size_t column) {
+  const PageColumn& how = all.columns[column];
+  const std::string& name = how.field.name;
+  const std::size_t count = all.points.size();
+  const auto value = [&all, column](std::size_t i) { return all.value(i, column); };
+  if (how.coding == PageCoding::listed) return listed_codes(name, count, value);
+  if (how.coding == PageCoding::logarithmic) return logarithmic_codes(name, count, how.step, value);
+  PageCodes codes = linear_codes(name, count, step_of(all, column), value,
+                                 how.coding == PageCoding::from_zero ? std::optional(0.0) : std::nullopt);
+  codes.differences = how.coding == PageCoding::similar;
+  if (how.further) codes.unit = how.field.column->unit;
+  return codes;
 }
 
 /// Mean time between pulses [s].
@@ -185,6 +217,7 @@ class PageBlock {
     } else {
       head_.member("offset", column.offset).member("step", column.step);
     }
+    if (column.unit) head_.member("unit", *column.unit);
     if (column.per_pulse) head_.member("per_pulse", *column.per_pulse);
     head_.member("differences", column.differences).member("planes", count).end_object();
   }
@@ -225,48 +258,36 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 /// previous code, doubled, less one if negative. `per_pulse`, times the pulse's number, is added to a value. Values are
 /// exact to half a step. Positions have that of the settings, also the origins of pulses (`from_x` and so on). Steps of
 /// others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width 1 ps. Amplitudes are exact to
-/// 1 %, integers exactly. A colour is the number 65536 red + 256 green + blue.
-[[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points,
-                                              const PageColumnSettings& settings = {}) {
+/// 1 %, integers exactly. A colour is the number 65536 red + 256 green + blue. Further columns have their `unit`; real
+/// ones are exact to a 130,000th of their extent.
+[[nodiscard]] inline std::string page_columns(const PagePoints& all, const PageColumnSettings& settings = {}) {
   settings.validate();
-  using detail::linear_codes, detail::logarithmic_codes, detail::listed_codes;
-  using Point = const PagePoint&;
-  const auto unlike = [](detail::PageCodes column) {
-    column.differences = false;
-    return column;
-  };
+  using detail::linear_codes;
+  const std::vector<PagePoint>& points = all.points;
   const double step = detail::position_step(points, settings), each = detail::time_of_a_pulse(points);
   detail::PageBlock block(points.size());
+  const auto add = [&](const std::string& name, double step_of_values, const auto& value) {
+    return linear_codes(name, points.size(), step_of_values, [&](std::size_t i) { return value(points[i]); });
+  };
+  using Point = const PagePoint&;
   for (int k = 0; k < 3; ++k) {
     const std::string axis(1, "xyz"[k]);
-    block.add(linear_codes(axis, points, step, [k](Point p) { return p.position[k]; }));
-    block.add(linear_codes("from_" + axis, points, step, [k](Point p) {
+    block.add(add(axis, step, [k](Point p) { return p.position[k]; }));
+    block.add(add("from_" + axis, step, [k](Point p) {
       return p.position[k] + static_cast<double>(p.to_instrument[static_cast<std::size_t>(k)]);
     }));
   }
-  block.add(linear_codes("pulse", points, 1, [](Point p) { return static_cast<double>(p.pulse); }));
-  detail::PageCodes times =
-      linear_codes("time", points, 1e-7, [each](Point p) { return p.time - each * static_cast<double>(p.pulse); });
+  block.add(add("pulse", 1, [](Point p) { return static_cast<double>(p.pulse); }));
+  detail::PageCodes times = add("time", 1e-7, [each](Point p) { return p.time - each * static_cast<double>(p.pulse); });
   times.per_pulse = each;
   block.add(std::move(times));
-  block.add(linear_codes("return_number", points, 1, [](Point p) { return p.number; }));
-  block.add(linear_codes("returns", points, 1, [](Point p) { return p.returns; }));
-  block.add(linear_codes("leg", points, 1, [](Point p) { return p.leg; }));
-  block.add(linear_codes("channel", points, 1, [](Point p) { return p.channel; }));
-  block.add(
-      linear_codes("scan_angle", points, 0.05, [](Point p) { return static_cast<double>(p.scan_angle) * 180 / pi; }));
-  block.add(listed_codes("object", points, [](Point p) { return p.object; }));
-  block.add(listed_codes("class", points, [](Point p) { return p.classification; }));
-  block.add(unlike(linear_codes("reflectance", points, 0.002, [](Point p) { return p.reflectance; })));
-  block.add(logarithmic_codes("amplitude", points, 0.02, [](Point p) { return p.amplitude; }));
-  block.add(unlike(
-      linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; })));
-  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.kind != ReflectionKind::surface; }))
-    block.add(listed_codes("kind", points, [](Point p) { return static_cast<std::uint32_t>(p.kind); }));
-  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
-    block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
-  if (std::ranges::any_of(points, [](Point p) { return p.coloured; })) block.add(detail::colour_codes(points));
-  if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));
+  for (std::size_t k = 0; k < all.columns.size(); ++k)
+    if (detail::says_something(all, k)) block.add(detail::codes_of(all, k));
+  if (settings.keys) {
+    detail::PageCodes keys = add("key", 1, [](Point p) { return static_cast<double>(p.key); });
+    keys.differences = false;
+    block.add(std::move(keys));
+  }
   return block.finish(settings.effort);
 }
 

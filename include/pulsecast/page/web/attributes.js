@@ -77,6 +77,7 @@ function description(i) {
   rows.push(['Time', written('time', value('time'))], ['Pulse', whole(value('pulse'))])
   for (const name of ['incidence', 'scan_angle', 'leg', 'channel']) rows.push([attributes[name].label, written(name, value(name))])
   if (points.arrays.width) rows.push(['Echo width', written('width', value('width'))])
+  for (const [name, { label, further }] of Object.entries(attributes)) if (further) rows.push([label, written(name, value(name))])
   return rows
 }
 

@@ -23,7 +23,7 @@ async function readBlock(bytes) {
   const size = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true)
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + size)))
   const planes = await inflated(bytes.subarray(4 + size))
-  const block = { count: head.count, columns: {}, steps: {} }
+  const block = { count: head.count, columns: {}, steps: {}, units: {} }
   let at = 0
   for (const column of head.columns) {
     const codes = new Float64Array(head.count)
@@ -41,6 +41,7 @@ async function readBlock(bytes) {
     for (let i = 0; i < head.count; ++i) codes[i] = codes[i] > 0 ? value(codes[i]) + (each && each * pulse[i]) : NaN
     block.columns[column.name] = codes
     block.steps[column.name] = step
+    if (column.unit !== undefined) block.units[column.name] = column.unit
   }
   return block
 }
@@ -49,12 +50,12 @@ async function readBlock(bytes) {
 /// chunk is a uniform sample.
 class Points {
   static chunkSize = 65536
-  static exact = ['x', 'y', 'z', 'time', 'pulse']  // beyond single precision
 
   constructor() {
     this.count = 0
     this.room = 0
     this.arrays = {}
+    this.exact = new Set(['x', 'y', 'z', 'time', 'pulse'])  // beyond single precision
     this.steps = {}
     this.chunks = []
     const pack = Uint32Array.from({ length: Points.chunkSize }, (_, i) => i)
@@ -67,7 +68,7 @@ class Points {
   }
 
   array(name) {
-    const type = Points.exact.includes(name) ? Float64Array : name === 'object' || name === 'key' ? Uint32Array : Float32Array
+    const type = this.exact.has(name) ? Float64Array : name === 'object' || name === 'key' ? Uint32Array : Float32Array
     if (!this.arrays[name] || this.arrays[name].length < this.room) {
       const grown = new type(this.room)
       if (this.arrays[name]) grown.set(this.arrays[name])
@@ -76,12 +77,16 @@ class Points {
     return this.arrays[name]
   }
 
-  append({ count, columns, steps }) {
+  append({ count, columns, steps, units }) {
     if (count === 0) return
     const first = this.count
     this.count += count
     if (this.count > this.room) this.room = first === 0 ? count : Math.max(this.count, 2 * this.room)
     Object.assign(this.steps, steps)
+    for (const name in units) {
+      this.exact.add(name)
+      attributes[name] ??= { label: name, unit: units[name], further: true }
+    }
     for (const name of ['x', 'y', 'z']) {
       const away = this.array('to_' + name), here = columns[name], from = columns['from_' + name]
       for (let i = 0; i < count; ++i) away[first + i] = from[i] - here[i]

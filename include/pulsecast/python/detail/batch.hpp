@@ -6,17 +6,21 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <string>
-#include <tuple>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/python/detail/arrow.hpp>
-#include <pulsecast/python/detail/point_columns.hpp>
-#include <pulsecast/python/detail/point_rows.hpp>
+#include <pulsecast/python/detail/point_arrays.hpp>
+#include <pulsecast/python/detail/pulse_rows.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/run.hpp>
 
@@ -30,7 +34,7 @@ inline constexpr std::array<const char*, fate_count> fate_names{"returned",     
 
 /// Results of a run, for Python.
 struct Batch {
-  pybind11::array_t<PointRow> points;  ///< one row an echo
+  pybind11::array points;              ///< structured, one row an echo
   pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
   pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
   double sample_interval = 0;          ///< between samples [s]
@@ -41,21 +45,37 @@ struct Batch {
 
 /// Kinds of data that a `RowSink` keeps.
 struct KeptData {
-  bool pulses = true;    ///< true for pulses and waveforms
-  bool columns = false;  ///< true for points by column in place of rows
-  PointExtras extras{};  ///< further columns
+  bool pulses = true;          ///< true for pulses and waveforms
+  io::PointLayout rows{};      ///< layout of the rows of points; without fields: none
+  io::PointLayout columns{};   ///< columns of points; without fields: none
+  io::PointSettings points{};  ///< values of rows and columns
+
+  /// @throws SettingError for two columns of a name
+  void validate() const {
+    std::vector<io::PointField> all = rows.fields;
+    all.insert(all.end(), columns.fields.begin(), columns.fields.end());
+    for (const io::PointField& field : all) {
+      const auto same = std::ranges::count(all, field.name, &io::PointField::name);
+      require_within("columns '" + field.name + "' (number)", static_cast<double>(same), 1, 1, "");
+    }
+  }
 };
 
 /// Sink that keeps echoes, as rows or by column, and pulses.
 class RowSink {
  public:
-  /// @throws SettingError for an attribute of the name of another column
-  explicit RowSink(KeptData kept)
-      : keeps_pulses_(kept.pulses), by_column_(kept.columns), columns_(kept.columns, std::move(kept.extras)) {}
+  /// @throws SettingError for two columns of a name, or a column of an attribute that no object has
+  explicit RowSink(KeptData kept) : keeps_pulses_(validated(kept).pulses) {
+    if (!kept.rows.fields.empty()) points_.emplace(io::PointEncoder(std::move(kept.rows), kept.points));
+    if (!kept.columns.fields.empty())
+      columns_.emplace(io::PointEncoder(std::move(kept.columns), std::move(kept.points)));
+  }
 
   void operator()(const EchoBatch& batch) {
     sample_interval_ = batch.sample_interval;
     pulse_count_ += batch.shots.size();
+    if (points_) (*points_)(batch);
+    if (columns_) (*columns_)(batch);
     for (const Shot& s : batch.shots) {
       if (keeps_pulses_) {
         pulses_.push_back({static_cast<std::int64_t>(s.index), s.tick.seconds(), s.origin.x, s.origin.y, s.origin.z,
@@ -64,12 +84,7 @@ class RowSink {
                            s.samples, s.echoes, s.leg, s.channel, static_cast<std::uint8_t>(s.fate)});
         for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
       }
-      for (const Echo& e : batch.echoes_of(s)) {
-        const PointRow row = point_row(s, e);
-        if (!by_column_) points_.push_back(row);
-        columns_.push_back(batch, s, e, row);
-        ++point_count_;
-      }
+      point_count_ += s.echoes;
     }
   }
 
@@ -77,16 +92,19 @@ class RowSink {
   /// Data so far, as NumPy arrays; leaves this empty. Requires the GIL.
   [[nodiscard]] Batch take() {
     pulse_count_ = point_count_ = 0;
-    return {points_.take(), pulses_.take(), samples_.take(), sample_interval_, columns_.take(), by_column_};
+    Batch batch{points_ ? points_->take() : pybind11::array(), pulses_.take(), samples_.take(), sample_interval_};
+    if (columns_) batch.columns = columns_->take();
+    batch.by_column = !points_;
+    return batch;
   }
 
  private:
-  bool keeps_pulses_, by_column_;
+  bool keeps_pulses_;
   std::size_t pulse_count_ = 0, point_count_ = 0;
-  Rows<PointRow> points_;
+  std::optional<PointRows> points_;
+  std::optional<PointColumns> columns_;
   Rows<PulseRow> pulses_;
   Rows<float> samples_;
-  PointColumns columns_;
   double sample_interval_ = 0;
 };
 
@@ -112,19 +130,16 @@ class RowSink {
   namespace py = pybind11;
   if (state.size() != 7) throw py::value_error("a Batch of another version of pulsecast");
   const auto summary = state[4].cast<std::string>();
-  Batch b{state[0].cast<py::array_t<PointRow>>(),
-          state[1].cast<py::array_t<PulseRow>>(),
-          state[2].cast<py::array_t<float>>(),
-          state[3].cast<double>(),
-          state[5].cast<py::dict>(),
-          state[6].cast<bool>()};
+  Batch b{state[0].cast<py::array>(),          state[1].cast<py::array_t<PulseRow>>(),
+          state[2].cast<py::array_t<float>>(), state[3].cast<double>(),
+          state[5].cast<py::dict>(),           state[6].cast<bool>()};
   if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
   std::memcpy(&b.summary, summary.data(), sizeof b.summary);
   return b;
 }
 
 /// Rows of the points. Throws an `AttributeError` if they are kept by column.
-[[nodiscard]] inline pybind11::array_t<PointRow> points_of(const Batch& b) {
+[[nodiscard]] inline pybind11::array points_of(const Batch& b) {
   if (b.by_column)
     throw pybind11::attribute_error("points are kept by column: take `columns`, or run without columns=True");
   return b.points;
@@ -134,14 +149,16 @@ class RowSink {
 [[nodiscard]] inline pybind11::dict columns_of(const Batch& b) {
   pybind11::dict all;
   if (!b.by_column)
-    std::apply([&](const auto&... member) { ((all[member.name] = b.points[member.name]), ...); }, point_members);
+    for (const pybind11::handle name : b.points.dtype().attr("names")) all[name] = b.points[name];
   for (const auto& [name, column] : b.columns) all[name] = column;
   return all;
 }
 
 /// Number of points.
 [[nodiscard]] inline std::size_t point_count(const Batch& b) {
-  return b.by_column ? pybind11::len(b.columns["x"]) : static_cast<std::size_t>(b.points.size());
+  if (!b.by_column) return static_cast<std::size_t>(b.points.size());
+  for (const auto& [name, column] : b.columns) return pybind11::len(column);
+  return 0;
 }
 
 /// Capsule of the columns, as `__arrow_c_stream__` returns it. A requested schema is ignored. Throws a `ValueError` if
@@ -164,6 +181,17 @@ class RowSink {
                         "received"_a = energy.received);
 }
 
+/// Names of columns, with their units.
+[[nodiscard]] inline std::string described(std::span<const io::PointColumn> columns) {
+  std::string all;
+  for (const io::PointColumn& column : columns) {
+    const std::string_view unit = column.unit;
+    all +=
+        text::joined({all.empty() ? "" : ", ", column.name, unit.empty() ? "" : " [", unit, unit.empty() ? "" : "]"});
+  }
+  return all;
+}
+
 /// Adds the class `Batch` to a module.
 inline void bind_batch(pybind11::module_& m) {
   namespace py = pybind11;
@@ -173,17 +201,19 @@ inline void bind_batch(pybind11::module_& m) {
     return all;
   };
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
-      .def_property_readonly("points", &points_of,
-                             "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity "
-                             "[W]; reflectance; echo_width [s]; cos_incidence; pulse; object; classification; leg; "
-                             "return_number; number_of_returns; channel; kind of light: 0 direct, 1 through glass, 2 "
-                             "from water, 3 by a mirror, 4 from the air, 5 scattered more than once. AttributeError "
-                             "after run(columns=True).")
+      .def_property_readonly(
+          "points", &points_of,
+          ("Structured array, one row per echo, in the world: " + described(io::usual_point_columns) +
+           ". Kinds of light: 0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the "
+           "air, 5 scattered more than once. AttributeError after run(columns=True).")
+              .c_str())
       .def_property_readonly(
           "columns", &columns_of,
           "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "
           "65535) after run(colours=True), and the attributes of objects, NaN where an object has none. After "
-          "run(columns=True) each is contiguous, else those of `points` are views of its rows.")
+          "run(columns=True) each is contiguous, else those of `points` are views of its rows. After "
+          "run(columns=names) "
+          "there are those of the names alone.")
       .def("__arrow_c_stream__", &arrow_stream_of, py::arg("requested_schema") = py::none(),
            "Capsule of an Arrow C stream of the columns, which shares their memory, for run(columns=True). Raises "
            "ValueError otherwise.")

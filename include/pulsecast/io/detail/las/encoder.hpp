@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -25,11 +26,6 @@
 #include <pulsecast/io/detail/las/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
-
-/// Level of a ratio of powers [dB]; -200 or more, also for zero.
-[[nodiscard]] inline float las_level(double ratio) noexcept {
-  return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0);
-}
 
 /// Point statistics for the header of a LAS file. Those of parts add up to those of the whole, in any order.
 struct LasTally {
@@ -67,7 +63,10 @@ class LasEncoder {
 
   /// `settings` must be valid.
   explicit LasEncoder(LasSettings settings)
-      : settings_(std::move(settings)), layout_(settings_), offset_(settings_.offset.value_or(Vec3{})) {}
+      : settings_(std::move(settings)),
+        layout_(settings_),
+        columns_(layout_.columns, detail::las_points(settings_)),
+        offset_(settings_.offset.value_or(Vec3{})) {}
 
   /// Size of a point record with these settings [byte].
   [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
@@ -96,12 +95,8 @@ class LasEncoder {
       record.put(22, time);
     }
     if (packet) put_packet(record, shot, *packet);
-    const std::size_t extras = layout_.extras;
-    record.put(extras + pulse_at, shot.index);
     for (const Echo& echo : batch.echoes_of(shot)) {
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
-      const float amplitude = las_level(echo.amplitude / settings_.amplitude_reference);
-      tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
       record.put(layout_.legacy ? 15 : 16,
@@ -109,14 +104,10 @@ class LasEncoder {
       if (packet)
         record.put(layout_.packet + 13,
                    static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
-      record.put(extras + range_at, echo.range);
-      record.put(extras + amplitude_at, amplitude);
-      record.put(extras + reflectance_at, las_level(echo.reflectance));
-      record.put(extras + width_at, static_cast<float>(echo.width * 1e9));
-      record.put(extras + object_at, echo.object);
-      if (settings_.colours) put_colour(record, settings_.colours(batch, shot, echo).value_or(PointColour{}));
-      if (settings_.attributes) put_attributes(record, settings_.attributes->of(echo.object));
-      if (settings_.light_kinds) record.put(extras + kind_at, static_cast<std::uint8_t>(echo.kind));
+      put_extras({shot, echo, columns_.settings(), columns_.scan_start()}, record.data() + layout_.extras,
+                 std::make_index_sequence<detail::las_usual_extras.size()>());
+      if (!layout_.columns.fields.empty()) columns_.store(batch, shot, echo, record.data());
+      tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude_in(record.data()));
       ++tally_.points_by_return[number - 1];
       put(record, point_of(shot, echo));
     }
@@ -170,10 +161,9 @@ class LasEncoder {
   /// Sets the intensities of whole records from the amplitudes in their extra bytes, once the maximum is known.
   void scale_intensities(std::span<std::byte> bytes) const noexcept {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
-      float level = 0;
-      std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
-      const auto scaled = detail::las_rounded<std::uint16_t>(
-          65535 * std::pow(10, (double{level} - tally_.max_amplitude) / 10), 0, 65535);
+      const double level = amplitude_in(bytes.data() + at);
+      const auto scaled =
+          detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (level - tally_.max_amplitude) / 10), 0, 65535);
       std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
     }
   }
@@ -196,8 +186,28 @@ class LasEncoder {
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< for a sum over several encoders
 
  private:
-  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20,
-                               object_at = 28, kind_at = 32;
+  /// Writes the extra values that each point has. Their columns are constants, so that no call is indirect.
+  template <std::size_t... K>
+  static void put_extras(const PointView& view, std::byte* to, std::index_sequence<K...>) noexcept {
+    ((to = put_extra<K>(view, to)), ...);
+  }
+  template <std::size_t K>
+  [[nodiscard, gnu::always_inline]] static std::byte* put_extra(const PointView& view, std::byte* to) noexcept {
+    constexpr const detail::LasUsualExtra& extra = detail::las_usual_extras[K];
+    return detail::visit_number_type(extra.type, [&]<class Number>() {
+      if constexpr (std::is_integral_v<Number>)
+        detail::store_whole<Number>(extra.column->whole(view), to);
+      else
+        detail::store_number<Number>(extra.column->get(view) * extra.scale, to);
+      return to + sizeof(Number);
+    });
+  }
+  /// Amplitude of a record, its second extra value [dB].
+  [[nodiscard]] float amplitude_in(const std::byte* record) const noexcept {
+    float level;
+    std::memcpy(&level, record + layout_.extras + sizeof(double), sizeof level);
+    return level;
+  }
 
   /// Writes what all returns share of a wave packet. Offsets in it: LAS 1.4 R15, Point Data Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
@@ -207,18 +217,6 @@ class LasEncoder {
     const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12);
     for (int axis = 0; axis < 3; ++axis)
       record.put(layout_.packet + 17 + 4 * static_cast<std::size_t>(axis), static_cast<float>(back[axis]));
-  }
-
-  /// Writes a colour. Offsets: LAS 1.4 R15, Point Data Record Formats 7 and 8.
-  void put_colour(Record& record, const PointColour& colour) const noexcept {
-    record.put(layout_.colour, colour.red);
-    record.put(layout_.colour + 2, colour.green);
-    record.put(layout_.colour + 4, colour.blue);
-    if (settings_.near_infrared) record.put(layout_.colour + 6, colour.near_infrared);
-  }
-
-  void put_attributes(Record& record, std::span<const double> values) const noexcept {
-    for (std::size_t i = 0; i < values.size(); ++i) record.put(layout_.attributes + i * sizeof(double), values[i]);
   }
 
   [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
@@ -240,6 +238,7 @@ class LasEncoder {
 
   LasSettings settings_;
   detail::LasLayout layout_;
+  PointEncoder columns_;  // colours and extra values
   Vec3 offset_;
   LasTally tally_;
   Record record_;  // of the point that is encoded

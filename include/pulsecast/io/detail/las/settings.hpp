@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,41 +17,48 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/point_colour.hpp>
+#include <pulsecast/io/point_records.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+struct LasSettings;
+}
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Extra value of each point, after the standard ones.
-struct LasExtra {
-  std::string_view name, description;
-  std::uint8_t type, size;  ///< type: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
+/// Extra value that each point has.
+struct LasUsualExtra {
+  std::string_view name, description;  ///< texts for readers
+  NumberType type;                     ///< number type
+  const PointColumn* column;           ///< column
+  double scale = 1;                    ///< number per unit of the column
 };
-
-inline constexpr std::array las_extras{
-    LasExtra{"Range", "from the instrument [m]", 10, 8},  // a float would err by 0.5 mm at 10 km
-    LasExtra{"Amplitude", "received power at peak [dB]", 9, 4},
-    LasExtra{"Reflectance", "re white Lambertian target [dB]", 9, 4},
-    LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
-    LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
-    LasExtra{"ObjectId", "number of the object met", 5, 4},
-    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless requested
-};
+inline constexpr std::array las_usual_extras{
+    // a float would err by 0.5 mm at 10 km
+    LasUsualExtra{"Range", "from the instrument [m]", NumberType::float64, column("range")},
+    LasUsualExtra{"Amplitude", "received power at peak [dB]", NumberType::float32, column("intensity_level")},
+    LasUsualExtra{"Reflectance", "re white Lambertian target [dB]", NumberType::float32, column("reflectance_level")},
+    LasUsualExtra{"EchoWidth", "standard deviation in time [ns]", NumberType::float32, column("echo_width"), 1e9},
+    LasUsualExtra{"PulseIndex", "number of the pulse, from 0", NumberType::uint64, column("pulse")},
+    LasUsualExtra{"ObjectId", "number of the object met", NumberType::uint32, column("object")}};
 
 // sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
 inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
-inline constexpr std::size_t las_extras_size = [] {
-  std::size_t size = 0;
-  for (const LasExtra& extra : las_extras) size += extra.size;
-  return size;
-}();
 
-/// Attribute's name as far as an Extra Bytes record has room: 31 bytes and a terminator, of whole UTF-8 characters.
-[[nodiscard]] constexpr std::string_view las_extra_name(std::string_view name) noexcept {
-  std::size_t size = name.size() > 31 ? 31 : name.size();
-  while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0U) == 0x80U) --size;
-  return name.substr(0, size);
+/// Text as far as an Extra Bytes record has room: `most` bytes, of whole UTF-8 characters.
+[[nodiscard]] constexpr std::string_view las_cut(std::string_view text, std::size_t most = 31) noexcept {
+  std::size_t size = std::min(text.size(), most);
+  while (size > 0 && size < text.size() && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+  return text.substr(0, size);
 }
+
+/// Description of the extra value of a column, with its unit.
+[[nodiscard]] inline std::string las_description(const PointColumn& column) {
+  const std::string unit = column.unit.empty() ? "" : text::joined({" [", column.unit, "]"});
+  return text::joined({las_cut(column.description, 32 - unit.size()), unit});
+}
+
+/// Extra values of each point, in order.
+[[nodiscard]] std::vector<PointField> las_extras(const LasSettings& settings);
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
 
@@ -88,6 +96,9 @@ struct LasSettings {
   bool near_infrared = false;  ///< true to write the near infrared of the colours, too
   /// Attributes of objects, one extra value of a point for each name; NaN where unknown. Null for none.
   std::shared_ptr<const ObjectAttributes> attributes = nullptr;
+  std::vector<PointField> columns = {};  ///< further extra values of a point, see `layouts::columns`
+  /// Values of `columns`; start time, reference power, and colours and attributes if any, are those of the file.
+  PointSettings points = {};
   double scale = 1e-4;              ///< step of the coordinates [m]
   std::optional<Vec3> offset = {};  ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
   std::string wkt = {};             ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
@@ -105,7 +116,8 @@ struct LasSettings {
     if (waveforms && format == LasFormat::las_1_0)
       throw SettingError("LasSettings::waveforms", 1, "", "false for version 1.0, which has no waveforms");
     validate_colours();
-    if (attributes) validate_attributes();
+    validate_extras();
+    points.validate();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
     require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // and a terminator
@@ -132,31 +144,48 @@ struct LasSettings {
     if (near_infrared && !colours) throw SettingError("LasSettings::near_infrared", 1, "", "false without colours");
   }
 
-  /// Names must remain different from each other and from those of the other extra values.
-  void validate_attributes() const {
-    const std::size_t count = attributes->names().size();
-    require_within("LasSettings::attributes, number of names", static_cast<double>(count), 0,
-                   65535 / detail::las_descriptor_size - detail::las_extras.size(), "");
-    std::vector<std::string_view> known;
-    for (const detail::LasExtra& extra : detail::las_extras) known.push_back(extra.name);
-    for (const std::string& name : attributes->names()) {
-      const std::string_view cut = detail::las_extra_name(name);
-      if (cut.empty() || std::find(known.begin(), known.end(), cut) != known.end())
-        throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(),
+  /// Names must remain different from each other.
+  void validate_extras() const {
+    const std::vector<PointField> all = detail::las_extras(*this);
+    require_within("LasSettings, number of extra values", static_cast<double>(all.size()), 0,
+                   65535 / detail::las_descriptor_size, "");
+    for (auto extra = all.begin(); extra != all.end(); ++extra) {
+      const std::string_view name = detail::las_cut(extra->name);
+      const auto has_name = [&](const PointField& other) { return detail::las_cut(other.name) == name; };
+      if (name.empty() || std::any_of(all.begin(), extra, has_name))
+        throw SettingError(text::joined({"LasSettings, length of the name '", extra->name, "' of an extra value"}),
                            static_cast<double>(name.size()), "bytes",
-                           "above 0, and names that differ in their first 31 bytes from others and from Range, "
-                           "Amplitude, Reflectance, EchoWidth, PulseIndex, ObjectId, LightKind");
-      known.push_back(cut);
+                           "above 0, and names must differ in their first 31 bytes");
     }
   }
 };
 
 namespace detail {
 
+inline std::vector<PointField> las_extras(const LasSettings& s) {
+  std::vector<PointField> all;
+  for (const LasUsualExtra& usual : las_usual_extras)
+    all.push_back({std::string(usual.name), usual.type, usual.column, usual.scale});
+  if (s.light_kinds) all.push_back({"LightKind", NumberType::uint8, column("kind")});
+  if (s.attributes) std::ranges::copy(layouts::attributes(s.attributes->names()), std::back_inserter(all));
+  std::ranges::copy(s.columns, std::back_inserter(all));
+  return all;
+}
+
+/// Settings of the values of the points of a file.
+[[nodiscard]] inline PointSettings las_points(const LasSettings& s) {
+  PointSettings points = s.points;
+  points.start_time = s.start_time;
+  points.power_reference = s.amplitude_reference;
+  if (s.colours) points.colours = s.colours;
+  if (s.attributes) points.attributes = *s.attributes;
+  return points;
+}
+
 /// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 to 9;
 /// LAS 1.0, Public Header Block, Point Data Start Signature.
 struct LasLayout {
-  explicit LasLayout(const LasSettings& s) noexcept
+  explicit LasLayout(const LasSettings& s)
       : legacy(s.format != LasFormat::las_1_4),
         minor(s.format == LasFormat::las_1_0 ? 0 : 4),
         format(legacy            ? (s.waveforms ? 4 : 1)
@@ -172,14 +201,19 @@ struct LasLayout {
                                   : 0),
         packet(colour + colour_size),
         extras(packet + (s.waveforms ? las_packet_size : 0)),
-        extra_count(las_extras.size() - (s.light_kinds ? 0 : 1)),
-        attributes(extras + las_extras_size - (s.light_kinds ? 0 : las_extras.back().size)),
-        attribute_count(s.attributes ? s.attributes->names().size() : 0),
         max_returns(legacy ? 5 : 15),
-        max_class(legacy ? 31 : 255) {}
+        max_class(legacy ? 31 : 255) {
+    columns.size = static_cast<std::uint32_t>(colour);
+    if (colour_size > 0) columns = columns.with(layouts::deep_colours());
+    if (colour_size == 6) columns.fields.pop_back();
+    columns.size = static_cast<std::uint32_t>(extras);
+    columns = columns.with(las_extras(s));
+    const auto usual = columns.fields.begin() + (colour_size / 2);  // which `LasEncoder` stores
+    columns.fields.erase(usual, usual + las_usual_extras.size());
+  }
 
   /// Size of a point [byte].
-  [[nodiscard]] std::size_t record() const noexcept { return attributes + sizeof(double) * attribute_count; }
+  [[nodiscard]] std::size_t record() const noexcept { return columns.size; }
 
   bool legacy;                           ///< true for point formats older than version 1.4
   std::uint8_t minor, format;            ///< version 1.`minor`, point format
@@ -187,10 +221,8 @@ struct LasLayout {
   std::size_t start_signature;           ///< size of the signature between the last record and the first point [byte]
   std::size_t colour, colour_size;       ///< offset and size of red, green, blue and near infrared in a point [byte]
   std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
-  std::size_t extra_count;               ///< number of extra values of a point, without attributes
-  std::size_t attributes;                ///< offset of the attributes in a point [byte]
-  std::size_t attribute_count;           ///< number of attributes of a point
   std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
+  PointLayout columns{};                 ///< colours and further extra values in a point
 };
 
 }  // namespace detail

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -229,21 +230,17 @@ class LasFileWriter {
 
   /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
-    const auto extras = std::span(las_extras).first(layout().extra_count);
-    write_record_header("LASF_Spec", 4, (extras.size() + layout().attribute_count) * las_descriptor_size,
-                        "Extra Bytes");
-    for (const LasExtra& extra : extras) write_extra(extra);
-    if (settings().attributes)
-      for (const std::string& name : settings().attributes->names())
-        write_extra({las_extra_name(name), "attribute of the object met", 10, 8});
-  }
-
-  void write_extra(const LasExtra& extra) {
-    LasBytes<las_descriptor_size> descriptor{};
-    descriptor.put(2, extra.type);
-    descriptor.put_text(4, extra.name);
-    descriptor.put_text(160, extra.description);
-    file_.write(descriptor);
+    constexpr std::array<std::uint8_t, 11> types{0, 2, 1, 4, 3, 6, 5, 9, 10, 8, 7};  // by `NumberType`
+    const std::vector<PointField> extras = las_extras(settings());
+    write_record_header("LASF_Spec", 4, extras.size() * las_descriptor_size, "Extra Bytes");
+    for (std::size_t k = 0; k < extras.size(); ++k) {
+      LasBytes<las_descriptor_size> descriptor{};
+      descriptor.put(2, types[static_cast<std::size_t>(extras[k].type)]);
+      descriptor.put_text(4, las_cut(extras[k].name));
+      descriptor.put_text(160, k < las_usual_extras.size() ? std::string(las_usual_extras[k].description)
+                                                           : las_description(*extras[k].column));
+      file_.write(descriptor);
+    }
   }
 
   /// Writes the well-known text. Source: LAS 1.4 R15, OGC Coordinate System WKT.

@@ -133,12 +133,6 @@ class TextOutput {
     return *this;
   }
 
-  /// Adds a number in the shortest form that reads back the same.
-  TextOutput& shortest(double value) {
-    std::isnan(value) ? row_.add("nan") : row_.add(value);
-    return *this;
-  }
-
   template <std::integral... Integers>
   TextOutput& wholes(Integers... values) {
     (row_.add(values), ...);
@@ -150,6 +144,8 @@ class TextOutput {
     row_.add(word);
     return *this;
   }
+
+  [[nodiscard]] TextRow& row() noexcept { return row_; }  ///< row under construction
 
   void end_row() {
     file_.write(row_.end());
