@@ -120,7 +120,7 @@ TEST_CASE("surveys and colours outlive their simulation") {
   auto simulation = make_simulation(survey(), {.seed = 3, .meshes = {plane()}});
   const Cloud before = run(*simulation);
   const AnySurvey kept = simulation->survey();
-  const PointColours colours = simulation->colours();
+  const PointColours colours = simulation->points().colours;
   simulation.reset();
   std::size_t coloured = 0;
   Cloud after;
