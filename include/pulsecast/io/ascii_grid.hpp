@@ -49,8 +49,6 @@ struct AsciiGrid {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <utility>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_GEOTIFF_HPP
 #define PULSECAST_IO_GEOTIFF_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -58,7 +57,6 @@ struct GeoTiff {
 #if PULSECAST_DEFINES(IO_GEOTIFF)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <new>
 #include <string_view>

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_GZIP_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <new>

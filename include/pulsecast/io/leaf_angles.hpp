@@ -24,7 +24,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -41,8 +41,6 @@ namespace PULSECAST_NAMESPACE::io {
 #if PULSECAST_DEFINES(IO_MESH_FILE)
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>

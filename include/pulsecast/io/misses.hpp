@@ -4,8 +4,6 @@
 #define PULSECAST_IO_MISSES_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <type_traits>

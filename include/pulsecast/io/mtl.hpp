@@ -43,8 +43,6 @@ struct MaterialLibrary {
 #if PULSECAST_DEFINES(IO_MTL)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <istream>
 #include <string_view>

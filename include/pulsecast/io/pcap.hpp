@@ -4,8 +4,6 @@
 #define PULSECAST_IO_PCAP_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <utility>

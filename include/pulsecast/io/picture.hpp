@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_PICTURE_HPP
 #define PULSECAST_IO_PICTURE_HPP
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,7 +37,6 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #if PULSECAST_DEFINES(IO_PICTURE)
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>

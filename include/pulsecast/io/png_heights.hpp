@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_PNG_HEIGHTS_HPP
 #define PULSECAST_IO_PNG_HEIGHTS_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 

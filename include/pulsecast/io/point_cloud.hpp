@@ -4,7 +4,6 @@
 #define PULSECAST_IO_POINT_CLOUD_HPP
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -20,7 +20,6 @@ namespace PULSECAST_NAMESPACE::io {
 #if PULSECAST_DEFINES(IO_PULSE_FORM)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>

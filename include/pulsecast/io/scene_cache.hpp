@@ -4,8 +4,6 @@
 #define PULSECAST_IO_SCENE_CACHE_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <functional>

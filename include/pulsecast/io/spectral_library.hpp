@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 #define PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,7 +41,6 @@ struct SpectrumFile {
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <system_error>

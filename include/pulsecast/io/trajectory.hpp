@@ -4,8 +4,6 @@
 #define PULSECAST_IO_TRAJECTORY_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>

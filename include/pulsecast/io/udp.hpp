@@ -4,7 +4,6 @@
 #define PULSECAST_IO_UDP_HPP
 
 #include <cerrno>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <system_error>

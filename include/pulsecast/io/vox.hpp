@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_VOX_HPP
 #define PULSECAST_IO_VOX_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -62,7 +61,6 @@ struct VoxelFile {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <string_view>
 #include <utility>

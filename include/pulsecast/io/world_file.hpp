@@ -35,7 +35,6 @@ struct WorldFile {
 #if PULSECAST_DEFINES(IO_WORLD_FILE)
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <system_error>

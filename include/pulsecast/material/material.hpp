@@ -4,8 +4,6 @@
 #define PULSECAST_MATERIAL_MATERIAL_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>

@@ -4,8 +4,6 @@
 #define PULSECAST_MPI_LAS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -4,8 +4,6 @@
 #define PULSECAST_MPI_LAZ_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <map>

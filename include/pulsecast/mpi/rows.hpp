@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MPI_ROWS_HPP
 #define PULSECAST_MPI_ROWS_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -9,8 +9,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <span>

@@ -9,8 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_DIGEST_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <ios>

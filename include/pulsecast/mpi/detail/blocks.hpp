@@ -4,7 +4,6 @@
 #define PULSECAST_MPI_DETAIL_BLOCKS_HPP
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MPI_DETAIL_CHANNEL_HPP
 #define PULSECAST_MPI_DETAIL_CHANNEL_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <deque>
 #include <exception>

@@ -4,8 +4,6 @@
 #define PULSECAST_MPI_DETAIL_OUTPUT_HPP
 
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>

@@ -4,7 +4,6 @@
 #define PULSECAST_MPI_DETAIL_STREAM_HPP
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_COPC_RUNS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <span>

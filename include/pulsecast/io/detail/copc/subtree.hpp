@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_COPC_SUBTREE_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <numeric>
 #include <span>
 #include <utility>

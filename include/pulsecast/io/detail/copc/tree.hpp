@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>

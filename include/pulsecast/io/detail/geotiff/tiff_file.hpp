@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdarg>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_TRANSFER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_TRANSFER_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_OBJ_READER_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 #define PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
