@@ -126,12 +126,6 @@ void list_members(Archive& a, Material& m) {
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
 }
-/// Lists the members of a picture.
-template <class Archive>
-void list_members(Archive& a, Image& image) {
-  auto& [width, height, channels, samples] = image;
-  a(width, height, channels, samples);
-}
 /// Lists the members of a map of reflectances.
 template <class Archive>
 void list_members(Archive& a, ReflectanceMap& map) {
@@ -157,7 +151,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 9;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 10;         ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;
@@ -244,7 +238,11 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   detail::CacheHeader header;
   const auto header_bytes = std::as_bytes(std::span(&header, 1));
   file.write(header_bytes);  // placeholder
-  ArchiveWriter writer(file);
+  Digest digest;
+  ArchiveWriter writer([&](std::span<const std::byte> bytes) {
+    digest.add(bytes);
+    file.write(bytes);
+  });
   writer(std::uint64_t{parts.size()});
   for (const typename S::Part& part : parts) {
     if (part.motion && !detail::Restorable<PartMotion>)
@@ -260,7 +258,7 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   header.program = detail::program_of<typename S::Part>();
   header.key = key;
   header.size = file.position();
-  header.checksum = detail::checksum_of(header, writer.digest());
+  header.checksum = detail::checksum_of(header, digest);
   file.overwrite(0, header_bytes);
   file.commit();
 }

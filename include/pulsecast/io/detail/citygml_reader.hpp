@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -122,15 +121,10 @@ class CityGmlImport {
     for (const std::string& message : log->messages)
       scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
     scene_.reference = name_;
-    scene_.owner = data_;
     return std::move(scene_);
   }
 
  private:
-  struct Data {
-    std::deque<std::vector<Vec3>> vertices;
-    std::deque<std::vector<Corners3>> triangles;
-  };
   /// Surfaces of one class.
   struct Surfaces {
     std::vector<Vec3> vertices{};
@@ -253,10 +247,9 @@ class CityGmlImport {
       material.optics.classification = rule.classification;
       material.optics.ground = rule.ground;
     }
-    data_->vertices.push_back(std::move(surfaces.vertices));
-    data_->triangles.push_back(std::move(surfaces.triangles));
-    scene_.meshes.push_back(
-        {.material = number->second, .precise = data_->vertices.back(), .triangles = data_->triangles.back()});
+    scene_.meshes.push_back({.material = number->second,
+                             .precise = std::move(surfaces.vertices),
+                             .triangles = std::move(surfaces.triangles)});
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
 
@@ -264,7 +257,6 @@ class CityGmlImport {
   const CityGmlSettings& settings_;
   std::string name_;  ///< of the reference system
   RawScene scene_;
-  std::shared_ptr<Data> data_ = std::make_shared<Data>();
   std::map<CityClass, std::uint32_t> materials_;
   std::map<std::pair<std::vector<const citygml::Geometry*>, CityClass>, std::optional<std::uint32_t>> shared_;
 };

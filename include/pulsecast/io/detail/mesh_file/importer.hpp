@@ -90,16 +90,16 @@ class MeshImport {
  public:
   MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers,
              std::function<void(std::uint64_t)> opened = {})
-      : path_(path), settings_(settings), workers_(workers), data_(std::make_shared<Data>()) {
+      : path_(path), settings_(settings), workers_(workers) {
     system_ =
         new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
-    data_->importer.SetIOHandler(system_);  // which takes it
+    importer_->SetIOHandler(system_);  // which takes it
   }
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
     check_gltf(path_, scene_.warnings);
-    Assimp::Importer& importer = data_->importer;
+    Assimp::Importer& importer = *importer_;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
@@ -128,16 +128,10 @@ class MeshImport {
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
     for (const std::string& file : system_->looked_for())
       if (file != main) scene_.files.push_back(file);
-    scene_.owner = data_;
     return std::move(scene_);
   }
 
  private:
-  struct Data {
-    Assimp::Importer importer;
-    std::vector<SharedBuffer<Corners3>> triangles;
-  };
-
   [[noreturn]] void fail(const std::string& problem) const {
     if (!system_->refused().empty()) fail_elsewhere();
     if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
@@ -195,19 +189,19 @@ class MeshImport {
                     [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
     posed_ += from.mNumBones > 0 || is_morphed ? 1 : 0;
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
-    made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
-    SharedBuffer<Corners3> triangles = triangles_of(from);
-    made.triangles = {triangles.data(), triangles.size()};
+    const auto shared = [&](const aiVector3D* values) {
+      return SharedArray<Float3>({reinterpret_cast<const Float3*>(values), values ? from.mNumVertices : 0}, importer_);
+    };
+    made.vertices = shared(from.mVertices);
+    made.triangles = triangles_of(from);
     if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
-    data_->triangles.push_back(std::move(triangles));
     const ImportedMaterial& material = materials_[from.mMaterialIndex];
     const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
                           !material.material.opacity.name.empty();
     const unsigned channel =
         material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel
                                                                                                      : 0;
-    if (pictured && from.HasTextureCoords(channel))
-      made.texture = {reinterpret_cast<const Float3*>(from.mTextureCoords[channel]), from.mNumVertices};
+    if (pictured) made.texture = shared(from.mTextureCoords[channel]);
     scene_.meshes.push_back(std::move(made));
   }
 
@@ -323,8 +317,8 @@ class MeshImport {
   const std::filesystem::path& path_;
   const MeshFileSettings& settings_;
   Workers workers_;
-  std::shared_ptr<Data> data_;
-  FolderSystem* system_;  // of the importer
+  std::shared_ptr<Assimp::Importer> importer_ = std::make_shared<Assimp::Importer>();  // owns what its scene holds
+  FolderSystem* system_;                                                               // of the importer
   RawScene scene_;
   std::vector<ImportedMaterial> materials_;
   bool gltf_ = false;

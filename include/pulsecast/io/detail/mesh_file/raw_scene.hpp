@@ -3,12 +3,13 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 
+#include <algorithm>
 #include <array>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
@@ -34,10 +35,10 @@ struct Affine {
 struct RawMesh {
   std::string name{};
   std::uint32_t material = 0;
-  std::span<const Float3> vertices{};
-  std::span<const Vec3> precise{};        ///< vertices of double precision, in place of those
-  std::span<const Corners3> triangles{};  ///< indices are below the number of vertices
-  std::span<const Float3> texture{};      ///< of the vertices, upward; empty without
+  SharedArray<Float3> vertices{};
+  SharedArray<Vec3> precise{};        ///< vertices of double precision, in place of those
+  SharedArray<Corners3> triangles{};  ///< indices are below the number of vertices
+  SharedArray<Float3> texture{};      ///< of the vertices, upward; empty without
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return precise.empty() ? vertices.size() : precise.size(); }
 };
@@ -84,12 +85,28 @@ struct RawScene {
   std::vector<RawMaterial> materials{};
   std::vector<std::shared_ptr<const std::vector<std::byte>>> embedded{};  ///< pictures, as files
   std::vector<std::string> warnings{};
-  std::vector<std::string> files{};     ///< further files that the importer looked for
-  double unit = 1;                      ///< size of a unit by the file [m]
-  double applied_unit = 1;              ///< unit by the file that the importer applies already [m]
-  Matrix3 upright{1};                   ///< to z up, by the file
-  std::string reference{};              ///< name of a reference system
-  std::shared_ptr<const void> owner{};  ///< of what the meshes refer to
+  std::vector<std::string> files{};  ///< further files that the importer looked for
+  double unit = 1;                   ///< size of a unit by the file [m]
+  double applied_unit = 1;           ///< unit by the file that the importer applies already [m]
+  Matrix3 upright{1};                ///< to z up, by the file
+  std::string reference{};           ///< name of a reference system
+
+  /// True if all numbers of vertices, materials and meshes are those of some.
+  [[nodiscard]] bool is_consistent() const {
+    const auto is_mesh = [&](std::uint32_t mesh) { return mesh < meshes.size(); };
+    return std::ranges::all_of(meshes,
+                               [&](const RawMesh& mesh) {
+                                 const auto is_vertex = [&](std::uint32_t v) { return v < mesh.vertex_count(); };
+                                 return mesh.material < materials.size() &&
+                                        (mesh.texture.empty() || mesh.texture.size() == mesh.vertex_count()) &&
+                                        std::ranges::all_of(mesh.triangles, [&](const Corners3& corners) {
+                                          return std::ranges::all_of(corners, is_vertex);
+                                        });
+                               }) &&
+           std::ranges::all_of(nodes, [&](const RawNode& node) {
+             return !node.meshes.empty() && std::ranges::all_of(node.meshes, is_mesh);
+           });
+  }
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
