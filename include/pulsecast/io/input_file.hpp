@@ -146,9 +146,11 @@ class InputFile {
 /// must not be written to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
-  /// Maps a file. @throws FileError
-  explicit MappedFile(const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
+  /// Maps a file; `expected` content for error messages, as in "an XML file", if any. @throws FileError
+  explicit MappedFile(const std::filesystem::path& path, std::string_view expected = {}) {
+    const auto fail = [&](std::string_view problem) {
+      throw FileError(path.string(), "", text::joined({problem, expected.empty() ? "" : ": expected ", expected}));
+    };
     const auto system_error = [] { return std::generic_category().message(errno); };
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) fail(errno == ENOENT ? "does not exist" : "cannot be read: " + system_error());
@@ -165,6 +167,10 @@ class MappedFile {
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }  ///< content of the file
+  /// Content of the file, as text.
+  [[nodiscard]] std::string_view text() const noexcept {
+    return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+  }
 
  private:
   struct Descriptor {

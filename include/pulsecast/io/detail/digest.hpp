@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <ios>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include <xxhash.h>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -85,17 +85,11 @@ class Digest {
   }
 
   void add_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::vector<char> block(std::size_t{1} << 20);
-    std::uint64_t size = 0;
-    while (file) {
-      file.read(block.data(), static_cast<std::streamsize>(block.size()));
-      const auto count = static_cast<std::size_t>(file.gcount());
-      add(std::as_bytes(std::span(block).first(count)));
-      size += count;
-    }
-    if (file.bad() || !file.eof()) throw FileError(path.string(), "", "cannot be read");
-    add(size);
+    std::error_code ignored;
+    std::optional<MappedFile> file;
+    if (std::filesystem::file_size(path, ignored) > 0) file.emplace(path);
+    if (file) add(file->bytes());
+    add(std::uint64_t{file ? file->bytes().size() : 0});
   }
 
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};

@@ -27,7 +27,6 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
-#include <pulsecast/io/detail/mesh_file/inside.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
