@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -157,7 +158,7 @@ class CopcTree {
     std::vector<CopcRank> ranks;
     ranks.reserve(points.size());
     for (const std::uint32_t point : points) ranks.push_back({time_key(records.data() + point * record_), point});
-    copc_sort(ranks);
+    std::sort(ranks.begin(), ranks.end());
     std::vector<std::byte> sorted(points.size() * record_);
     for (std::size_t i = 0; i < ranks.size(); ++i)
       std::memcpy(sorted.data() + i * record_, records.data() + ranks[i].number * record_, record_);

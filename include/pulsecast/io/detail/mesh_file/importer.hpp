@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -24,7 +25,6 @@
 #include <assimp/Importer.hpp>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
@@ -87,9 +87,9 @@ class FolderSystem : public Assimp::IOSystem {
 
 class MeshImport {
  public:
-  MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers,
+  MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings,
              std::function<void(std::uint64_t)> opened = {})
-      : path_(path), settings_(settings), workers_(workers) {
+      : path_(path), settings_(settings) {
     system_ =
         new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
     importer_->SetIOHandler(system_);  // which takes it
@@ -206,37 +206,20 @@ class MeshImport {
 
   /// Triangles of all faces: n - 2 of one with n corners.
   [[nodiscard]] SharedBuffer<Corners3> triangles_of(const aiMesh& from) {
-    constexpr std::size_t chunk = std::size_t{1} << 16;
-    struct Chunk {
-      std::size_t first = 0, left_out = 0, crossings = 0;  // triangles before it; points and lines; polygons
-    };
-    std::vector<Chunk> chunks((from.mNumFaces + chunk - 1) / chunk);
-    const auto each = [&](std::size_t c, const auto& work) {
-      const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
-      for (std::size_t i = c * chunk; i < end; ++i) work(from.mFaces[i], from.mFaces[i].mNumIndices);
-    };
-    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
-      each(c, [&](const aiFace&, std::size_t corners) {
-        chunks[c].first += corners < 3 ? 0 : corners - 2;
-        chunks[c].left_out += corners < 3 ? 1 : 0;
-      });
-    });
+    const std::span<const aiFace> faces(from.mFaces, from.mNumFaces);
     std::size_t count = 0;
-    for (Chunk& one : chunks) {
-      count += std::exchange(one.first, count);
-      left_out_ += one.left_out;
-    }
+    for (const aiFace& face : faces) count += face.mNumIndices < 3 ? 0 : face.mNumIndices - 2;
     SharedBuffer<Corners3> triangles(count);
-    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
-      Corners3* to = triangles.data() + chunks[c].first;
-      each(c, [&](const aiFace& face, std::size_t corners) {
-        if (corners < 3) return;
-        check(face, from.mNumVertices);
-        chunks[c].crossings += cut(face, from.mVertices, to) ? 0 : 1;
-        to += corners - 2;
-      });
-    });
-    for (const Chunk& one : chunks) crossings_ += one.crossings;
+    Corners3* to = triangles.data();
+    for (const aiFace& face : faces) {
+      if (face.mNumIndices < 3) {
+        ++left_out_;
+        continue;
+      }
+      check(face, from.mNumVertices);
+      crossings_ += cut(face, from.mVertices, to) ? 0 : 1;
+      to += face.mNumIndices - 2;
+    }
     return triangles;
   }
 
@@ -315,7 +298,6 @@ class MeshImport {
 
   const std::filesystem::path& path_;
   const MeshFileSettings& settings_;
-  Workers workers_;
   std::shared_ptr<Assimp::Importer> importer_ = std::make_shared<Assimp::Importer>();  // owns what its scene holds
   FolderSystem* system_;                                                               // of the importer
   RawScene scene_;
