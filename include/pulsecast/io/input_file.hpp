@@ -183,6 +183,19 @@ class MappedFile {
   std::span<const std::byte> bytes_;
 };
 
+/// Regular files of a folder, sorted; by a `recursive_directory_iterator`, those of the folders below it, too.
+/// @throws FileError if it cannot be read
+template <class Iterator = std::filesystem::directory_iterator>
+[[nodiscard]] std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error, ignored;
+  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+  if (error) throw FileError(folder.string(), "", "cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 /// Calls a function that reads a file. Too little memory for what it holds is a `FileError`.
 template <class Function>
 decltype(auto) reading(const std::filesystem::path& path, const Function& read) {

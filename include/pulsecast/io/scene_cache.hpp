@@ -171,11 +171,6 @@ static_assert(sizeof(CacheHeader) == 128 && std::is_trivially_copyable_v<CacheHe
   digest.add(std::as_bytes(std::span(&header, 1)));
   return digest.value();
 }
-[[nodiscard]] inline Fingerprint checksum_of(const CacheHeader& header, std::span<const std::byte> rest) {
-  Digest digest;
-  digest.add(rest);
-  return checksum_of(header, digest);
-}
 
 /// Fingerprint of the part type of a file and of the library's version.
 template <class P>
@@ -202,8 +197,9 @@ inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& p
     throw Unusable{"was written by another version of the program, or for other shapes"};
   if (header.size != bytes.size()) throw Unusable{"is truncated, or has grown"};
   if (header.key != key) throw Unusable{"is out of date: a source or a setting has changed"};
-  if (header.checksum != checksum_of(header, bytes.subspan(sizeof header)))
-    throw Unusable{"is damaged: its checksum is wrong"};
+  Digest rest;
+  rest.add(bytes.subspan(sizeof header));
+  if (header.checksum != checksum_of(header, rest)) throw Unusable{"is damaged: its checksum is wrong"};
 }
 
 /// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's

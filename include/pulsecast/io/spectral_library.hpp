@@ -245,18 +245,11 @@ PULSECAST_INLINE SpectrumFile read_spectrum(const std::filesystem::path& path) {
 }
 
 PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
-      std::error_code ignored;
-      if (entry->is_regular_file(ignored) && !entry->path().filename().string().starts_with('.'))
-        files.push_back(entry->path());
-    }
-    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
-    std::sort(files.begin(), files.end());
-  } else {
-    files.push_back(path);
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files{path};
+  if (std::filesystem::is_directory(path, ignored)) {
+    files = files_in(path);
+    std::erase_if(files, [](const auto& file) { return file.filename().string().starts_with('.'); });
   }
   SpectralLibrary library;
   for (const std::filesystem::path& file : files) {

@@ -119,7 +119,7 @@ class CityGmlImport {
         name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
       fail("its coordinates are in degrees, by '" + name_ + "': expected a projected system in metres");
     for (const std::string& message : log->messages)
-      scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
+      scene_.warnings.push_back(path_.string() + ": libcitygml: " + printable(message));
     scene_.reference = name_;
     return std::move(scene_);
   }
@@ -133,15 +133,8 @@ class CityGmlImport {
   using ByClass = std::map<CityClass, Surfaces>;
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + readable(problem));
+    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + printable(problem));
   }
-  [[nodiscard]] static std::string readable(std::string text) {
-    text.resize(std::min<std::size_t>(text.size(), 300));
-    for (char& c : text)
-      if (c < ' ' || c > '~') c = '?';
-    return text;
-  }
-
   void root(const citygml::CityObject& object) {
     std::optional<unsigned> lod;
     highest(object, lod, 0);

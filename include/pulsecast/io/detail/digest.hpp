@@ -3,14 +3,12 @@
 #ifndef PULSECAST_IO_DETAIL_DIGEST_HPP
 #define PULSECAST_IO_DETAIL_DIGEST_HPP
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include <xxhash.h>
 
@@ -70,13 +68,7 @@ class Digest {
   };
 
   void add_folder(const std::filesystem::path& path) {
-    std::vector<std::filesystem::path> files;
-    std::error_code error;
-    for (std::filesystem::recursive_directory_iterator entry(path, error), end; !error && entry != end;
-         entry.increment(error))
-      if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
-    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
-    std::sort(files.begin(), files.end());
+    const auto files = files_in<std::filesystem::recursive_directory_iterator>(path);
     for (const std::filesystem::path& file : files) {
       add(std::string_view(file.lexically_relative(path).string()));
       add_file(file);

@@ -134,11 +134,10 @@ class MeshImport {
   [[noreturn]] void fail(const std::string& problem) const {
     if (!system_->refused().empty()) fail_elsewhere();
     if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
-    std::string text = problem.substr(0, 300);
-    if (text.starts_with("No suitable reader")) text = "assimp finds none of its formats in it";
-    for (char& c : text)  // which may have bytes of the file
-      if (c < ' ' || c > '~') c = '?';
-    throw FileError(path_.string(), "", "is no mesh file that can be read: " + text);
+    throw FileError(path_.string(), "",
+                    "is no mesh file that can be read: " + (problem.starts_with("No suitable reader")
+                                                                ? "assimp finds none of its formats in it"
+                                                                : printable(problem)));
   }
   [[noreturn]] void fail_elsewhere() const {
     throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");

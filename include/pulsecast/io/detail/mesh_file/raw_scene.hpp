@@ -110,6 +110,14 @@ struct RawScene {
   }
 };
 
+/// Message of a library, cut and without the bytes of the file that it may have.
+[[nodiscard]] inline std::string printable(std::string message) {
+  message.resize(std::min<std::size_t>(message.size(), 300));
+  std::ranges::replace_if(
+      message, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return message;
+}
+
 /// True for a path that does not leave a folder by its words; links are followed.
 [[nodiscard]] inline bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file) {
   const std::filesystem::path within = std::filesystem::absolute(file).lexically_normal().lexically_relative(
