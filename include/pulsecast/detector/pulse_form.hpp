@@ -7,7 +7,6 @@
 #include <cmath>
 #include <concepts>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/exponential.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_ASCII_GRID_HPP
 
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -50,8 +48,6 @@ struct AsciiGrid {
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/suggestion.hpp>

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -59,10 +58,8 @@ struct GeoTiff {
 #include <cmath>
 #include <limits>
 #include <new>
-#include <string_view>
 #include <system_error>
 #include <type_traits>
-#include <utility>
 
 #include <tiffio.h>
 

@@ -10,10 +10,7 @@
 #include <fstream>
 #include <ios>
 #include <new>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

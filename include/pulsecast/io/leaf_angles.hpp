@@ -24,11 +24,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>

@@ -7,14 +7,8 @@
 #include <bit>
 #include <concepts>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <map>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>

@@ -42,9 +42,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>

@@ -45,7 +45,6 @@ struct MaterialLibrary {
 #include <cmath>
 #include <deque>
 #include <istream>
-#include <string_view>
 
 #include <tiny_obj_loader.h>
 

@@ -37,12 +37,9 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #if PULSECAST_DEFINES(IO_PICTURE)
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
-#include <utility>
 
 #include <stb/stb_image.h>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_PNG_HEIGHTS_HPP
 
 #include <filesystem>
-#include <optional>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
@@ -53,8 +52,6 @@ struct PngHeightSettings {
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
-#include <utility>
 
 #include <stb/stb_image.h>
 

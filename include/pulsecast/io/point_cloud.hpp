@@ -6,7 +6,6 @@
 #include <array>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>

@@ -5,17 +5,9 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <typeinfo>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/concepts.hpp>

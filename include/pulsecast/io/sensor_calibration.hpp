@@ -5,11 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>

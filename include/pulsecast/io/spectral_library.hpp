@@ -41,10 +41,7 @@ struct SpectrumFile {
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>

@@ -5,9 +5,7 @@
 
 #include <cerrno>
 #include <optional>
-#include <string>
 #include <system_error>
-#include <utility>
 
 #include <netinet/in.h>
 #include <sys/socket.h>

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -62,8 +61,6 @@ struct VoxelFile {
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/text.hpp>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

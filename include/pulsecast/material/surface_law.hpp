@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <deque>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las.hpp>

@@ -7,12 +7,8 @@
 #include <chrono>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>

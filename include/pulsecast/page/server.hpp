@@ -10,12 +10,9 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include <httplib.h>

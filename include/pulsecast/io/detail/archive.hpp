@@ -11,11 +11,8 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <typeinfo>
-#include <utility>
 #include <variant>
 #include <vector>
 

@@ -19,9 +19,7 @@
 #include <memory>
 #include <new>
 #include <span>
-#include <string>
 #include <system_error>
-#include <utility>
 
 #include <fcntl.h>
 #include <sys/mman.h>

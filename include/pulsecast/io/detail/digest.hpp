@@ -3,11 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_DIGEST_HPP
 #define PULSECAST_IO_DETAIL_DIGEST_HPP
 
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string_view>
 #include <system_error>
 
 #include <xxhash.h>

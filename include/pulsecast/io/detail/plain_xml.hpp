@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <functional>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>

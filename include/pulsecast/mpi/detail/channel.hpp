@@ -9,9 +9,7 @@
 #include <limits>
 #include <list>
 #include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #define OMPI_SKIP_MPICXX 1  // C++ bindings, removed in MPI 3.0, of Open MPI and MPICH

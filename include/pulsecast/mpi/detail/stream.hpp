@@ -4,13 +4,8 @@
 #define PULSECAST_MPI_DETAIL_STREAM_HPP
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>

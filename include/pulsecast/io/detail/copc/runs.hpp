@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>

@@ -7,10 +7,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>

@@ -7,13 +7,9 @@
 #include <array>
 #include <cstdarg>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <new>
-#include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <tiffio.h>

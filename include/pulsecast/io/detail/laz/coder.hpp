@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

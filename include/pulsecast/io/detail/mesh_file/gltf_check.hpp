@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>

@@ -11,10 +11,7 @@
 #include <new>
 #include <set>
 #include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <assimp/DefaultIOSystem.h>

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>

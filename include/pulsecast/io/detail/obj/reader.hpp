@@ -4,16 +4,12 @@
 #define PULSECAST_IO_DETAIL_OBJ_READER_HPP
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/parallel.hpp>

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 #define PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>

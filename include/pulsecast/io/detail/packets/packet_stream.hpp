@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <concepts>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

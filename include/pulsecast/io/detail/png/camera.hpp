@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -6,10 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/suggestion.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
