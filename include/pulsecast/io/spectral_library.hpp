@@ -91,7 +91,7 @@ class SpectrumReader {
     if (!unit_ || !scale_) titles();
     SpectrumFile file;
     file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
-    std::ranges::stable_sort(samples_, [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    std::ranges::stable_sort(samples_, {}, &Row::wavelength);
     file.spectrum = std::make_shared<const Spectrum>(united());
     file.warnings = std::move(warnings_);
     return file;
@@ -156,8 +156,7 @@ class SpectrumReader {
 
   std::string take_wavelengths() {
     static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
-    const auto [low, high] = std::minmax_element(
-        samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    const auto [low, high] = std::ranges::minmax_element(samples_, {}, &Row::wavelength);
     const double shortest = low->wavelength;
     const bool given = unit_.has_value();
     if (!given)
@@ -179,9 +178,7 @@ class SpectrumReader {
   }
 
   std::string take_reflectances(ReflectanceScale& scale) {
-    const double largest = std::max_element(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) {
-                             return a.reflectance < b.reflectance;
-                           })->reflectance;
+    const double largest = std::ranges::max_element(samples_, {}, &Row::reflectance)->reflectance;
     const std::string reach = "its values reach " + text::to_text(largest);
     const bool many = largest > 1.5;
     const bool given = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <concepts>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -50,6 +51,17 @@ struct Luggage {
   [[nodiscard]] bool is_consistent() const { return may_travel; }
 };
 
+/// A result in the middle of which the child ends.
+struct Fragment {
+  SharedArray<double> many{};
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(many);
+    if constexpr (std::same_as<Archive, io::ArchiveWriter>) ::_exit(0);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a child hands over numbers, texts and arrays, small and large") {
@@ -90,12 +102,12 @@ TEST_CASE("an error in a child is the same in its parent") {
 TEST_CASE("a child has no network, and its parent keeps it") {
 #if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
   for (const int family : {AF_INET, AF_INET6, AF_UNIX}) {
-    const auto [socket, error] = ChildProcess::result("some.file", {}, [&] {
+    const auto socket_and_error = ChildProcess::result("some.file", {}, [&] {
       const int made = ::socket(family, SOCK_STREAM, 0);
       return std::array{made, errno};
     });
-    CHECK(socket == -1);
-    CHECK(error == EACCES);
+    CHECK(socket_and_error[0] == -1);
+    CHECK(socket_and_error[1] == EACCES);
   }
 #endif
   const int mine = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -109,6 +121,9 @@ TEST_CASE("the death of a child is explained") {
   CHECK(contains(error_of([] { std::raise(SIGSEGV); }).problem(), "ended by signal 11"));
   CHECK(contains(error_of([] { std::abort(); }).problem(), "ended by signal 6"));
   CHECK(contains(error_of([] { ::_exit(0); }).problem(), "ended without a result"));
+  const auto half = [] { return Fragment{std::vector<double>(300'001)}; };
+  CHECK(contains(support::file_error([&] { (void)ChildProcess::result("some.file", {}, half); }).problem(),
+                 "ended without a result"));
 }
 
 TEST_CASE("a child that hangs is ended") {

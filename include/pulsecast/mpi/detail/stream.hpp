@@ -93,11 +93,9 @@ class MpiStream final : public MpiOutput {
   }
 
   bool work() override {
-    const auto next = waiting_.find(taken_);
-    if (next == waiting_.end()) return false;
-    MpiMessage bytes = std::move(next->second);
-    waiting_.erase(next);
-    take_(std::move(bytes));
+    auto next = waiting_.extract(taken_);
+    if (next.empty()) return false;
+    take_(std::move(next.mapped()));
     ++taken_;
     return true;
   }

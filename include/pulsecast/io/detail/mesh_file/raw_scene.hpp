@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,6 +43,13 @@ struct RawMesh {
   SharedArray<Float3> texture{};      ///< of the vertices, upward; empty without
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return precise.empty() ? vertices.size() : precise.size(); }
+
+  /// True if triangles have vertices that there are, and all vertices or none have texture coordinates.
+  [[nodiscard]] bool is_consistent() const {
+    const auto is_vertex = [&](std::uint32_t vertex) { return vertex < vertex_count(); };
+    return (texture.empty() || texture.size() == vertex_count()) &&
+           std::ranges::all_of(triangles, [&](const Corners3& c) { return std::ranges::all_of(c, is_vertex); });
+  }
 };
 
 /// Node that shows meshes.
@@ -92,18 +100,10 @@ struct RawScene {
   Matrix3 upright{1};                ///< to z up, by the file
   std::string reference{};           ///< name of a reference system
 
-  /// True if all numbers of vertices, materials and meshes are those of some.
+  /// True if all meshes have a material, and all nodes meshes.
   [[nodiscard]] bool is_consistent() const {
     const auto is_mesh = [&](std::uint32_t mesh) { return mesh < meshes.size(); };
-    return std::ranges::all_of(meshes,
-                               [&](const RawMesh& mesh) {
-                                 const auto is_vertex = [&](std::uint32_t v) { return v < mesh.vertex_count(); };
-                                 return mesh.material < materials.size() &&
-                                        (mesh.texture.empty() || mesh.texture.size() == mesh.vertex_count()) &&
-                                        std::ranges::all_of(mesh.triangles, [&](const Corners3& corners) {
-                                          return std::ranges::all_of(corners, is_vertex);
-                                        });
-                               }) &&
+    return std::ranges::all_of(meshes, [&](const RawMesh& mesh) { return mesh.material < materials.size(); }) &&
            std::ranges::all_of(nodes, [&](const RawNode& node) {
              return !node.meshes.empty() && std::ranges::all_of(node.meshes, is_mesh);
            });
@@ -127,16 +127,12 @@ struct RawScene {
 
 /// Text with `%20` as a blank, and so on. Source: RFC 3986, 2.1.
 [[nodiscard]] inline std::string unescaped(const std::string& text) {
-  const auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool escape = text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0;
-    made += escape ? static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2])) : text[i];
+    unsigned char code = 0;
+    const char* const at = text.data() + i;
+    const bool escape = *at == '%' && i + 2 < text.size() && std::from_chars(at + 1, at + 3, code, 16).ptr == at + 3;
+    made += escape ? static_cast<char>(code) : *at;
     if (escape) i += 2;
   }
   return made;
