@@ -150,7 +150,9 @@ std::string refusal(const std::string& bytes, const Fingerprint& of = key) {
 void seal(std::string& bytes) {
   io::detail::CacheHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
-  header.checksum = io::detail::checksum_of(header, std::as_bytes(std::span(bytes)).subspan(sizeof header));
+  Digest rest;
+  rest.add(std::as_bytes(std::span(bytes)).subspan(sizeof header));
+  header.checksum = io::detail::checksum_of(header, rest);
   std::memcpy(bytes.data(), &header, sizeof header);
 }
 

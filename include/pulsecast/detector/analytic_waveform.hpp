@@ -8,7 +8,6 @@
 #include <concepts>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -4,6 +4,7 @@
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/detail/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -26,12 +27,7 @@ struct FirstHit {
     for (const Reflection& r : input.reflections)
       if (r.power >= threshold && (!first || r.range < first->range)) first = &r;
     if (!first) return {};
-    workspace.echo = Echo{.range = first->range,
-                          .amplitude = first->power,
-                          .cos_incidence = first->cos_incidence,
-                          .object = first->object,
-                          .classification = first->classification,
-                          .kind = first->kind};
+    workspace.echo = echo_from(*first, first->range, first->power);
     return {{&workspace.echo, 1}, {}, 0};
   }
 };

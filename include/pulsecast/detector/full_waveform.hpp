@@ -9,7 +9,6 @@
 #include <concepts>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

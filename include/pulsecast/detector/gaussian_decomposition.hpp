@@ -9,7 +9,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/random.hpp>
@@ -113,8 +112,7 @@ class PhotonCounting {
       draw_photoelectrons(input, *quantiles, draws, w.shot);
       keep_detections(input.gate, draws, w);
     }
-    const auto earlier = [](const Count& a, const Count& b) { return a.time < b.time; };
-    std::sort(w.counts.begin(), w.counts.end(), earlier);
+    std::ranges::sort(w.counts, {}, &Count::time);
     find_echoes(input, w);
     number_echoes(w.echoes);
     return {w.echoes, {}, 0};

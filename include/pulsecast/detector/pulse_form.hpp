@@ -7,7 +7,6 @@
 #include <cmath>
 #include <concepts>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/exponential.hpp>
@@ -72,14 +71,13 @@ class MeasuredPulse {
   /// at all
   explicit MeasuredPulse(std::vector<PulseSample> samples) : samples_(std::move(samples)) {
     require_within("MeasuredPulse (number of samples)", static_cast<double>(samples_.size()), 2, 1e6, "");
-    const auto lower = [](const PulseSample& a, const PulseSample& b) { return a.power < b.power; };
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       require_within("MeasuredPulse: time", samples_[i].time, -1, 1, "s");
       require_not_negative("MeasuredPulse: power", samples_[i].power, "");
       if (i > 0 && !(samples_[i].time > samples_[i - 1].time))
         throw SettingError("MeasuredPulse: time", samples_[i].time, "s", "later than the sample before");
     }
-    const PulseSample peak = *std::max_element(samples_.begin(), samples_.end(), lower);
+    const PulseSample peak = *std::ranges::max_element(samples_, {}, &PulseSample::power);
     require_positive("MeasuredPulse: greatest power", peak.power, "");
     for (PulseSample& sample : samples_) sample = {sample.time - peak.time, sample.power / peak.power};
   }

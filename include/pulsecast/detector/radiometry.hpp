@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/extinction.hpp>

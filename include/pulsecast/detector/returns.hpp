@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_ASCII_GRID_HPP
 
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -49,11 +47,7 @@ struct AsciiGrid {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/suggestion.hpp>
@@ -68,52 +62,40 @@ namespace detail {
 /// Words of a file, between blanks and line ends. They may be any distance apart: a grid may be one long line.
 class FileWords {
  public:
-  FileWords(const std::filesystem::path& path, std::string_view expected) : file_(path, expected) {
-    left_ = text::without_byte_order_mark(file_.take(InputFile::block_size));
+  FileWords(const std::filesystem::path& path, std::string_view expected)
+      : path_(path.string()), file_(path, expected), left_(text::without_byte_order_mark(file_.text())) {}
+
+  /// Next word; empty at the end of the file.
+  [[nodiscard]] std::string_view next() noexcept {
+    for (; !left_.empty() && is_separator(left_.front()); left_.remove_prefix(1))
+      if (left_.front() == '\n') ++lines_;
+    const auto end = std::find_if(left_.begin(), left_.end(), is_separator);
+    const std::string_view word = left_.substr(0, static_cast<std::size_t>(end - left_.begin()));
+    left_.remove_prefix(word.size());
+    if (!word.empty()) line_ = lines_;
+    return word;
   }
 
-  /// Next word; empty at the end of the file. Valid until the next one.
-  [[nodiscard]] std::string_view next() {
-    cut_.clear();
-    for (;;) {
-      if (cut_.empty()) skip_separators();
-      const std::string_view part = left_.substr(
-          0, static_cast<std::size_t>(std::find_if(left_.begin(), left_.end(), is_separator) - left_.begin()));
-      left_.remove_prefix(part.size());
-      if (!part.empty()) line_ = lines_;
-      if (!left_.empty() && cut_.empty()) return part;
-      cut_ += part;
-      if (!left_.empty()) return cut_;
-      left_ = file_.take(InputFile::block_size);
-      if (!left_.empty()) continue;
-      is_open_ = is_open_ || !cut_.empty();
-      return cut_;
-    }
-  }
-
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return file_.bytes().size(); }  ///< size of the file [byte]
   [[nodiscard]] std::size_t line() const noexcept { return line_; }  ///< number of the line of the last word, from 1
-  [[nodiscard]] bool is_open() const noexcept { return is_open_; }   ///< true if the file ended directly after a word
-  [[nodiscard]] const InputFile& file() const noexcept { return file_; }  ///< the file itself
+  /// True if the file ends with a word.
+  [[nodiscard]] bool is_open() const noexcept { return !is_separator(file_.text().back()); }
 
-  /// Throws a `FileError` about the line of the last word, or another one.
+  /// Throws a `FileError` about the line of the last word, another one, or the whole file.
   [[noreturn]] void fail(const std::string& problem) const { fail_at(line_, problem); }
   [[noreturn]] void fail_at(std::size_t line, const std::string& problem) const {
-    throw FileError(file_.path(), TextTable::place(line), problem);
+    throw FileError(path_, TextTable::place(line), problem);
   }
+  [[noreturn]] void fail_whole(const std::string& problem) const { throw FileError(path_, "", problem); }
 
  private:
   [[nodiscard]] static bool is_separator(char c) noexcept { return text::is_blank(c) || c == '\n' || c == '\r'; }
 
-  void skip_separators() noexcept {
-    for (; !left_.empty() && is_separator(left_.front()); left_.remove_prefix(1))
-      if (left_.front() == '\n') ++lines_;
-  }
-
-  InputFile file_;
-  std::string_view left_;             // of the block
-  std::string cut_;                   // word across the ends of blocks
+  std::string path_;
+  MappedFile file_;
+  std::string_view left_;             // of the file
   std::size_t lines_ = 1, line_ = 1;  // of the next byte, and of the last word
-  bool is_open_ = false;
 };
 
 class AsciiGridReader {
@@ -128,10 +110,10 @@ class AsciiGridReader {
     try {
       grid_.raster.validate();
     } catch (const SettingError& error) {
-      words_.file().fail(error.what());
+      words_.fail_whole(error.what());
     }
     if (const std::string question = degrees_question(grid_.raster); !question.empty())
-      grid_.warnings.push_back(words_.file().path() + ": " + question);
+      grid_.warnings.push_back(words_.path() + ": " + question);
     return std::move(grid_);
   }
 
@@ -185,7 +167,7 @@ class AsciiGridReader {
     raster.first = {entries_[west].value + (west == xllcorner ? 0.5 : 0) * raster.pixel.x,
                     entries_[south].value + (raster.rows - (south == yllcorner ? 0.5 : 1)) * raster.pixel.y};
     // a height takes a digit and, but for the last, a separator
-    const std::uint64_t most = words_.file().size() / 2 + 1;
+    const std::uint64_t most = words_.size() / 2 + 1;
     if (pixels() > most)
       words_.fail_at(std::max(entries_[ncols].line, entries_[nrows].line),
                      "'ncols' times 'nrows' is " + std::to_string(pixels()) + ": expected at most " +
@@ -246,7 +228,7 @@ class AsciiGridReader {
     if (heights.size() < pixels())
       words_.fail("ends after " + std::to_string(heights.size()) + " heights: expected " + std::to_string(pixels()) +
                   ", 'ncols' times 'nrows'");
-    if (!is_any) words_.file().fail("has no height that is not missing: expected at least one");
+    if (!is_any) words_.fail_whole("has no height that is not missing: expected at least one");
     if (strange.count > 0)
       warn(strange.first,
            "a height is beyond 1e15 m, one of " + std::to_string(strange.count) + ": they count as missing");
@@ -254,7 +236,7 @@ class AsciiGridReader {
   }
 
   void warn(std::size_t line, const std::string& oddity) {
-    grid_.warnings.push_back(words_.file().path() + ", " + TextTable::place(line) + ": " + oddity);
+    grid_.warnings.push_back(words_.path() + ", " + TextTable::place(line) + ": " + oddity);
   }
 
   [[nodiscard]] std::string quoted(Key key) const { return text::quoted(names_[key]); }

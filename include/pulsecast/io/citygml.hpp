@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_CITYGML_HPP
 #define PULSECAST_IO_CITYGML_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/echo.hpp>
+#include <pulsecast/material/image.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -21,25 +20,16 @@ using Colour = Vec3;
 /// Red, green and blue as in files and screens, gamma-encoded.
 using Srgb = std::array<std::uint8_t, 3>;
 
-/// Decodes sRGB to linear light. Source: IEC 61966-2-1, sRGB.
+/// Decodes sRGB to linear light. As `srgb_decoded`.
 [[nodiscard]] inline Colour from_srgb(const Srgb& bytes) noexcept {
-  static const auto light = [] {
-    std::array<double, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      const double v = static_cast<double>(i) / 255;
-      table[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-    }
-    return table;
-  }();
-  return {light[bytes[0]], light[bytes[1]], light[bytes[2]]};
+  return {linear_share(bytes[0]), linear_share(bytes[1]), linear_share(bytes[2])};
 }
 
 /// Nearest colour of a screen. Source: IEC 61966-2-1, sRGB.
 [[nodiscard]] inline Srgb to_srgb(const Colour& c) noexcept {
   Srgb bytes{};
   for (int k = 0; k < 3; ++k) {
-    const double v = std::clamp(c[k], 0.0, 1.0);
-    const double coded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    const double coded = srgb_encoded(std::clamp(c[k], 0.0, 1.0));
     bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(255 * coded));
   }
   return bytes;

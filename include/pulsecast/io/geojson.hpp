@@ -5,14 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
@@ -82,13 +75,11 @@ class HullOfStream {
 }  // namespace detail
 
 /// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for a look in QGIS:
-/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points. It is
-/// a Point for a leg
-///   that does not move. Properties: kind, leg, pulses, points (all echoes of the leg), start and end [s];
+/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points; a
+///   Point for a leg that does not move. Properties: kind, leg, pulses, points (all echoes of the leg), start, end [s];
 /// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one `footprint_interval`, counted
-/// from the start of
-///   the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points, area [m^2]. Points
-///   on a line have none.
+///   from the start of the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points,
+///   area [m^2]. Points on a line have none.
 ///
 /// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and
 /// GDAL read that member; RFC 7946 allows longitude and latitude of WGS 84 only, so strict readers misplace coordinates

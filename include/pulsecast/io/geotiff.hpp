@@ -3,10 +3,8 @@
 #ifndef PULSECAST_IO_GEOTIFF_HPP
 #define PULSECAST_IO_GEOTIFF_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -58,13 +56,10 @@ struct GeoTiff {
 #if PULSECAST_DEFINES(IO_GEOTIFF)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <new>
-#include <string_view>
 #include <system_error>
 #include <type_traits>
-#include <utility>
 
 #include <tiffio.h>
 

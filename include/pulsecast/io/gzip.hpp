@@ -4,13 +4,7 @@
 #define PULSECAST_IO_GZIP_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <memory>
 #include <new>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <zlib.h>
 

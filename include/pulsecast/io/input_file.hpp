@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <ios>
 #include <new>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -148,9 +143,11 @@ class InputFile {
 /// must not be written to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
-  /// Maps a file. @throws FileError
-  explicit MappedFile(const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
+  /// Maps a file; `expected` content for error messages, as in "an XML file", if any. @throws FileError
+  explicit MappedFile(const std::filesystem::path& path, std::string_view expected = {}) {
+    const auto fail = [&](std::string_view problem) {
+      throw FileError(path.string(), "", text::joined({problem, expected.empty() ? "" : ": expected ", expected}));
+    };
     const auto system_error = [] { return std::generic_category().message(errno); };
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) fail(errno == ENOENT ? "does not exist" : "cannot be read: " + system_error());
@@ -167,6 +164,10 @@ class MappedFile {
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }  ///< content of the file
+  /// Content of the file, as text.
+  [[nodiscard]] std::string_view text() const noexcept {
+    return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+  }
 
  private:
   struct Descriptor {
@@ -178,6 +179,19 @@ class MappedFile {
 
   std::span<const std::byte> bytes_;
 };
+
+/// Regular files of a folder, sorted; by a `recursive_directory_iterator`, those of the folders below it, too.
+/// @throws FileError if it cannot be read
+template <class Iterator = std::filesystem::directory_iterator>
+[[nodiscard]] std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error, ignored;
+  for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+  if (error) throw FileError(folder.string(), "", "cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 /// Calls a function that reads a file. Too little memory for what it holds is a `FileError`.
 template <class Function>

@@ -24,12 +24,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
@@ -73,8 +67,7 @@ PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) 
   while (table.next())
     if (!table.text().starts_with('#')) rows.push_back(detail::leaf_row(table));
   if (rows.empty()) table.fail("has no rows: expected a table of leaf projections, x,y,z,G");
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto& a, const auto& b) { return a.projection.zenith < b.projection.zenith; });
+  std::ranges::stable_sort(rows, {}, [](const detail::LeafRow& row) { return row.projection.zenith; });
 
   // beyond the outermost rows, their values hold
   rows.insert(rows.begin(), {{0, rows.front().projection.g}, rows.front().line});

@@ -41,12 +41,7 @@ namespace PULSECAST_NAMESPACE::io {
 #if PULSECAST_DEFINES(IO_MESH_FILE)
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
@@ -127,13 +122,9 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
       file = detail::file_of(path, settings, workers);
     } else {
       detail::check_ply(path);
-      const auto import = [&](const Workers& by, const auto& opened) {
-        return detail::MeshImport(path, settings, by, opened).read();
-      };
+      const auto import = [&](const auto& opened) { return detail::MeshImport(path, settings, opened).read(); };
       const detail::RawScene scene =
-          settings.isolated
-              ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
-              : import(workers, nullptr);
+          settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(nullptr);
       file = detail::MeshFileMaker(path, scene, settings, workers).make();
     }
     detail::replace_materials(file, settings);

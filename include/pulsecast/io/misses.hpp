@@ -4,13 +4,7 @@
 #define PULSECAST_IO_MISSES_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

@@ -43,11 +43,8 @@ struct MaterialLibrary {
 #if PULSECAST_DEFINES(IO_MTL)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <istream>
-#include <string_view>
 
 #include <tiny_obj_loader.h>
 
@@ -95,27 +92,7 @@ class MtlReader : private StatementBuffer {
       return;
     }
     const std::vector<std::string_view>& given = words();
-    const auto are_within = [&](double high) {
-      return std::all_of(given.begin(), given.end(), [high](std::string_view word) {
-        const double value = number_in<double>(word).value_or(-1);
-        return value >= 0 && value <= high;
-      });
-    };
-    const auto is_angle = [](std::string_view word) {
-      const double value = number_in<double>(word).value_or(0);
-      return value >= 1 && value <= 85;
-    };
-    const bool is_one = given.size() == 1;
-    if (keyword() == "helios_reflectance")
-      require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
-    if (keyword() == "helios_classification")
-      require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
-    if (keyword() == "pulsecast_retroreflection")
-      require(!given.empty() && given.size() <= 2 && are_within(1e6) && (is_one || is_angle(given[1])),
-              "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
-    if (keyword() == "pulsecast_normalizedPhong")
-      require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
-    if (const char* const expected = expected_of_light_key(keyword(), given)) require(false, expected);
+    if (const char* const expected = expected_words(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
     if (keyword() == "Kd" || keyword() == "Ks")
       ready += standard_numbers(given, 3);

@@ -5,16 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -74,7 +69,7 @@ class OutputFile {
     if (std::filesystem::is_directory(path_, ignored))
       throw FileError(path_.string(), "", "is a folder; expected the name of a file");
     buffer_.reserve(capacity);
-    file_ = Temporary(temporary_name(path_));
+    file_ = std::make_unique<Temporary>(temporary_name(path_));
     open_alone();
   }
 
@@ -105,7 +100,7 @@ class OutputFile {
     require_open();
     flush();
     while (!bytes.empty())
-      position += advance(bytes, ::pwrite(file_.number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
+      position += advance(bytes, ::pwrite(file_->number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
   }
 
   /// Reads bytes written before, from `position` [byte] on, also without a name; on several threads while none writes.
@@ -116,7 +111,7 @@ class OutputFile {
     while (!bytes.empty() && position < passed_on) {
       errno = 0;
       const std::size_t some = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), passed_on - position));
-      const ssize_t count = ::pread(file_.number, bytes.data(), some, static_cast<off_t>(position));
+      const ssize_t count = ::pread(file_->number, bytes.data(), some, static_cast<off_t>(position));
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) throw error("cannot be read again", errno, "what was written");
       bytes = bytes.subspan(static_cast<std::size_t>(count));
@@ -126,7 +121,7 @@ class OutputFile {
   }
 
   /// Removes the name of the temporary file, which lives on: for what this object alone reads again, and never commits.
-  void forget_name() noexcept { file_.remove(); }
+  void forget_name() noexcept { file_->remove(); }
 
   /// Continues after bytes that others wrote to the temporary file; without an encoder.
   void continue_at(std::uint64_t position) {
@@ -134,7 +129,7 @@ class OutputFile {
     require_open();
     flush();
     position_ = position;
-    if (::lseek(file_.number, static_cast<off_t>(position), SEEK_SET) < 0)
+    if (::lseek(file_->number, static_cast<off_t>(position), SEEK_SET) < 0)
       fail("cannot be written", errno, "a seekable file");
   }
 
@@ -152,46 +147,39 @@ class OutputFile {
     if (std::exchange(piece_, nullptr) != nullptr) return;
     require_open();
     flush(true);
-    if (!stands_at(file_.number, file_.name)) {
+    if (!stands_at(file_->number, file_->name)) {
       discard();
       throw FileError(path_.string(), "",
                       "cannot be completed: another program has replaced " + temporary_name(path_).string());
     }
     errno = 0;
     std::error_code failed;
-    if (!sync_to_disk(file_.number)) {
+    if (!sync_to_disk(file_->number)) {
       failed = system_error(errno);
     } else {
-      std::filesystem::rename(file_.name, path_, failed);
+      std::filesystem::rename(file_->name, path_, failed);
     }
     if (failed)
       fail("cannot be completed", failed.value(),
            text::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
-    file_.close();  // the lock ends after the renaming; closing reports no error that syncing has not
+    file_->close();  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
   /// Abandons the file and removes the bytes written: for writers that cannot write the rest.
   void discard() noexcept {
-    file_ = {};
+    file_.reset();
     piece_ = nullptr;
   }
 
  private:
   /// Open file, and its name. Destruction removes both.
   struct Temporary {
-    std::filesystem::path name{};
+    std::filesystem::path name;
     int number = -1;  ///< descriptor; negative: closed
 
-    Temporary() = default;
     explicit Temporary(std::filesystem::path its_name) : name(std::move(its_name)) {}
-    Temporary(Temporary&& other) noexcept : name(std::move(other.name)), number(std::exchange(other.number, -1)) {}
-    Temporary& operator=(Temporary&& other) noexcept {
-      remove();
-      close();
-      name = std::move(other.name);
-      number = std::exchange(other.number, -1);
-      return *this;
-    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
     ~Temporary() {
       remove();
       close();
@@ -212,22 +200,22 @@ class OutputFile {
 
   /// Opens the temporary file exclusively. Removes what a killed program left: its processes may still write to that.
   void open_alone() {
-    const char* const name = file_.name.c_str();
+    const char* const name = file_->name.c_str();
     for (int tries = 0; tries < 100; ++tries) {
-      file_.number = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      const bool is_new = file_.number >= 0;
+      file_->number = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      const bool is_new = file_->number >= 0;
       if (!is_new && errno == EEXIST) {
-        file_.number = ::open(name, O_RDWR | O_CLOEXEC | O_NONBLOCK);
-        if (file_.number < 0 && errno == ENOENT) continue;
+        file_->number = ::open(name, O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        if (file_->number < 0 && errno == ENOENT) continue;
       }
-      if (file_.number < 0) fail("cannot be created", errno, "an existing, writable folder");
-      const bool is_alone = lock_alone(file_.number);
+      if (file_->number < 0) fail("cannot be created", errno, "an existing, writable folder");
+      const bool is_alone = lock_alone(file_->number);
       struct stat status {};
-      if (is_alone && stands_at(file_.number, file_.name) && ::fstat(file_.number, &status) == 0) {
+      if (is_alone && stands_at(file_->number, file_->name) && ::fstat(file_->number, &status) == 0) {
         if (is_new || S_ISCHR(status.st_mode)) return;
-        if (S_ISREG(status.st_mode)) file_.remove();
+        if (S_ISREG(status.st_mode)) file_->remove();
       }
-      file_.close();  // without its name, which is not ours
+      file_->close();  // without its name, which is not ours
       if (!is_alone)
         throw FileError(path_.string(), "", text::joined({"is already being written: ", name, " is locked"}));
     }
@@ -243,12 +231,12 @@ class OutputFile {
   }
 
   void require_open() const {
-    if (file_.number < 0)
+    if (!file_ || file_->number < 0)
       throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
   }
 
   void put(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) advance(bytes, ::write(file_.number, bytes.data(), bytes.size()));
+    while (!bytes.empty()) advance(bytes, ::write(file_->number, bytes.data(), bytes.size()));
   }
 
   /// Removes from `bytes` what a call has written. Returns the number of bytes.
@@ -274,7 +262,7 @@ class OutputFile {
   }
 
   std::filesystem::path path_;
-  Temporary file_;
+  std::unique_ptr<Temporary> file_;
   std::unique_ptr<OutputEncoder> encoder_;
   std::vector<std::byte>* piece_ = nullptr;
   std::vector<std::byte> buffer_, encoded_;

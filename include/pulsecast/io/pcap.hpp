@@ -4,11 +4,6 @@
 #define PULSECAST_IO_PCAP_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/packets/packet.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_PICTURE_HPP
 #define PULSECAST_IO_PICTURE_HPP
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,13 +37,9 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #if PULSECAST_DEFINES(IO_PICTURE)
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
-#include <utility>
 
 #include <stb/stb_image.h>
 
@@ -131,20 +126,8 @@ class PictureShelf {
 PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
   if (!settings.isolated) return reading(source.file, [&] { return detail::decoded(source, settings.max_pixels); });
   const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
-  detail::ChildResult found =
-      detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
-        const Image image = detail::decoded(source, settings.max_pixels);
-        for (const std::uint32_t number : {image.width, image.height, image.channels}) output.value(number);
-        output.array(std::span(image.samples.data(), image.samples.size()));
-      });
-  Image image{found.value<std::uint32_t>(), found.value<std::uint32_t>(), found.value<std::uint32_t>()};
-  image.samples = {found.array<std::uint8_t>(), found.owner()};
-  try {
-    image.validate();
-  } catch (const SettingError&) {
-    found.fail();
-  }
-  return image;
+  return detail::ChildProcess::result(source.file.string(), limits,
+                                      [&] { return detail::decoded(source, settings.max_pixels); });
 }
 
 PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials,

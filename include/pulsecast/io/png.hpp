@@ -6,15 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <stb/stb_image_write.h>
 

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_IO_PNG_HEIGHTS_HPP
 #define PULSECAST_IO_PNG_HEIGHTS_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
@@ -55,8 +52,6 @@ struct PngHeightSettings {
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
-#include <utility>
 
 #include <stb/stb_image.h>
 

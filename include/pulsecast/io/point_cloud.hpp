@@ -4,10 +4,8 @@
 #define PULSECAST_IO_POINT_CLOUD_HPP
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>

@@ -20,12 +20,6 @@ namespace PULSECAST_NAMESPACE::io {
 #if PULSECAST_DEFINES(IO_PULSE_FORM)
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>

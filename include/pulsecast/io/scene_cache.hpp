@@ -4,20 +4,10 @@
 #define PULSECAST_IO_SCENE_CACHE_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <typeinfo>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/concepts.hpp>
@@ -128,12 +118,6 @@ void list_members(Archive& a, Material& m) {
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
 }
-/// Lists the members of a picture.
-template <class Archive>
-void list_members(Archive& a, Image& image) {
-  auto& [width, height, channels, samples] = image;
-  a(width, height, channels, samples);
-}
 /// Lists the members of a map of reflectances.
 template <class Archive>
 void list_members(Archive& a, ReflectanceMap& map) {
@@ -159,7 +143,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 9;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 10;         ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;
@@ -178,11 +162,6 @@ static_assert(sizeof(CacheHeader) == 128 && std::is_trivially_copyable_v<CacheHe
   header.checksum = {};
   digest.add(std::as_bytes(std::span(&header, 1)));
   return digest.value();
-}
-[[nodiscard]] inline Fingerprint checksum_of(const CacheHeader& header, std::span<const std::byte> rest) {
-  Digest digest;
-  digest.add(rest);
-  return checksum_of(header, digest);
 }
 
 /// Fingerprint of the part type of a file and of the library's version.
@@ -210,8 +189,9 @@ inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& p
     throw Unusable{"was written by another version of the program, or for other shapes"};
   if (header.size != bytes.size()) throw Unusable{"is truncated, or has grown"};
   if (header.key != key) throw Unusable{"is out of date: a source or a setting has changed"};
-  if (header.checksum != checksum_of(header, bytes.subspan(sizeof header)))
-    throw Unusable{"is damaged: its checksum is wrong"};
+  Digest rest;
+  rest.add(bytes.subspan(sizeof header));
+  if (header.checksum != checksum_of(header, rest)) throw Unusable{"is damaged: its checksum is wrong"};
 }
 
 /// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's
@@ -246,7 +226,11 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   detail::CacheHeader header;
   const auto header_bytes = std::as_bytes(std::span(&header, 1));
   file.write(header_bytes);  // placeholder
-  ArchiveWriter writer(file);
+  Digest digest;
+  ArchiveWriter writer([&](std::span<const std::byte> bytes) {
+    digest.add(bytes);
+    file.write(bytes);
+  });
   writer(std::uint64_t{parts.size()});
   for (const typename S::Part& part : parts) {
     if (part.motion && !detail::Restorable<PartMotion>)
@@ -262,7 +246,7 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   header.program = detail::program_of<typename S::Part>();
   header.key = key;
   header.size = file.position();
-  header.checksum = detail::checksum_of(header, writer.digest());
+  header.checksum = detail::checksum_of(header, digest);
   file.overwrite(0, header_bytes);
   file.commit();
 }

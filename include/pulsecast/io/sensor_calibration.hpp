@@ -5,12 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
@@ -53,11 +47,10 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   detail::VelodyneFormat::validate(sheet);
   const detail::CalibrationFile file(path, "a Velodyne calibration");
   const std::size_t count = sheet.lasers.size();
-  static_cast<void>(file.number(file.at(file.root(), "num_lasers"), "num_lasers", static_cast<double>(count),
-                                static_cast<double>(count)));
+  file.number(file.at(file.root(), "num_lasers"), "num_lasers", static_cast<double>(count), static_cast<double>(count));
   if (const auto resolution = file.find(file.root(), "distance_resolution")) {
     const double own = detail::VelodyneFormat::distance_resolution(sheet);
-    static_cast<void>(file.number(*resolution, "distance_resolution", own, own));
+    file.number(*resolution, "distance_resolution", own, own);
   }
   const YAML::Node lasers = file.at(file.root(), "lasers");
   if (!lasers.IsSequence() || lasers.size() != count)
@@ -76,7 +69,7 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
     sheet.lasers[k].height = number("vert_offset_correction", 1);
     for (const char* const name :
          {"dist_correction", "dist_correction_x", "dist_correction_y", "horiz_offset_correction"})
-      if (file.find(laser, name)) static_cast<void>(number(name, 0));
+      if (file.find(laser, name)) number(name, 0);
   }
   return sheet;
 }
@@ -89,19 +82,6 @@ namespace detail {
   for (const double value : values)
     list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
   return list + "]";
-}
-
-/// Member of a sensor's metadata, of the form without sections, or of the later one with them.
-[[nodiscard]] inline std::optional<YAML::Node> metadata_member(const CalibrationFile& file, const char* section,
-                                                               const char* key) {
-  if (const auto part = file.find(file.root(), section)) return file.find(*part, key);
-  return file.find(file.root(), key);
-}
-
-/// Member that there must be.
-[[nodiscard]] inline YAML::Node metadata_need(const CalibrationFile& file, const char* section, const char* key) {
-  if (const auto node = metadata_member(file, section, key)) return *node;
-  file.fail(file.root(), std::string("has no ") + key);
 }
 
 }  // namespace detail
@@ -146,11 +126,11 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
 /// with them; all else is of the data sheet. @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path) {
   const detail::CalibrationFile file(path, "the metadata of an Ouster sensor");
-  const YAML::Node line = detail::metadata_need(file, "sensor_info", "prod_line");
+  const YAML::Node line = file.at(file.section("sensor_info"), "prod_line");
   const std::string model = file.word(line, "prod_line");
   if (!model.starts_with("OS-1-64")) file.fail(line, "prod_line is " + text::quoted(model) + ": expected OS-1-64");
 
-  const YAML::Node mode = detail::metadata_need(file, "config_params", "lidar_mode");
+  const YAML::Node mode = file.at(file.section("config_params"), "lidar_mode");
   const std::string word = file.word(mode, "lidar_mode");
   std::string_view rest = word;
   const auto columns = text::number_in<unsigned>(text::take_word(rest, "x"));
@@ -161,7 +141,7 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
 
   const std::size_t count = sensor.lasers.size();
   const auto angles = [&](const char* name, double most) {
-    return file.numbers(detail::metadata_need(file, "beam_intrinsics", name), name, count, -most, most);
+    return file.numbers(file.at(file.section("beam_intrinsics"), name), name, count, -most, most);
   };
   const std::vector<double> altitudes = angles("beam_altitude_angles", 90),
                             azimuths = angles("beam_azimuth_angles", 180);
@@ -170,10 +150,10 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
     sensor.lasers[k].azimuth = azimuths[k] * pi / 180;
   }
   constexpr const char* lenses = "lidar_origin_to_beam_origin_mm";
-  if (const auto radius = detail::metadata_member(file, "beam_intrinsics", lenses))
+  if (const auto radius = file.find(file.section("beam_intrinsics"), lenses))
     sensor.exit_radius = 1e-3 * file.number(*radius, lenses, 0, 1000);
   constexpr const char* place = "lidar_to_sensor_transform";
-  if (const auto transform = detail::metadata_member(file, "lidar_intrinsics", place))
+  if (const auto transform = file.find(file.section("lidar_intrinsics"), place))
     for (SensorLaser& laser : sensor.lasers) laser.height = 1e-3 * file.numbers(*transform, place, 16, -1000, 1000)[11];
   return sensor;
 }

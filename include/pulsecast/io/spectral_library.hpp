@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 #define PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,11 +41,7 @@ struct SpectrumFile {
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <optional>
-#include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
@@ -96,7 +91,7 @@ class SpectrumReader {
     if (!unit_ || !scale_) titles();
     SpectrumFile file;
     file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
-    std::ranges::stable_sort(samples_, [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    std::ranges::stable_sort(samples_, {}, &Row::wavelength);
     file.spectrum = std::make_shared<const Spectrum>(united());
     file.warnings = std::move(warnings_);
     return file;
@@ -161,8 +156,7 @@ class SpectrumReader {
 
   std::string take_wavelengths() {
     static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
-    const auto [low, high] = std::minmax_element(
-        samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
+    const auto [low, high] = std::ranges::minmax_element(samples_, {}, &Row::wavelength);
     const double shortest = low->wavelength;
     const bool given = unit_.has_value();
     if (!given)
@@ -184,9 +178,7 @@ class SpectrumReader {
   }
 
   std::string take_reflectances(ReflectanceScale& scale) {
-    const double largest = std::max_element(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) {
-                             return a.reflectance < b.reflectance;
-                           })->reflectance;
+    const double largest = std::ranges::max_element(samples_, {}, &Row::reflectance)->reflectance;
     const std::string reach = "its values reach " + text::to_text(largest);
     const bool many = largest > 1.5;
     const bool given = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
@@ -247,18 +239,11 @@ PULSECAST_INLINE SpectrumFile read_spectrum(const std::filesystem::path& path) {
 }
 
 PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
-      std::error_code ignored;
-      if (entry->is_regular_file(ignored) && !entry->path().filename().string().starts_with('.'))
-        files.push_back(entry->path());
-    }
-    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
-    std::sort(files.begin(), files.end());
-  } else {
-    files.push_back(path);
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files{path};
+  if (std::filesystem::is_directory(path, ignored)) {
+    files = files_in(path);
+    std::erase_if(files, [](const auto& file) { return file.filename().string().starts_with('.'); });
   }
   SpectralLibrary library;
   for (const std::filesystem::path& file : files) {

@@ -4,13 +4,7 @@
 #define PULSECAST_IO_TRAJECTORY_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <span>
-#include <string>
-#include <utility>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>

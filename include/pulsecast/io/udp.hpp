@@ -4,11 +4,8 @@
 #define PULSECAST_IO_UDP_HPP
 
 #include <cerrno>
-#include <cstdint>
 #include <optional>
-#include <string>
 #include <system_error>
-#include <utility>
 
 #include <netinet/in.h>
 #include <sys/socket.h>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_VELODYNE_PACKETS_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/units.hpp>

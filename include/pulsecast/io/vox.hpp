@@ -3,10 +3,8 @@
 #ifndef PULSECAST_IO_VOX_HPP
 #define PULSECAST_IO_VOX_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -62,10 +60,7 @@ struct VoxelFile {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/text.hpp>

@@ -35,11 +35,7 @@ struct WorldFile {
 #if PULSECAST_DEFINES(IO_WORLD_FILE)
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
 #include <system_error>
-#include <utility>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>

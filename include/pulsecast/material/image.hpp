@@ -4,6 +4,7 @@
 #define PULSECAST_MATERIAL_IMAGE_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -12,6 +13,24 @@
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+/// Linear share of light for a sample of a display, both from 0 to 1. Source: IEC 61966-2-1 (sRGB).
+[[nodiscard]] inline double srgb_decoded(double sample) noexcept {
+  return sample <= 0.04045 ? sample / 12.92 : std::pow((sample + 0.055) / 1.055, 2.4);
+}
+/// Sample of a display for a linear share of light, both from 0 to 1. Source: IEC 61966-2-1 (sRGB).
+[[nodiscard]] inline double srgb_encoded(double share) noexcept {
+  return share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055;
+}
+/// Linear share of light, from 0 to 1, for a sample of a picture.
+[[nodiscard]] inline double linear_share(std::uint8_t sample) noexcept {
+  static const auto table = [] {
+    std::array<double, 256> shares{};
+    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = srgb_decoded(static_cast<double>(i) / 255);
+    return shares;
+  }();
+  return table[sample];
+}
 
 /// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the
 /// picture, (1, 1) the upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.

@@ -4,11 +4,8 @@
 #define PULSECAST_MATERIAL_MATERIAL_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

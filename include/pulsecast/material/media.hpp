@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -69,8 +68,7 @@ class Media {
       for (std::size_t k = 0; k < i; ++k) require_nested(regions[k].bounds, regions[i].bounds, i);
     }
     outermost_first(regions);
-    uniform_ = regions.size() == 1 && regions[0].densities.empty() && regions[0].bounds.min == everywhere().min &&
-               regions[0].bounds.max == everywhere().max;
+    uniform_ = regions.size() == 1 && regions[0].densities.empty() && regions[0].bounds == everywhere();
     regions_ = std::make_shared<const std::vector<MediumRegion>>(std::move(regions));
   }
 

@@ -5,31 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-namespace detail {
-
-/// Linear share of light, from 0 to 1, of a sample of a picture. Source: IEC 61966-2-1 (sRGB).
-[[nodiscard]] inline double linear_share(std::uint8_t sample) noexcept {
-  static const auto table = [] {
-    std::array<double, 256> shares{};
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const double full = static_cast<double>(i) / 255;
-      shares[i] = full <= 0.04045 ? full / 12.92 : std::pow((full + 0.055) / 1.055, 2.4);
-    }
-    return shares;
-  }();
-  return table[sample];
-}
-
-}  // namespace detail
 
 /// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
 /// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all

@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_SPECTRUM_HPP
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>

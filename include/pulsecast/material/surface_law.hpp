@@ -4,14 +4,10 @@
 #define PULSECAST_MATERIAL_SURFACE_LAW_HPP
 
 #include <algorithm>
-#include <array>
 #include <concepts>
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

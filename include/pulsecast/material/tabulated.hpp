@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <string_view>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>

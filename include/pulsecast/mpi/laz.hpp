@@ -4,16 +4,9 @@
 #define PULSECAST_MPI_LAZ_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las.hpp>
@@ -86,10 +79,7 @@ class MpiLaz final : public MpiOutput {
         return place_chunks();
       case MessageKind::position: {
         const auto [number, position] = message.next<Size>();
-        const auto chunk = compressed_.find(number);
-        file_.write(position, chunk->second);
-        compressed_.erase(chunk);
-        return;
+        return file_.write(position, compressed_.extract(number).mapped());
       }
       case MessageKind::all_points:
         all_points_ = message.next<std::uint64_t>();
@@ -182,13 +172,11 @@ class MpiLaz final : public MpiOutput {
 
   /// First process: sends the positions of chunks before which no size is missing.
   void place_chunks() {
-    for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end();
-         next = sizes_.find(sizes_of_placed_.size())) {
-      const auto [size, owner] = next->second;
-      send(owner, std::move(MpiMessage().add(MessageKind::position).add(Size{next->first, end_})));
+    while (const auto next = sizes_.extract(sizes_of_placed_.size())) {
+      const auto [size, owner] = next.mapped();
+      send(owner, std::move(MpiMessage().add(MessageKind::position).add(Size{next.key(), end_})));
       end_ += size;
       sizes_of_placed_.push_back(size);
-      sizes_.erase(next);
     }
   }
 

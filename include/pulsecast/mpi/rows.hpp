@@ -3,11 +3,7 @@
 #ifndef PULSECAST_MPI_ROWS_HPP
 #define PULSECAST_MPI_ROWS_HPP
 
-#include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <optional>
-#include <utility>
 
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>

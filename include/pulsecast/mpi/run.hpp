@@ -5,16 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>

@@ -8,8 +8,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

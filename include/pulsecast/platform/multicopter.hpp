@@ -7,8 +7,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/random.hpp>

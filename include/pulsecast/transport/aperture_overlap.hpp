@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -56,11 +54,10 @@ struct ApertureGeometry {
   const Vec2 axes = beam_radius(laser, range);
   const double beam = std::max(std::sqrt(axes.x * axes.y), 1e-9);  // a line is a thin disc
   const double aperture = 0.5 * receiver.diameter, view = aperture + range * std::tan(0.5 * g.field_of_view);
-  const double surface_epsilon = std::fabs(g.separation - range * std::tan(g.inclination));
+  const double distance = std::fabs(g.separation - range * std::tan(g.inclination));
   // the shadow of the obstruction ends where its edge no longer covers the view
   const double shadow = std::max(0.5 * g.obstruction - range * std::tan(0.5 * g.field_of_view), 0.0);
-  return (shared_area(beam, view, surface_epsilon) - shared_area(beam, std::min(shadow, view), surface_epsilon)) /
-         (pi * beam * beam);
+  return (shared_area(beam, view, distance) - shared_area(beam, std::min(shadow, view), distance)) / (pi * beam * beam);
 }
 
 /// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range, and of a hundredth

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 #define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 
-#include <algorithm>
-#include <cstddef>
 #include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_MULTIPLE_SCATTERING_HPP
 #define PULSECAST_TRANSPORT_MULTIPLE_SCATTERING_HPP
 
-#include <cstddef>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 

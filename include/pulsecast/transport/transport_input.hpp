@@ -4,8 +4,6 @@
 #define PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include <pulsecast/base/shared_array.hpp>

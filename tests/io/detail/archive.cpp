@@ -14,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/output_file.hpp>
 
 #include "support/temporary_folder.hpp"
 
@@ -65,7 +66,7 @@ struct Tree {
 template <class... Items>
 std::shared_ptr<const MappedFile> archived(const Items&... items) {
   OutputFile file(folder / "archive");
-  ArchiveWriter writer(file);
+  ArchiveWriter writer([&](std::span<const std::byte> bytes) { file.write(bytes); });
   writer(items...);
   file.commit();
   return std::make_shared<const MappedFile>(folder / "archive");

@@ -5,26 +5,21 @@
 
 #include <array>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <string_view>
 #include <type_traits>
 #include <typeinfo>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/digest.hpp>
-#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/material/image.hpp>
 
 /// Serialization of objects, whose arrays are used in place. For one program on one machine: arrays keep their layout.
 namespace PULSECAST_NAMESPACE::io {
@@ -79,32 +74,35 @@ struct ItemHead {
 
 template <class Item, class Element>
 [[nodiscard]] std::uint64_t type_mark() {
-  static const std::uint64_t mark = [] {
-    Digest digest;
-    for (const std::type_info* type : {&typeid(Item), &typeid(Element)}) digest.add(std::string_view(type->name()));
-    digest.add(std::uint64_t{sizeof(Element)} << 8 | alignof(Element));
-    return digest.value().low;
-  }();
-  return mark;
+  constexpr std::uint64_t layout = std::uint64_t{sizeof(Element)} << 8 | alignof(Element);
+  return (typeid(Item).hash_code() * 31 + typeid(Element).hash_code()) * 31 + layout;
 }
 
 inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};  ///< number of an empty shared pointer
 
 }  // namespace detail
 
-/// Writes objects in sequence into a file, from its position on, a multiple of 64 bytes. Objects are plain values,
-/// `SharedArray` arrays, strings, vectors, variants, shared pointers (shared objects are written once), and types that
-/// pass their members by `template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
+/// Lists the members of a picture.
+template <class Archive>
+void list_members(Archive& a, Image& image) {
+  auto& [width, height, channels, samples] = image;
+  a(width, height, channels, samples);
+}
+
+/// Writes objects in sequence by a function that takes bytes, for a position in memory or a file that is a multiple of
+/// 64 bytes. Objects are plain values, `SharedArray` arrays, strings, vectors, variants, shared pointers (shared
+/// objects are written once), and types that pass their members by `template <class Archive> void archive(Archive& a) {
+/// a(member1_, member2_, ...); }`.
 class ArchiveWriter {
  public:
-  explicit ArchiveWriter(OutputFile& file) : file_(file) {}
+  using Write = std::function<void(std::span<const std::byte> bytes)>;
+
+  explicit ArchiveWriter(Write write) : write_(std::move(write)) {}
 
   template <class... Items>
   void operator()(const Items&... items) {
     (put(items), ...);
   }
-
-  [[nodiscard]] const Digest& digest() const noexcept { return digest_; }  ///< of all bytes written so far
 
  private:
   template <class Item, class Element>
@@ -116,10 +114,10 @@ class ArchiveWriter {
 
   void put_bytes(std::span<const std::byte> bytes, std::size_t alignment) {
     static constexpr std::array<std::byte, detail::array_alignment> zeros{};
-    const std::span<const std::byte> gap(zeros.data(), detail::aligned(file_.position(), alignment) - file_.position());
+    const std::span<const std::byte> gap(zeros.data(), detail::aligned(position_, alignment) - position_);
     for (const std::span<const std::byte> next : {gap, bytes}) {
-      digest_.add(next);
-      file_.write(next);
+      write_(next);
+      position_ += next.size();
     }
   }
 
@@ -164,8 +162,8 @@ class ArchiveWriter {
     list_members(*this, const_cast<T&>(object));
   }
 
-  OutputFile& file_;
-  Digest digest_;
+  Write write_;
+  std::uint64_t position_ = 0;
   std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of shared objects, by address and type
 };
 

@@ -9,8 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,12 +19,7 @@
 #include <memory>
 #include <new>
 #include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -39,152 +32,11 @@
 #endif
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/no_network.hpp>
 
 /// Calls of foreign libraries in a child process, so that what kills or hangs them is an error.
 namespace PULSECAST_NAMESPACE::io::detail {
-
-/// Writes the result of a child into a file.
-class ChildOutput {
- public:
-  explicit ChildOutput(int file) : file_(file) {}
-
-  /// A number, or a struct of plain numbers.
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void value(const T& value) { bytes(&value, sizeof value); }
-  void text(std::string_view text) { array(std::span<const char>(text)); }
-  /// Elements, in place for the reader.
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void array(std::span<const T> elements) {
-    value(std::uint64_t{elements.size()});
-    align();
-    bytes(elements.data(), elements.size_bytes());
-  }
-
-  /// Number of items, and each by a function.
-  template <class Item, class Write>
-  void items(std::vector<Item>& all, const Write& write) {
-    value(std::uint64_t{all.size()});
-    for (Item& item : all) write(item);
-  }
-
-  /// Raises the limit of memory by some bytes. Calls before the work grow what it may take.
-  static void allow(double bytes) {
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-    const double more = static_cast<double>(limit.rlim_cur) + bytes;
-    limit.rlim_cur = more < 9e18 ? std::min<rlim_t>(static_cast<rlim_t>(more), limit.rlim_max) : limit.rlim_max;
-    ::setrlimit(RLIMIT_AS, &limit);
-  }
-
-  /// Writes the pending bytes, and a word that marks the end for the parent.
-  void end(const std::array<char, 8>& word) {
-    align();
-    value(word);
-    flush();
-  }
-  /// Removes all that was written.
-  void clear() {
-    buffer_.clear();
-    position_ = 0;
-    if (::ftruncate(file_, 0) != 0 || ::lseek(file_, 0, SEEK_SET) != 0) ::_exit(1);
-  }
-
- private:
-  static constexpr std::size_t alignment = 16;
-
-  void align() {
-    static constexpr std::array<char, alignment> zeros{};
-    bytes(zeros.data(), (alignment - position_ % alignment) % alignment);
-  }
-  void bytes(const void* data, std::size_t size) {
-    if (size == 0) return;
-    position_ += size;
-    if (buffer_.size() + size > std::size_t{1} << 16) flush();
-    if (size > std::size_t{1} << 16) return put(static_cast<const char*>(data), size);
-    buffer_.insert(buffer_.end(), static_cast<const char*>(data), static_cast<const char*>(data) + size);
-  }
-  void flush() {
-    put(buffer_.data(), buffer_.size());
-    buffer_.clear();
-  }
-  void put(const char* data, std::size_t size) {
-    while (size > 0) {
-      const ssize_t done = ::write(file_, data, size);
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) throw std::bad_alloc();  // the file is in memory
-      data += done;
-      size -= static_cast<std::size_t>(done);
-    }
-  }
-
-  int file_;
-  std::uint64_t position_ = 0;
-  std::vector<char> buffer_;
-};
-
-/// Reads the result of a child. Errors are a `FileError`: the child may have been damaged by what it read.
-class ChildResult {
- public:
-  ChildResult(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
-      : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
-
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  [[nodiscard]] T value() {
-    T made;
-    std::memcpy(&made, take(sizeof made).data(), sizeof made);
-    return made;
-  }
-  [[nodiscard]] std::string text() {
-    const std::span<const char> letters = array<char>();
-    return {letters.begin(), letters.end()};
-  }
-  /// Elements, which live as long as `owner`.
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  [[nodiscard]] std::span<const T> array() {
-    const auto count = value<std::uint64_t>();
-    position_ = (position_ + 15) / 16 * 16;
-    if (position_ > bytes_.size() || count > (bytes_.size() - position_) / sizeof(T)) fail();
-    return {reinterpret_cast<const T*>(take(count * sizeof(T)).data()), static_cast<std::size_t>(count)};
-  }
-  /// As above, into what they are for.
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void value(T& to) { to = value<T>(); }
-  void text(std::string& to) { to = text(); }
-  template <class T>
-  void array(std::span<const T>& to) {
-    to = array<T>();
-  }
-  /// Items of at least a byte each, each by a function.
-  template <class Item, class Read>
-  void items(std::vector<Item>& all, const Read& read) {
-    const auto count = value<std::uint64_t>();
-    if (count > bytes_.size()) fail();
-    while (all.size() < count) read(all.emplace_back());
-  }
-
-  [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
-  [[noreturn]] void fail() const {
-    throw FileError(path_, "", "its import in a child process gave an inconsistent result");
-  }
-
- private:
-  [[nodiscard]] std::span<const std::byte> take(std::uint64_t size) {
-    if (position_ > bytes_.size() || size > bytes_.size() - position_) fail();
-    position_ += size;
-    return bytes_.subspan(position_ - size, size);
-  }
-
-  std::string path_;
-  std::span<const std::byte> bytes_;
-  std::shared_ptr<const void> owner_;
-  std::uint64_t position_ = 0;
-};
 
 /// Limits of a child.
 struct ChildLimits {
@@ -197,22 +49,31 @@ struct ChildLimits {
 /// which those of memory and of streams are not.
 class ChildProcess {
  public:
-  using Work = std::function<void(ChildOutput&)>;
-
-  /// Calls `work` in a child and waits. Throws the `FileError` of `work`, or one of `path` about the child's death.
-  [[nodiscard]] static ChildResult result(const std::string& path, const ChildLimits& limits, const Work& work) {
+  /// What `make` returns, called in a child: an object that an `ArchiveWriter` takes, whose arrays stay where they are
+  /// read. Throws the `FileError` of `make`, or one of `path` about the child's death or an inconsistent result, as the
+  /// child may have been damaged by what it read.
+  template <class Make>
+  [[nodiscard]] static auto result(const std::string& path, const ChildLimits& limits, const Make& make) {
+    decltype(make()) made{};
     const File file(path);
-    std::fflush(nullptr);
-    const pid_t child = ::fork();
-    if (child < 0)
-      throw FileError(path, "",
-                      "no child process can be started for its import: " + std::generic_category().message(errno));
-    if (child == 0) run(file.number, limits, work);
-    const int status = wait(child, limits.time);
-    return finished(path, file.number, status, limits);
+    const int status = run(path, file.number, limits, [&](ArchiveWriter& to) { to(make()); });
+    take(path, file.number, status, limits, [&](ArchiveReader& from) { from(made); });
+    return made;
+  }
+
+  /// In a child: raises the limit of memory by some bytes. Calls before the work grow what it may take.
+  static void allow(double bytes) {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+    const double more = static_cast<double>(limit.rlim_cur) + bytes;
+    limit.rlim_cur = more < 9e18 ? std::min<rlim_t>(static_cast<rlim_t>(more), limit.rlim_max) : limit.rlim_max;
+    ::setrlimit(RLIMIT_AS, &limit);
   }
 
  private:
+  using Work = std::function<void(ArchiveWriter&)>;
+  using Word = std::array<char, 8>;  ///< end of a result
+
   struct File {
     int number;
     explicit File(const std::string& path) {
@@ -231,11 +92,21 @@ class ChildProcess {
     ~File() { ::close(number); }
   };
 
-  static constexpr std::array<char, 8> done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'},
-      failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
+  static constexpr Word done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'}, failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
+
+  /// Runs a child to its end, and returns its status.
+  [[nodiscard]] static int run(const std::string& path, int file, const ChildLimits& limits, const Work& work) {
+    std::fflush(nullptr);
+    const pid_t child = ::fork();
+    if (child < 0)
+      throw FileError(path, "",
+                      "no child process can be started for its import: " + std::generic_category().message(errno));
+    if (child == 0) be_child(file, limits, work);
+    return wait(child, limits.time);
+  }
 
   /// The child's part.
-  [[noreturn]] static void run(int file, const ChildLimits& limits, const Work& work) noexcept {
+  [[noreturn]] static void be_child(int file, const ChildLimits& limits, const Work& work) noexcept {
 #if defined(__linux__)
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
@@ -248,25 +119,20 @@ class ChildProcess {
     limit(RLIMIT_CPU, std::ceil(limits.time) + 1);
     limit(RLIMIT_AS, memory_in_use() + limits.memory);
     leave_network();
+    const auto tell = [file](const FileError& error) {
+      write(file, failed, [&](ArchiveWriter& to) { to(error.path(), error.place(), error.problem()); });
+    };
     try {
-      ChildOutput output(file);
       try {
-        work(output);
-        output.end(done);
+        write(file, done, work);
       } catch (const FileError& error) {
-        output.clear();
-        for (const std::string& part : {error.path(), error.place(), error.problem()}) output.text(part);
-        output.end(failed);
+        tell(error);
       } catch (const std::bad_alloc&) {
-        ::_exit(out_of_memory);
+        throw;
       } catch (const std::exception& error) {
-        output.clear();
-        for (const char* part : {"", "", error.what()}) output.text(part);
-        output.end(failed);
+        tell({"", "", error.what()});
       } catch (...) {
-        output.clear();
-        for (const char* part : {"", "", "its import failed without a reason"}) output.text(part);
-        output.end(failed);
+        tell({"", "", "its import failed without a reason"});
       }
     } catch (...) {
       ::_exit(out_of_memory);
@@ -275,6 +141,19 @@ class ChildProcess {
   }
 
   static constexpr int out_of_memory = 77;  ///< exit status
+
+  /// Makes some objects and a word the content of a file.
+  static void write(int file, const Word& word, const Work& work) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(::fdopen(::dup(file), "wb"), std::fclose);
+    if (!out || ::ftruncate(file, 0) != 0 || ::lseek(file, 0, SEEK_SET) != 0) throw std::bad_alloc();
+    const auto put = [&](std::span<const std::byte> bytes) {
+      if (std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) throw std::bad_alloc();
+    };
+    ArchiveWriter writer(put);
+    work(writer);
+    put(std::as_bytes(std::span(word)));
+    if (std::fflush(out.get()) != 0) throw std::bad_alloc();  // the file is in memory
+  }
 
   /// Lowers the limit in force of a resource.
   static void limit(decltype(RLIMIT_AS) resource, double value) {
@@ -307,7 +186,9 @@ class ChildProcess {
     }
   }
 
-  [[nodiscard]] static ChildResult finished(const std::string& path, int file, int status, const ChildLimits& limits) {
+  /// Takes the result of a child by a function.
+  static void take(const std::string& path, int file, int status, const ChildLimits& limits,
+                   const std::function<void(ArchiveReader&)>& by) {
     const auto fail = [&](const std::string& problem) { throw FileError(path, "", problem); };
     const std::string consequence = ": the file is damaged, or too large for the limit";
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
@@ -327,13 +208,21 @@ class ChildProcess {
     if (memory == MAP_FAILED) throw std::bad_alloc();
     const std::shared_ptr<const void> owner(memory,
                                             [bytes](const void* at) { ::munmap(const_cast<void*>(at), bytes); });
-    const auto* const first = static_cast<const std::byte*>(memory);
-    ChildResult result(path, {first, bytes - word}, owner);
-    if (std::memcmp(first + bytes - word, done.data(), word) == 0) return result;
-    if (std::memcmp(first + bytes - word, failed.data(), word) != 0)
-      fail("its import ended without a result: the file is damaged");
-    std::string of = result.text(), place = result.text(), problem = result.text();
-    throw FileError(of.empty() ? path : std::move(of), std::move(place), std::move(problem));
+    const std::span<const std::byte> all(static_cast<const std::byte*>(memory), bytes);
+    const auto ends_with = [&](const Word& end) { return std::memcmp(&all[bytes - word], end.data(), word) == 0; };
+    if (!ends_with(done) && !ends_with(failed)) fail("its import ended without a result: the file is damaged");
+    constexpr const char* inconsistent = "its import in a child process gave an inconsistent result";
+    std::string of, place, problem;
+    try {
+      ArchiveReader from(all.first(bytes - word), owner);
+      ends_with(done) ? by(from) : from(of, place, problem);
+      from.require_end();
+    } catch (const ArchiveError&) {
+      fail(inconsistent);
+    } catch (const SettingError&) {
+      fail(inconsistent);
+    }
+    if (ends_with(failed)) throw FileError(of.empty() ? path : of, place, problem);
   }
 };
 

@@ -5,17 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <new>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <citygml/citygml.h>
@@ -122,17 +114,12 @@ class CityGmlImport {
         name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
       fail("its coordinates are in degrees, by '" + name_ + "': expected a projected system in metres");
     for (const std::string& message : log->messages)
-      scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
+      scene_.warnings.push_back(path_.string() + ": libcitygml: " + printable(message));
     scene_.reference = name_;
-    scene_.owner = data_;
     return std::move(scene_);
   }
 
  private:
-  struct Data {
-    std::deque<std::vector<Vec3>> vertices;
-    std::deque<std::vector<Corners3>> triangles;
-  };
   /// Surfaces of one class.
   struct Surfaces {
     std::vector<Vec3> vertices{};
@@ -141,15 +128,8 @@ class CityGmlImport {
   using ByClass = std::map<CityClass, Surfaces>;
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + readable(problem));
+    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + printable(problem));
   }
-  [[nodiscard]] static std::string readable(std::string text) {
-    text.resize(std::min<std::size_t>(text.size(), 300));
-    for (char& c : text)
-      if (c < ' ' || c > '~') c = '?';
-    return text;
-  }
-
   void root(const citygml::CityObject& object) {
     std::optional<unsigned> lod;
     highest(object, lod, 0);
@@ -255,10 +235,9 @@ class CityGmlImport {
       material.optics.classification = rule.classification;
       material.optics.ground = rule.ground;
     }
-    data_->vertices.push_back(std::move(surfaces.vertices));
-    data_->triangles.push_back(std::move(surfaces.triangles));
-    scene_.meshes.push_back(
-        {.material = number->second, .precise = data_->vertices.back(), .triangles = data_->triangles.back()});
+    scene_.meshes.push_back({.material = number->second,
+                             .precise = std::move(surfaces.vertices),
+                             .triangles = std::move(surfaces.triangles)});
     return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
   }
 
@@ -266,7 +245,6 @@ class CityGmlImport {
   const CityGmlSettings& settings_;
   std::string name_;  ///< of the reference system
   RawScene scene_;
-  std::shared_ptr<Data> data_ = std::make_shared<Data>();
   std::map<CityClass, std::uint32_t> materials_;
   std::map<std::pair<std::vector<const citygml::Geometry*>, CityClass>, std::optional<std::uint32_t>> shared_;
 };

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/shape/raster.hpp>

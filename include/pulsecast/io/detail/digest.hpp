@@ -3,21 +3,13 @@
 #ifndef PULSECAST_IO_DETAIL_DIGEST_HPP
 #define PULSECAST_IO_DETAIL_DIGEST_HPP
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <ios>
 #include <memory>
-#include <span>
-#include <string_view>
 #include <system_error>
-#include <vector>
 
 #include <xxhash.h>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -72,13 +64,7 @@ class Digest {
   };
 
   void add_folder(const std::filesystem::path& path) {
-    std::vector<std::filesystem::path> files;
-    std::error_code error;
-    for (std::filesystem::recursive_directory_iterator entry(path, error), end; !error && entry != end;
-         entry.increment(error))
-      if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
-    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
-    std::sort(files.begin(), files.end());
+    const auto files = files_in<std::filesystem::recursive_directory_iterator>(path);
     for (const std::filesystem::path& file : files) {
       add(std::string_view(file.lexically_relative(path).string()));
       add_file(file);
@@ -87,17 +73,11 @@ class Digest {
   }
 
   void add_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::vector<char> block(std::size_t{1} << 20);
-    std::uint64_t size = 0;
-    while (file) {
-      file.read(block.data(), static_cast<std::streamsize>(block.size()));
-      const auto count = static_cast<std::size_t>(file.gcount());
-      add(std::as_bytes(std::span(block).first(count)));
-      size += count;
-    }
-    if (file.bad() || !file.eof()) throw FileError(path.string(), "", "cannot be read");
-    add(size);
+    std::error_code ignored;
+    std::optional<MappedFile> file;
+    if (std::filesystem::file_size(path, ignored) > 0) file.emplace(path);
+    if (file) add(file->bytes());
+    add(std::uint64_t{file ? file->bytes().size() : 0});
   }
 
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};

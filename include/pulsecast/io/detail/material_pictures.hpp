@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MATERIAL_PICTURES_HPP
 #define PULSECAST_IO_DETAIL_MATERIAL_PICTURES_HPP
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>

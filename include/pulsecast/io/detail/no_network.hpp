@@ -8,8 +8,6 @@
 #if defined(__linux__)
 #include <array>
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 
 #include <linux/audit.h>
 #include <linux/filter.h>

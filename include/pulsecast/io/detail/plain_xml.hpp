@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <utility>
+#include <functional>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
@@ -17,7 +13,7 @@
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Refuses encodings of an XML declaration but UTF-8, US-ASCII and ISO-8859-1. Source: XML 1.0, 2.8 and 4.3.3.
-inline void require_plain_encoding(const InputFile& file, std::string_view text) {
+inline void require_plain_encoding(std::string_view text, const std::function<void(const std::string&)>& fail) {
   constexpr std::string_view blanks = " \t\r\n";
   if (!text.starts_with("<?xml") || text.find_first_of(blanks) != 5) return;
   text = text.substr(5, text.find("?>") - 5);
@@ -26,35 +22,27 @@ inline void require_plain_encoding(const InputFile& file, std::string_view text)
     const std::string_view name = text::take_word(text, " \t\r\n=");
     const char quote = text.empty() ? ' ' : text.front();
     const std::size_t end = text.find(quote, 1);
-    if (end == text.npos || (quote != '"' && quote != '\'')) file.fail("has a malformed XML declaration");
+    if (end == text.npos || (quote != '"' && quote != '\'')) fail("has a malformed XML declaration");
     const std::string_view value = text.substr(1, end - 1);
     text.remove_prefix(end + 1);
     if (name == "encoding" && std::ranges::none_of(std::array{"UTF-8", "US-ASCII", "ISO-8859-1"},
                                                    [&](const char* one) { return text::is_same_word(value, one); }))
-      file.fail("has the encoding " + text::quoted(value) + ": expected UTF-8, US-ASCII or ISO-8859-1");
+      fail("has the encoding " + text::quoted(value) + ": expected UTF-8, US-ASCII or ISO-8859-1");
   }
 }
 
 /// Refuses XML files with a document type, by which they open others and grow without end, and with encodings that
 /// could hide one: its letters must have the bytes of ASCII.
 inline void require_plain_xml(const std::filesystem::path& path) {
-  InputFile file(path, "an XML file");
-  std::string before;
-  bool first = true;
-  for (std::string_view text = file.take(InputFile::block_size / 2); !text.empty();
-       text = file.take(InputFile::block_size / 2)) {
-    if (std::exchange(first, false)) {
-      const std::string_view begin = text::without_byte_order_mark(text);
-      const std::size_t start = begin.find_first_not_of(" \t\r\n");
-      if (start == begin.npos || begin[start] != '<' || begin.substr(0, 64).find('\0') != begin.npos)
-        file.fail("does not begin as XML in UTF-8");
-      require_plain_encoding(file, begin.substr(start));
-    }
-    before += text;
-    if (before.find("<!DOCTYPE") != before.npos || before.find("<!ENTITY") != before.npos)
-      file.fail("has a document type: expected none");
-    before.erase(0, before.size() - std::min<std::size_t>(before.size(), 16));
-  }
+  const MappedFile file(path, "an XML file");
+  const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
+  const std::string_view text = text::without_byte_order_mark(file.text());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == text.npos || text[start] != '<' || text.substr(0, 64).find('\0') != text.npos)
+    fail("does not begin as XML in UTF-8");
+  require_plain_encoding(text.substr(start), fail);
+  if (text.find("<!DOCTYPE") != text.npos || text.find("<!ENTITY") != text.npos)
+    fail("has a document type: expected none");
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -6,13 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_UP_AXIS_HPP
 #define PULSECAST_IO_DETAIL_UP_AXIS_HPP
 
-#include <cstdint>
-
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -4,7 +4,6 @@
 #define PULSECAST_MPI_DETAIL_BLOCKS_HPP
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -75,11 +74,10 @@ class MpiBlockScheduler {
   /// as may() is true.
   template <class May, class Place>
   void settle(const May& may, const Place& place) {
-    for (auto due = finished_.find(placed_); due != finished_.end() && may(); due = finished_.find(placed_)) {
-      const auto owner = owners_.find(placed_);
-      place(placed_, owner->second, std::as_const(due->second));
-      owners_.erase(owner);
-      finished_.erase(due);
+    while (may()) {
+      const auto due = finished_.extract(placed_);
+      if (due.empty()) return;
+      place(placed_, owners_.extract(placed_).mapped(), std::as_const(due.mapped()));
       ++placed_;
     }
   }

@@ -3,17 +3,13 @@
 #ifndef PULSECAST_MPI_DETAIL_CHANNEL_HPP
 #define PULSECAST_MPI_DETAIL_CHANNEL_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <deque>
 #include <exception>
 #include <limits>
 #include <list>
 #include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #define OMPI_SKIP_MPICXX 1  // C++ bindings, removed in MPI 3.0, of Open MPI and MPICH

@@ -4,18 +4,10 @@
 #define PULSECAST_MPI_DETAIL_OUTPUT_HPP
 
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>

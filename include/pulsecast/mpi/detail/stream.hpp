@@ -4,14 +4,8 @@
 #define PULSECAST_MPI_DETAIL_STREAM_HPP
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
@@ -99,11 +93,9 @@ class MpiStream final : public MpiOutput {
   }
 
   bool work() override {
-    const auto next = waiting_.find(taken_);
-    if (next == waiting_.end()) return false;
-    MpiMessage bytes = std::move(next->second);
-    waiting_.erase(next);
-    take_(std::move(bytes));
+    auto next = waiting_.extract(taken_);
+    if (next.empty()) return false;
+    take_(std::move(next.mapped()));
     ++taken_;
     return true;
   }

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>

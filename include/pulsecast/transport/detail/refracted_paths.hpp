@@ -4,8 +4,6 @@
 #define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 
 #include <pulsecast/concepts.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 #define PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 
-#include <cstddef>
 #include <optional>
 #include <span>
 

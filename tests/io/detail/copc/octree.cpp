@@ -63,25 +63,6 @@ TEST_CASE("nodes come in order of the paths down to them, parents first") {
     for (const CopcKey& b : keys) CHECK(copc_before(a, b) == (path_of(a) < path_of(b)));
 }
 
-TEST_CASE("ranks are sorted by key, then by number, whether few or many, and whatever digits differ") {
-  Generator random(3);
-  for (const std::size_t count : {0U, 1U, 100U, 5000U, 20'000U})
-    for (const unsigned bits : {1U, 11U, 12U, 30U, 64U}) {
-      CAPTURE(count);
-      CAPTURE(bits);
-      std::vector<CopcRank> ranks(count);
-      for (CopcRank& rank : ranks)
-        rank = {random.whole(std::uint64_t{1} << 63) * 2 >> (64 - bits),
-                static_cast<std::uint32_t>(random.whole(1000))};
-      std::vector<std::pair<std::uint64_t, std::uint32_t>> expected, found;
-      for (const CopcRank& rank : ranks) expected.emplace_back(rank.key, rank.number);
-      std::sort(expected.begin(), expected.end());
-      copc_sort(ranks);
-      for (const CopcRank& rank : ranks) found.emplace_back(rank.key, rank.number);
-      CHECK(found == expected);
-    }
-}
-
 TEST_CASE("of each cell the point nearest to the centre is picked, the first of several") {
   struct Point {
     std::uint64_t cell, off;

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_COPC_HIERARCHY_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <utility>
 #include <vector>

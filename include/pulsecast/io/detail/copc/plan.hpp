@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -4,13 +4,7 @@
 #define PULSECAST_IO_DETAIL_COPC_RUNS_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>
@@ -103,7 +97,7 @@ class CopcRuns {
       for (std::int64_t& p : place) p >>= bits_;
       ranks_[i] = {copc_morton(place), static_cast<std::uint32_t>(i)};
     }
-    copc_sort(ranks_);
+    std::sort(ranks_.begin(), ranks_.end());
     write_run();
     std::vector<CopcCell>& cells = cells_.emplace_back();
     for (const CopcRank& rank : ranks_) add_cell(cells, {rank.key, 1});

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_COPC_SUBTREE_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -78,7 +76,7 @@ class CopcSubtree {
       for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = (place[axis] - corner[axis]) >> shift;
       ranks_[i] = {copc_morton(place), static_cast<std::uint32_t>(i)};
     }
-    copc_sort(ranks_);
+    std::sort(ranks_.begin(), ranks_.end());
     static_cast<void>(build(0, ranks_.size(), key, 0));
     for (CopcNode& node : nodes_)
       for (std::uint32_t& point : node.points) point = ranks_[point].number;

@@ -3,15 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
-#include <cstddef>
-#include <cstdint>
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
@@ -159,7 +154,7 @@ class CopcTree {
     std::vector<CopcRank> ranks;
     ranks.reserve(points.size());
     for (const std::uint32_t point : points) ranks.push_back({time_key(records.data() + point * record_), point});
-    copc_sort(ranks);
+    std::sort(ranks.begin(), ranks.end());
     std::vector<std::byte> sorted(points.size() * record_);
     for (std::size_t i = 0; i < ranks.size(); ++i)
       std::memcpy(sorted.data() + i * record_, records.data() + ranks[i].number * record_, record_);

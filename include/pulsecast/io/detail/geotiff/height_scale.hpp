@@ -6,11 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>

@@ -6,16 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdarg>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <new>
-#include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <tiffio.h>

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -15,7 +13,6 @@
 #include <vector>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
-#include <pulsecast/io/detail/laz/colour.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
 

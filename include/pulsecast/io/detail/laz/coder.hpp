@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

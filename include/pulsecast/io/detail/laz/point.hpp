@@ -3,14 +3,14 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_POINT_HPP
 #define PULSECAST_IO_DETAIL_LAZ_POINT_HPP
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 
-#include <pulsecast/base/namespace.hpp>
+#include <pulsecast/io/detail/laz/coder.hpp>
 
+/// Fields of a point, and coders of its colour.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little,
@@ -51,6 +51,70 @@ struct LazPoint {
   std::uint8_t flags = 0;                ///< class flags, then scan direction and edge of flight line
   std::uint8_t channel = 0, classification = 0, user = 0;
   std::int64_t time = 0;  ///< bit pattern of the double
+};
+
+// Coders of a point's colour, byte by byte: which differ from those before, and by how much. Source: LASzip for LAS 1.4
+// (native extension), specification, RGB and NIR layers; for the prediction of blue, the decoder of laz-perf.
+
+/// Low and high byte of a 16-bit number.
+[[nodiscard]] constexpr std::array<std::uint8_t, 2> laz_halves(std::uint16_t value) noexcept {
+  return {static_cast<std::uint8_t>(value & 255U), static_cast<std::uint8_t>(value >> 8)};
+}
+
+/// Coder of red, green and blue.
+class LazColours {
+ public:
+  using Value = std::array<std::uint16_t, 3>;
+
+  void encode(LazEncoder& encoder, const Value& before, const Value& now) {
+    std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
+    unsigned changed = 0;  // a bit a byte: low and high of red, green and blue; one more if not grey
+    for (std::size_t c = 0; c < 3; ++c) {
+      old[c] = laz_halves(before[c]);
+      next[c] = laz_halves(now[c]);
+      for (std::size_t half = 0; half < 2; ++half) changed |= old[c][half] != next[c][half] ? 1U << (2 * c + half) : 0U;
+    }
+    if (next[0] != next[1] || next[0] != next[2]) changed |= 64U;
+    encoder.encode(changed_, changed);
+    for (std::size_t half = 0; half < 2; ++half)  // red
+      if ((changed >> half & 1U) != 0)
+        encoder.encode(steps_[half], static_cast<std::uint8_t>(next[0][half] - old[0][half]));
+    if ((changed & 64U) == 0) return;
+    for (std::size_t half = 0; half < 2; ++half) {
+      int expected = next[0][half] - old[0][half];  // step of the colour, as red
+      if ((changed >> (2 + half) & 1U) != 0)
+        encoder.encode(steps_[2 + half], error(next[1][half], old[1][half], expected));
+      if ((changed >> (4 + half) & 1U) == 0) continue;
+      expected = (expected + next[1][half] - old[1][half]) / 2;  // as the mean of red and green
+      encoder.encode(steps_[4 + half], error(next[2][half], old[2][half], expected));
+    }
+  }
+
+ private:
+  /// Error of the prediction that a byte steps as expected, modulo 256.
+  [[nodiscard]] static std::uint8_t error(int next, int old, int expected) noexcept {
+    return static_cast<std::uint8_t>(next - std::clamp(old + expected, 0, 255));
+  }
+
+  LazModel<128> changed_;
+  std::array<LazModel<256>, 6> steps_;  // low and high byte of red, green and blue
+};
+
+/// Coder of the near infrared.
+class LazNearInfrared {
+ public:
+  using Value = std::uint16_t;
+
+  void encode(LazEncoder& encoder, Value before, Value now) {
+    const auto old = laz_halves(before), next = laz_halves(now);
+    encoder.encode(changed_, (old[0] != next[0] ? 1U : 0U) | (old[1] != next[1] ? 2U : 0U));
+    for (std::size_t half = 0; half < 2; ++half)
+      if (old[half] != next[half]) encoder.encode(steps_[half], static_cast<std::uint8_t>(next[half] - old[half]));
+  }
+
+ private:
+  LazModel<4> changed_;
+  std::array<LazModel<256>, 2> steps_;  // low and high byte
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

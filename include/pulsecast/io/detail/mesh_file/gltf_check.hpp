@@ -5,12 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>
@@ -71,26 +65,15 @@ void each_json(std::string_view value, const Visit& visit) {
 }
 
 /// JSON text of a glTF or GLB file; empty for another file. Source: glTF 2.0, 4.4 (binary glTF layout).
-[[nodiscard]] inline std::string gltf_text(const std::filesystem::path& path) {
-  InputFile file(path, "a mesh file");
-  const std::string head(file.take(20));
-  if (head.size() == 20 && head.starts_with("glTF")) {
-    std::uint32_t left = 0;
-    for (int k = 3; k >= 0; --k) left = left << 8 | static_cast<unsigned char>(head[static_cast<std::size_t>(12 + k)]);
-    std::string text;
-    while (text.size() < left) {
-      const std::string_view more = file.take(std::min<std::size_t>(left - text.size(), InputFile::block_size));
-      if (more.empty()) break;
-      text += more;
-    }
-    return text;
+[[nodiscard]] inline std::string_view gltf_text(std::string_view file) {
+  if (file.size() >= 20 && file.starts_with("glTF")) {
+    std::uint32_t size = 0;
+    for (std::size_t k = 0; k < 4; ++k) size |= std::uint32_t{static_cast<unsigned char>(file[12 + k])} << 8 * k;
+    return file.substr(20, size);
   }
-  const std::string_view plain = text::without_byte_order_mark(head);
-  const std::size_t first = plain.find_first_not_of(" \t\r\n");
-  if (first == plain.npos || plain[first] != '{') return {};
-  file.seek(0);
-  std::string text = file.take_rest();
-  return text.substr(text.find('{'));
+  file = text::without_byte_order_mark(file);
+  file.remove_prefix(std::min(file.find_first_not_of(" \t\r\n"), file.size()));
+  return file.starts_with('{') ? file : std::string_view();
 }
 
 /// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not
@@ -102,7 +85,8 @@ inline void check_gltf(const std::filesystem::path& path, std::vector<std::strin
                                                          "KHR_texture_transform"};
   static constexpr std::array<std::string_view, 3> moving{"EXT_mesh_gpu_instancing", "CESIUM_RTC",
                                                           "KHR_node_visibility"};
-  const std::string text = gltf_text(path);
+  const MappedFile file(path, "a mesh file");
+  const std::string_view text = gltf_text(file.text());
   const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
   const auto extension = [](std::string_view value) {
     return value.size() >= 2 ? value.substr(1, value.size() - 2) : value;

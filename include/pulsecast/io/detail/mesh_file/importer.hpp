@@ -5,17 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <new>
 #include <set>
-#include <string>
-#include <string_view>
+#include <span>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <assimp/DefaultIOSystem.h>
@@ -26,10 +22,8 @@
 #include <assimp/Importer.hpp>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
-#include <pulsecast/io/detail/mesh_file/inside.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
@@ -90,18 +84,18 @@ class FolderSystem : public Assimp::IOSystem {
 
 class MeshImport {
  public:
-  MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers,
+  MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings,
              std::function<void(std::uint64_t)> opened = {})
-      : path_(path), settings_(settings), workers_(workers), data_(std::make_shared<Data>()) {
+      : path_(path), settings_(settings) {
     system_ =
         new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
-    data_->importer.SetIOHandler(system_);  // which takes it
+    importer_->SetIOHandler(system_);  // which takes it
   }
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
     check_gltf(path_, scene_.warnings);
-    Assimp::Importer& importer = data_->importer;
+    Assimp::Importer& importer = *importer_;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
@@ -130,24 +124,17 @@ class MeshImport {
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
     for (const std::string& file : system_->looked_for())
       if (file != main) scene_.files.push_back(file);
-    scene_.owner = data_;
     return std::move(scene_);
   }
 
  private:
-  struct Data {
-    Assimp::Importer importer;
-    std::vector<SharedBuffer<Corners3>> triangles;
-  };
-
   [[noreturn]] void fail(const std::string& problem) const {
     if (!system_->refused().empty()) fail_elsewhere();
     if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
-    std::string text = problem.substr(0, 300);
-    if (text.starts_with("No suitable reader")) text = "assimp finds none of its formats in it";
-    for (char& c : text)  // which may have bytes of the file
-      if (c < ' ' || c > '~') c = '?';
-    throw FileError(path_.string(), "", "is no mesh file that can be read: " + text);
+    throw FileError(path_.string(), "",
+                    "is no mesh file that can be read: " + (problem.starts_with("No suitable reader")
+                                                                ? "assimp finds none of its formats in it"
+                                                                : printable(problem)));
   }
   [[noreturn]] void fail_elsewhere() const {
     throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");
@@ -197,55 +184,38 @@ class MeshImport {
                     [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
     posed_ += from.mNumBones > 0 || is_morphed ? 1 : 0;
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
-    made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
-    SharedBuffer<Corners3> triangles = triangles_of(from);
-    made.triangles = {triangles.data(), triangles.size()};
+    const auto shared = [&](const aiVector3D* values) {
+      return SharedArray<Float3>({reinterpret_cast<const Float3*>(values), values ? from.mNumVertices : 0}, importer_);
+    };
+    made.vertices = shared(from.mVertices);
+    made.triangles = triangles_of(from);
     if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
-    data_->triangles.push_back(std::move(triangles));
     const ImportedMaterial& material = materials_[from.mMaterialIndex];
     const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
                           !material.material.opacity.name.empty();
     const unsigned channel =
         material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel
                                                                                                      : 0;
-    if (pictured && from.HasTextureCoords(channel))
-      made.texture = {reinterpret_cast<const Float3*>(from.mTextureCoords[channel]), from.mNumVertices};
+    if (pictured) made.texture = shared(from.mTextureCoords[channel]);
     scene_.meshes.push_back(std::move(made));
   }
 
   /// Triangles of all faces: n - 2 of one with n corners.
   [[nodiscard]] SharedBuffer<Corners3> triangles_of(const aiMesh& from) {
-    constexpr std::size_t chunk = std::size_t{1} << 16;
-    struct Chunk {
-      std::size_t first = 0, left_out = 0, crossings = 0;  // triangles before it; points and lines; polygons
-    };
-    std::vector<Chunk> chunks((from.mNumFaces + chunk - 1) / chunk);
-    const auto each = [&](std::size_t c, const auto& work) {
-      const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
-      for (std::size_t i = c * chunk; i < end; ++i) work(from.mFaces[i], from.mFaces[i].mNumIndices);
-    };
-    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
-      each(c, [&](const aiFace&, std::size_t corners) {
-        chunks[c].first += corners < 3 ? 0 : corners - 2;
-        chunks[c].left_out += corners < 3 ? 1 : 0;
-      });
-    });
+    const std::span<const aiFace> faces(from.mFaces, from.mNumFaces);
     std::size_t count = 0;
-    for (Chunk& one : chunks) {
-      count += std::exchange(one.first, count);
-      left_out_ += one.left_out;
-    }
+    for (const aiFace& face : faces) count += face.mNumIndices < 3 ? 0 : face.mNumIndices - 2;
     SharedBuffer<Corners3> triangles(count);
-    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
-      Corners3* to = triangles.data() + chunks[c].first;
-      each(c, [&](const aiFace& face, std::size_t corners) {
-        if (corners < 3) return;
-        check(face, from.mNumVertices);
-        chunks[c].crossings += cut(face, from.mVertices, to) ? 0 : 1;
-        to += corners - 2;
-      });
-    });
-    for (const Chunk& one : chunks) crossings_ += one.crossings;
+    Corners3* to = triangles.data();
+    for (const aiFace& face : faces) {
+      if (face.mNumIndices < 3) {
+        ++left_out_;
+        continue;
+      }
+      check(face, from.mNumVertices);
+      crossings_ += cut(face, from.mVertices, to) ? 0 : 1;
+      to += face.mNumIndices - 2;
+    }
     return triangles;
   }
 
@@ -324,9 +294,8 @@ class MeshImport {
 
   const std::filesystem::path& path_;
   const MeshFileSettings& settings_;
-  Workers workers_;
-  std::shared_ptr<Data> data_;
-  FolderSystem* system_;  // of the importer
+  std::shared_ptr<Assimp::Importer> importer_ = std::make_shared<Assimp::Importer>();  // owns what its scene holds
+  FolderSystem* system_;                                                               // of the importer
   RawScene scene_;
   std::vector<ImportedMaterial> materials_;
   bool gltf_ = false;

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_MATERIAL_RULES_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -14,7 +12,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/io/detail/mesh_file/inside.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
@@ -31,15 +28,6 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return value >= low ? std::min(static_cast<double>(value), high) : low;
 }
 
-/// Linear share of light of a sample of a display, both from 0 to 1. Source: IEC 61966-2-1 (sRGB).
-[[nodiscard]] inline double light_of(double sample) noexcept {
-  return sample <= 0.04045 ? sample / 12.92 : std::pow((sample + 0.055) / 1.055, 2.4);
-}
-/// Sample of a display for a linear share of light. Source: IEC 61966-2-1 (sRGB).
-[[nodiscard]] inline double display_sample(double share) noexcept {
-  return share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055;
-}
-
 /// Material from the properties of a file.
 class MaterialRules {
  public:
@@ -53,8 +41,8 @@ class MaterialRules {
     Vec3 linear{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double share = within(o.colour[k], 0, 1);
-      made.colour[static_cast<int>(k)] = o.linear ? display_sample(share) : share;
-      linear[static_cast<int>(k)] = o.linear ? share : light_of(share);
+      made.colour[static_cast<int>(k)] = o.linear ? srgb_encoded(share) : share;
+      linear[static_cast<int>(k)] = o.linear ? share : srgb_decoded(share);
     }
     // luminance. Source: IEC 61966-2-1 (sRGB), ITU-R BT.709
     if (reflectance_of_colour_) made.reflectance = dot(linear, Vec3(0.2126, 0.7152, 0.0722));

@@ -3,11 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

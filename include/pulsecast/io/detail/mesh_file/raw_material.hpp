@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 
-#include <cstddef>
 #include <optional>
 #include <string>
 

@@ -3,14 +3,15 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
+#include <charconv>
+#include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
@@ -36,12 +37,19 @@ struct Affine {
 struct RawMesh {
   std::string name{};
   std::uint32_t material = 0;
-  std::span<const Float3> vertices{};
-  std::span<const Vec3> precise{};        ///< vertices of double precision, in place of those
-  std::span<const Corners3> triangles{};  ///< indices are below the number of vertices
-  std::span<const Float3> texture{};      ///< of the vertices, upward; empty without
+  SharedArray<Float3> vertices{};
+  SharedArray<Vec3> precise{};        ///< vertices of double precision, in place of those
+  SharedArray<Corners3> triangles{};  ///< indices are below the number of vertices
+  SharedArray<Float3> texture{};      ///< of the vertices, upward; empty without
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return precise.empty() ? vertices.size() : precise.size(); }
+
+  /// True if triangles have vertices that there are, and all vertices or none have texture coordinates.
+  [[nodiscard]] bool is_consistent() const {
+    const auto is_vertex = [&](std::uint32_t vertex) { return vertex < vertex_count(); };
+    return (texture.empty() || texture.size() == vertex_count()) &&
+           std::ranges::all_of(triangles, [&](const Corners3& c) { return std::ranges::all_of(c, is_vertex); });
+  }
 };
 
 /// Node that shows meshes.
@@ -86,13 +94,49 @@ struct RawScene {
   std::vector<RawMaterial> materials{};
   std::vector<std::shared_ptr<const std::vector<std::byte>>> embedded{};  ///< pictures, as files
   std::vector<std::string> warnings{};
-  std::vector<std::string> files{};     ///< further files that the importer looked for
-  double unit = 1;                      ///< size of a unit by the file [m]
-  double applied_unit = 1;              ///< unit by the file that the importer applies already [m]
-  Matrix3 upright{1};                   ///< to z up, by the file
-  std::string reference{};              ///< name of a reference system
-  std::shared_ptr<const void> owner{};  ///< of what the meshes refer to
+  std::vector<std::string> files{};  ///< further files that the importer looked for
+  double unit = 1;                   ///< size of a unit by the file [m]
+  double applied_unit = 1;           ///< unit by the file that the importer applies already [m]
+  Matrix3 upright{1};                ///< to z up, by the file
+  std::string reference{};           ///< name of a reference system
+
+  /// True if all meshes have a material, and all nodes meshes.
+  [[nodiscard]] bool is_consistent() const {
+    const auto is_mesh = [&](std::uint32_t mesh) { return mesh < meshes.size(); };
+    return std::ranges::all_of(meshes, [&](const RawMesh& mesh) { return mesh.material < materials.size(); }) &&
+           std::ranges::all_of(nodes, [&](const RawNode& node) {
+             return !node.meshes.empty() && std::ranges::all_of(node.meshes, is_mesh);
+           });
+  }
 };
+
+/// Message of a library, cut and without the bytes of the file that it may have.
+[[nodiscard]] inline std::string printable(std::string message) {
+  message.resize(std::min<std::size_t>(message.size(), 300));
+  std::ranges::replace_if(
+      message, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return message;
+}
+
+/// True for a path that does not leave a folder by its words; links are followed.
+[[nodiscard]] inline bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  const std::filesystem::path within = std::filesystem::absolute(file).lexically_normal().lexically_relative(
+      std::filesystem::absolute(folder).lexically_normal());
+  return !within.empty() && *within.begin() != "..";
+}
+
+/// Text with `%20` as a blank, and so on. Source: RFC 3986, 2.1.
+[[nodiscard]] inline std::string unescaped(const std::string& text) {
+  std::string made;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char code = 0;
+    const char* const at = text.data() + i;
+    const bool escape = *at == '%' && i + 2 < text.size() && std::from_chars(at + 1, at + 3, code, 16).ptr == at + 3;
+    made += escape ? static_cast<char>(code) : *at;
+    if (escape) i += 2;
+  }
+  return made;
+}
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
 

@@ -5,15 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>
 #include <pulsecast/material/retroreflector.hpp>
@@ -22,64 +20,50 @@
 /// Keys of MTL files for light reflected or transmitted specularly.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Numbers from the word `first` on, at most `most`; empty if one of them is none, or outside the limits.
-[[nodiscard]] inline std::optional<std::vector<double>> numbers_from(const std::vector<std::string_view>& words,
-                                                                     std::size_t first, std::size_t least,
-                                                                     std::size_t most, double low, double high) {
-  if (words.size() < first + least || words.size() > first + most) return std::nullopt;
-  std::vector<double> numbers;
-  for (std::size_t i = first; i < words.size(); ++i) {
-    const auto number = text::number_in<double>(words[i]);
-    if (!number || !(*number >= low && *number <= high)) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
 /// True for a standard key among them.
 [[nodiscard]] inline bool is_light_key(std::string_view key) {
   return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
 }
 
-/// Expected words of a key, for a message; null if they are right, or the key is another.
-[[nodiscard]] inline const char* expected_of_light_key(std::string_view key,
-                                                       const std::vector<std::string_view>& words) {
-  const auto is = [&](std::string_view word) { return !words.empty() && words[0] == word; };
-  if (key == "pulsecast_interface") {
-    const bool right = (is("mirror") && numbers_from(words, 1, 1, 1, 0, 1)) ||
-                       (is("pane") && numbers_from(words, 1, 1, 1, 0, 10)) ||
-                       ((is("glass") || is("water") || is("none")) && words.size() == 1);
-    return right
-               ? nullptr
-               : "mirror and its reflectance from 0 to 1, pane and its thickness from 0 to 10 m, glass, water or none";
-  }
-  if (key == "pulsecast_medium") {
-    const bool right =
-        numbers_from(
-            {words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(words.size(), 2))}, 0, 1,
-            2, 1, 4) &&
-        numbers_from(words, std::min<std::size_t>(words.size(), 2), 0, 3, 0, 1e6);
-    return right ? nullptr
-                 : "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering "
-                   "and backscatter from 0";
-  }
-  if (key == "pulsecast_water") {
-    const bool right =
-        (words.size() == 1 && jerlov_type(words[0])) || (is("secchi") && numbers_from(words, 1, 1, 1, 0.1, 80));
-    return right
-               ? nullptr
-               : "a type of Jerlov's, I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C, or secchi and a depth from 0.1 to 80 m";
-  }
+/// Expected words of a key of HELIOS++ or of this library, for a message; null if they are right, or the key is
+/// another.
+[[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
+  const std::size_t count = words.size();
+  const auto is = [&](std::string_view word) { return count > 0 && words[0] == word; };
+  const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers from low to high
+    return std::all_of(words.data() + std::min(first, count), words.data() + std::min(end, count),
+                       [&](std::string_view word) {
+                         const std::optional<double> number = number_in<double>(word);
+                         return number && *number >= low && *number <= high;
+                       });
+  };
+  const auto need = [](bool right, const char* expected) { return right ? nullptr : expected; };
+  if (key == "helios_reflectance")
+    return need(count == 1 && are(0, 1, 0, 100), "a fraction from 0 to 1, or up to 100 percent");
+  if (key == "helios_classification")
+    return need(count == 1 && number_in<std::uint16_t>(words[0]), "a whole number from 0 to 65535");
+  if (key == "pulsecast_normalizedPhong") return need(count == 1 && (is("true") || is("false")), "true or false");
+  if (key == "pulsecast_interface")
+    return need((is("mirror") && count == 2 && are(1, 2, 0, 1)) || (is("pane") && count == 2 && are(1, 2, 0, 10)) ||
+                    ((is("glass") || is("water") || is("none")) && count == 1),
+                "mirror and its reflectance from 0 to 1, pane and its thickness from 0 to 10 m, glass, water or none");
+  if (key == "pulsecast_medium")
+    return need(count >= 1 && count <= 5 && are(0, 2, 1, 4) && are(2, 5, 0, 1e6),
+                "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering "
+                "and backscatter from 0");
+  if (key == "pulsecast_water")
+    return need((count == 1 && jerlov_type(words[0])) || (is("secchi") && count == 2 && are(1, 2, 0.1, 80)),
+                "a type of Jerlov's, I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C, or secchi and a depth from 0.1 to 80 m");
   if (key == "pulsecast_roughness")
-    return numbers_from(words, 0, 1, 1, 1e-3, 2) ? nullptr : "a root mean square slope from 0.001 to 2";
-  if (key == "pulsecast_retroreflector") {
-    const bool right = ((is("beads") || is("cubeCorner")) && numbers_from(words, 1, 0, 1, 0, 0.1)) ||
-                       (is("prisms") && words.size() >= 2 && numbers_from({words[1]}, 0, 1, 1, 1, 4) &&
-                        numbers_from(words, 2, 0, 1, 0, 0.1));
-    return right ? nullptr
-                 : "beads, cubeCorner, or prisms and their index from 1 to 4, and then, if given, the half width of "
-                   "the light from 0 to 0.1 rad";
-  }
+    return need(count == 1 && are(0, 1, 1e-3, 2), "a root mean square slope from 0.001 to 2");
+  if (key == "pulsecast_retroreflection")
+    return need(count >= 1 && count <= 2 && are(0, 1, 0, 1e6) && are(1, 2, 1, 85),
+                "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
+  if (key == "pulsecast_retroreflector")
+    return need(((is("beads") || is("cubeCorner")) && count <= 2 && are(1, 2, 0, 0.1)) ||
+                    (is("prisms") && count >= 2 && count <= 3 && are(1, 2, 1, 4) && are(2, 3, 0, 0.1)),
+                "beads, cubeCorner, or prisms and their index from 1 to 4, and then, if given, the half width of "
+                "the light from 0 to 0.1 rad");
   return nullptr;
 }
 

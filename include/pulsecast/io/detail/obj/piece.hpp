@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <ios>
 #include <istream>
@@ -54,6 +52,17 @@ class ObjPiece : private StatementBuffer {
   struct Note {
     std::size_t line;
     std::string text;
+  };
+
+  /// Lines with the same oddity: the first of them, with its text, and their number.
+  struct Notes {
+    Note first{std::numeric_limits<std::size_t>::max(), {}};
+    std::size_t count = 0;
+
+    void add(const Note& note, std::size_t times = 1) {
+      count += times;
+      if (times > 0 && note.line < first.line) first = note;
+    }
   };
 
   /// `textured` to read texture coordinates.
@@ -116,9 +125,8 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
   std::vector<std::size_t> without_place;    ///< by index into `uses`: corners without texture coordinates
   std::vector<Note> crossings;               ///< polygons whose outline crosses itself
-  std::optional<Note> first_unknown, first_flat;
-  std::size_t unknown = 0, flat = 0;
-  std::size_t open_line = 0;  ///< line of a last statement without end; 0 if there is none
+  Notes unknown, flat;                       ///< unknown statements, and faces without an area
+  std::size_t open_line = 0;                 ///< line of a last statement without end; 0 if there is none
   Failure failure;
 
  private:
@@ -139,8 +147,7 @@ class ObjPiece : private StatementBuffer {
       require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
               "three finite numbers, none beyond 1e12");
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
-      add_flat(line());
-      return;
+      return flat.add({line(), {}});
     } else if (keyword() == "f") {
       require(std::ranges::all_of(given, is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
@@ -154,18 +161,12 @@ class ObjPiece : private StatementBuffer {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read only the first of several
         libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
-        if (unknown++ == 0) first_unknown = {line(), quoted()};
+        unknown.add({line(), quoted()});
       }
       return;
     }
     if (line_is_open() && keyword() != "usemtl") open_line = line();
     ready = statement();
-  }
-
-  /// Counts a face without area.
-  void add_flat(std::size_t line) {
-    ++flat;
-    if (!first_flat || line < first_flat->line) first_flat = {line, {}};
   }
 
   static bool is_corner(std::string_view word) {
@@ -241,10 +242,7 @@ class ObjPiece : private StatementBuffer {
 
   void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
     const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
-    if (area == Vec3{0, 0, 0}) {
-      add_flat(face.line);
-      return;
-    }
+    if (area == Vec3{0, 0, 0}) return flat.add({face.line, {}});
     triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
     triangle_uses.push_back(face.use);
     if (textured_) texture.push_back({face_places_[a], face_places_[b], face_places_[c]});

@@ -4,18 +4,12 @@
 #define PULSECAST_IO_DETAIL_OBJ_READER_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/parallel.hpp>
@@ -44,10 +38,11 @@ class ObjReader {
     while (read_window()) continue;
     MeshData& mesh = model_.mesh;
     if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
-    if (unknown_ > 0)
-      warn(first_unknown_->line,
-           first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
-    if (flat_ > 0) warn(first_flat_->line, "a face without area is left out, the first of " + std::to_string(flat_));
+    const auto& [unknown, unknown_count] = unknown_;
+    if (unknown_count > 0)
+      warn(unknown.line, unknown.text + " is not known and left out, the first of " + std::to_string(unknown_count));
+    if (flat_.count > 0)
+      warn(flat_.first.line, "a face without area is left out, the first of " + std::to_string(flat_.count));
     if (mesh.triangles.empty())
       model_.warnings.push_back(file_.path() +
                                 ": holds no face with an area: expected at least one 'f' statement of such a one");
@@ -56,7 +51,6 @@ class ObjReader {
   }
 
  private:
-  using Note = ObjPiece::Note;
   using Use = ObjPiece::Use;
 
   /// Reads the next window; false at the end of the file.
@@ -112,10 +106,8 @@ class ObjReader {
       without_place_[piece.uses[use].name] += piece.without_place[use];
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
-    if (unknown_ == 0) first_unknown_ = piece.first_unknown;
-    if (flat_ == 0) first_flat_ = piece.first_flat;
-    unknown_ += piece.unknown;
-    flat_ += piece.flat;
+    unknown_.add(piece.unknown.first, piece.unknown.count);
+    flat_.add(piece.flat.first, piece.flat.count);
     open_line_ = std::max(open_line_, piece.open_line);
   }
 
@@ -190,8 +182,7 @@ class ObjReader {
   Use use_;                                                        // in force
   std::vector<Use> uses_;                                          // in use by triangles
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
-  std::optional<Note> first_unknown_, first_flat_;
-  std::size_t unknown_ = 0, flat_ = 0;
+  ObjPiece::Notes unknown_, flat_;
   std::map<std::string, std::size_t> without_place_;  // corners without texture coordinates, by material
   std::size_t open_line_ = 0;
 };

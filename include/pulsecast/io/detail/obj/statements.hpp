@@ -6,13 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
 #include <streambuf>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <tiny_obj_loader.h>

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 #define PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -49,6 +44,9 @@ class CalibrationFile {
     fail(parent, "has no " + key);
   }
 
+  /// Map of a name in the root, of a file with sections; the root itself of one without.
+  [[nodiscard]] YAML::Node section(const std::string& name) const { return find(root_, name).value_or(root_); }
+
   /// Text of a scalar, which is called `name` in messages. @throws FileError for anything else
   [[nodiscard]] std::string word(const YAML::Node& node, const std::string& name) const {
     if (!node.IsScalar()) fail(node, name + " is a list or map: expected one value");
@@ -56,7 +54,7 @@ class CalibrationFile {
   }
 
   /// Number from `low` to `high`. @throws FileError for anything else
-  [[nodiscard]] double number(const YAML::Node& node, const std::string& name, double low, double high) const {
+  double number(const YAML::Node& node, const std::string& name, double low, double high) const {
     const std::string scalar = word(node, name);
     const std::optional<double> value = text::finite_number_in(scalar);
     if (!value || *value < low || *value > high) {

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

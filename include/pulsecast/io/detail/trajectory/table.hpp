@@ -5,13 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
