@@ -19,14 +19,14 @@ FNR == 1 { depth = hidden = 0 }
   --depth
   next
 }
-hidden || /^($|[ \/#}:)>]|namespace|public|private|protected|static_assert|extern|friend|PULSECAST_UNIT|[a-z_0-9]+(\/[A-Za-z]+)?(\[\])? [a-z_]+$)/ { next }
+hidden || /^($|[ \/#}:)>]|namespace|public|private|protected|static_assert|extern|friend|PULSECAST_UNIT|[a-z_0-9]+(\/[A-Za-z]+)?(\[\])? [a-z_]+$|using enum)/ { next }
 {
   line = $0
   gsub(/\[\[[^]]*\]\] */, "", line)
   sub(/ *\/\/.*/, "", line)
   sub(/^template <.*> /, "", line)
   sub(/^requires.*\) using /, "using ", line)
-  if (line ~ /^requires/) next
+  if (line ~ /^requires|>::/) next  # of a member: a definition outside its class
   if (match(line, /^PULSECAST_OPTIONAL_[A-Z]*\([A-Za-z]+/)) {
     name = substr(line, RSTART, RLENGTH)
   } else if (match(line, /^(struct|class|union|enum class|enum|concept|using) (alignas\([^)]*\) )?[A-Za-z_0-9]+/)) {

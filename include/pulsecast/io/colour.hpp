@@ -22,14 +22,15 @@ using Srgb = std::array<std::uint8_t, 3>;
 
 /// Decodes sRGB to linear light. As `srgb_decoded`.
 [[nodiscard]] inline Colour from_srgb(const Srgb& bytes) noexcept {
-  return {linear_share(bytes[0]), linear_share(bytes[1]), linear_share(bytes[2])};
+  return {pulsecast::detail::linear_share(bytes[0]), pulsecast::detail::linear_share(bytes[1]),
+          pulsecast::detail::linear_share(bytes[2])};
 }
 
 /// Nearest colour of a screen. Source: IEC 61966-2-1, sRGB.
 [[nodiscard]] inline Srgb to_srgb(const Colour& c) noexcept {
   Srgb bytes{};
   for (int k = 0; k < 3; ++k) {
-    const double coded = srgb_encoded(std::clamp(c[k], 0.0, 1.0));
+    const double coded = pulsecast::detail::srgb_encoded(std::clamp(c[k], 0.0, 1.0));
     bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(255 * coded));
   }
   return bytes;

@@ -180,6 +180,7 @@ class MappedFile {
   std::span<const std::byte> bytes_;
 };
 
+namespace detail {
 /// Regular files of a folder, sorted; by a `recursive_directory_iterator`, those of the folders below it, too.
 /// @throws FileError if it cannot be read
 template <class Iterator = std::filesystem::directory_iterator>
@@ -192,6 +193,7 @@ template <class Iterator = std::filesystem::directory_iterator>
   std::sort(files.begin(), files.end());
   return files;
 }
+}  // namespace detail
 
 /// Calls a function that reads a file. Too little memory for what it holds is a `FileError`.
 template <class Function>

@@ -87,9 +87,6 @@ template <SceneQueries World>
   return power * laser.pulse_length * laser.wavelength / (planck_constant * speed_of_light);
 }
 
-/// Level of a ratio of powers [dB]; -200 or more, also for zero.
-[[nodiscard]] inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
-
 /// Surface of an echo, as columns read it.
 struct PointSurface {
   SurfaceInteraction interaction{};  ///< surface in the world
@@ -130,6 +127,9 @@ struct PointColumn {
 };
 
 namespace detail {
+
+/// Level of a ratio of powers [dB]; -200 or more, also for zero.
+[[nodiscard]] inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
 
 template <class T>
 [[nodiscard]] constexpr T value_of(const PointView& p, T Echo::*member) noexcept {

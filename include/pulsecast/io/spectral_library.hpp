@@ -242,7 +242,7 @@ PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::pa
   std::error_code ignored;
   std::vector<std::filesystem::path> files{path};
   if (std::filesystem::is_directory(path, ignored)) {
-    files = files_in(path);
+    files = detail::files_in(path);
     std::erase_if(files, [](const auto& file) { return file.filename().string().starts_with('.'); });
   }
   SpectralLibrary library;

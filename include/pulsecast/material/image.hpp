@@ -14,6 +14,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+
 /// Linear share of light for a sample of a display, both from 0 to 1. Source: IEC 61966-2-1 (sRGB).
 [[nodiscard]] inline double srgb_decoded(double sample) noexcept {
   return sample <= 0.04045 ? sample / 12.92 : std::pow((sample + 0.055) / 1.055, 2.4);
@@ -31,6 +33,8 @@ namespace PULSECAST_NAMESPACE {
   }();
   return table[sample];
 }
+
+}  // namespace detail
 
 /// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the
 /// picture, (1, 1) the upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.

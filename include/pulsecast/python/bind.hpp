@@ -104,6 +104,8 @@ struct RunRequest {
   }
 };
 
+namespace detail {
+
 /// Data that a run keeps. Throws a `SettingError` for a name that no column has, or a `ValueError` for columns that
 /// need colours or surfaces of a survey without any.
 [[nodiscard]] inline KeptData kept_by(const RunRequest& request, io::PointSettings points) {
@@ -125,6 +127,8 @@ struct RunRequest {
   return kept;
 }
 
+}  // namespace detail
+
 /// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points. Rethrows Python
 /// exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the result. Throws a `TypeError`
 /// for a callback that is not callable, and as `kept_by`.
@@ -137,7 +141,7 @@ template <class Run>
   };
   const bool has_callback = !request.callback.is_none(), reports = !request.progress.is_none();
   std::stop_source stopping;
-  RowSink rows(kept_by(request, std::move(points)));
+  RowSink rows(detail::kept_by(request, std::move(points)));
   auto delivered = Clock::now(), reported = delivered;
 
   InterruptWatch watch(stopping);

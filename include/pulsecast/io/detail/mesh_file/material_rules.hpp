@@ -41,8 +41,8 @@ class MaterialRules {
     Vec3 linear{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double share = within(o.colour[k], 0, 1);
-      made.colour[static_cast<int>(k)] = o.linear ? srgb_encoded(share) : share;
-      linear[static_cast<int>(k)] = o.linear ? share : srgb_decoded(share);
+      made.colour[static_cast<int>(k)] = o.linear ? pulsecast::detail::srgb_encoded(share) : share;
+      linear[static_cast<int>(k)] = o.linear ? share : pulsecast::detail::srgb_decoded(share);
     }
     // luminance. Source: IEC 61966-2-1 (sRGB), ITU-R BT.709
     if (reflectance_of_colour_) made.reflectance = dot(linear, Vec3(0.2126, 0.7152, 0.0722));

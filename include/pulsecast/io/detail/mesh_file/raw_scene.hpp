@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -127,12 +126,12 @@ struct RawScene {
 
 /// Text with `%20` as a blank, and so on. Source: RFC 3986, 2.1.
 [[nodiscard]] inline std::string unescaped(const std::string& text) {
+  constexpr std::string_view digits = "0123456789abcdef0123456789ABCDEF";
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned char code = 0;
-    const char* const at = text.data() + i;
-    const bool escape = *at == '%' && i + 2 < text.size() && std::from_chars(at + 1, at + 3, code, 16).ptr == at + 3;
-    made += escape ? static_cast<char>(code) : *at;
+    const bool escape = text[i] == '%' && i + 2 < text.size() && digits.find(text[i + 1]) != digits.npos &&
+                        digits.find(text[i + 2]) != digits.npos;
+    made += escape ? static_cast<char>(digits.find(text[i + 1]) % 16 * 16 + digits.find(text[i + 2]) % 16) : text[i];
     if (escape) i += 2;
   }
   return made;
