@@ -34,7 +34,7 @@ int main() {
   const helios::SurveyDocument document = helios::read_survey("survey.xml", {.assets = assets});
   const auto simulation = helios::make_simulation(document.survey, {.seed = 1, .assets = assets});
   Cloud cloud;
-  const RunSummary summary = simulation->run({.threads = 2}, cloud);
+  const RunSummary summary = run(simulation->survey(), {.threads = 2}, cloud);
   double x = 0, y = 0, z = 0;
   for (const Vec3& point : cloud.points) {
     x += point.x;
