@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
@@ -129,10 +128,11 @@ struct RawScene {
 [[nodiscard]] inline std::string unescaped(const std::string& text) {
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned char code = 0;
-    const char* const at = text.data() + i;
-    const bool escape = *at == '%' && i + 2 < text.size() && std::from_chars(at + 1, at + 3, code, 16).ptr == at + 3;
-    made += escape ? static_cast<char>(code) : *at;
+    std::string_view digits = std::string_view(text).substr(i + 1, 2);
+    const bool marked = text[i] == '%' && digits.size() == 2;
+    const std::optional<unsigned> code = marked ? text::take_number<unsigned>(digits, 16) : std::nullopt;
+    const bool escape = code && digits.empty();
+    made += escape ? static_cast<char>(*code) : text[i];
     if (escape) i += 2;
   }
   return made;
