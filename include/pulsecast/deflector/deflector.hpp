@@ -4,8 +4,6 @@
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
 #include <algorithm>
-#include <optional>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

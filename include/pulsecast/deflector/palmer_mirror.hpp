@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
 #define PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
 
-#include <optional>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>

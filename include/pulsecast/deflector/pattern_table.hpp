@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 #define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
-#include <vector>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>

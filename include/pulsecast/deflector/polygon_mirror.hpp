@@ -4,7 +4,6 @@
 #define PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 
 #include <cmath>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

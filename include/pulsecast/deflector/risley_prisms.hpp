@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
 #define PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
 
-#include <optional>
-#include <vector>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <span>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 

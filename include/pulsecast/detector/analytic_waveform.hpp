@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

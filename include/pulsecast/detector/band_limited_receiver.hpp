@@ -9,9 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

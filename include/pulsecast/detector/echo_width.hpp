@@ -4,9 +4,6 @@
 #define PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 
 #include <cmath>
-#include <concepts>
-#include <span>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

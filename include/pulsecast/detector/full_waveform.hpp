@@ -6,10 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

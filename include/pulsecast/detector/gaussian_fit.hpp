@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/require.hpp>

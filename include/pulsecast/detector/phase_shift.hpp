@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
 #include <cmath>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

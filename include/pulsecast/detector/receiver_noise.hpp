@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
 #include <cmath>
-#include <span>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>

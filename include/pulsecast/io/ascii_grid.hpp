@@ -49,7 +49,6 @@ struct AsciiGrid {
 #include <cmath>
 #include <limits>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/suggestion.hpp>
 #include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/detail/text/table.hpp>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

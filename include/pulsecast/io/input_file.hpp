@@ -19,7 +19,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

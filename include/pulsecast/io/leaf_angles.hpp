@@ -25,7 +25,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <array>
 #include <cmath>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/table.hpp>

@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/version.hpp>

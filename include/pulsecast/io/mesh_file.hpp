@@ -43,8 +43,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <array>
 #include <memory>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>

@@ -48,8 +48,6 @@ struct MaterialLibrary {
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/io/input_file.hpp>

@@ -17,7 +17,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

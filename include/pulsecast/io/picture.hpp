@@ -43,7 +43,6 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #include <stb/stb_image.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/input_file.hpp>
@@ -53,28 +52,21 @@ namespace PULSECAST_NAMESPACE::io {
 namespace detail {
 
 /// Pictures by file, each read once.
-class PictureShelf {
- public:
-  PictureShelf(std::vector<std::string>& warnings, const PictureSettings& settings)
-      : warnings_(warnings), settings_(settings) {}
+struct PictureShelf {
+  std::vector<std::string>& warnings;
+  const PictureSettings& settings;
+  std::map<std::pair<std::filesystem::path, const void*>, std::shared_ptr<const Image>> pictures{};
 
   /// Picture, or null with a warning.
   [[nodiscard]] std::shared_ptr<const Image> get(const PictureSource& source) {
-    const auto key = std::pair(source.file, source.embedded.get());
-    if (const auto known = pictures_.find(key); known != pictures_.end()) return known->second;
-    std::shared_ptr<const Image> picture;
+    const auto [known, is_new] = pictures.try_emplace({source.file, source.embedded.get()});
     try {
-      picture = std::make_shared<const Image>(read_picture(source, settings_));
+      if (is_new) known->second = std::make_shared<const Image>(read_picture(source, settings));
     } catch (const FileError& e) {
-      warnings_.push_back(std::string(e.what()) + "; it is left out");
+      warnings.push_back(std::string(e.what()) + "; it is left out");
     }
-    return pictures_[key] = picture;
+    return known->second;
   }
-
- private:
-  std::vector<std::string>& warnings_;
-  const PictureSettings& settings_;
-  std::map<std::pair<std::filesystem::path, const void*>, std::shared_ptr<const Image>> pictures_;
 };
 
 /// Outline of a material; empty if it is solid everywhere.
@@ -133,7 +125,7 @@ PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSe
 PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials,
                                    std::span<const MaterialPictures> pictures, std::vector<std::string>& warnings,
                                    const PictureSettings& settings) {
-  detail::PictureShelf shelf(warnings, settings);
+  detail::PictureShelf shelf{warnings, settings};
   for (std::size_t i = 0; i < std::min(materials.size(), pictures.size()); ++i) {
     const MaterialPictures& of = pictures[i];
     if (of.empty()) continue;

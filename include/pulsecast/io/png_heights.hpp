@@ -55,7 +55,6 @@ struct PngHeightSettings {
 
 #include <stb/stb_image.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/world_file.hpp>

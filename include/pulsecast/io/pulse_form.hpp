@@ -21,7 +21,6 @@ namespace PULSECAST_NAMESPACE::io {
 #include <algorithm>
 #include <cmath>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

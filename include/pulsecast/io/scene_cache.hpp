@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <typeinfo>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/digest.hpp>

@@ -43,8 +43,6 @@ struct SpectrumFile {
 #include <array>
 #include <system_error>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_TRAJECTORY_HPP
 
 #include <cmath>
-#include <optional>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>

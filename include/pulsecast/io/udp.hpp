@@ -12,7 +12,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/packets/packet.hpp>
 

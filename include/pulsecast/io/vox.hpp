@@ -63,7 +63,6 @@ struct VoxelFile {
 #include <limits>
 
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>

@@ -37,7 +37,6 @@ struct WorldFile {
 #include <cmath>
 #include <system_error>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <optional>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>

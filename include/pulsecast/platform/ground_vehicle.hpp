@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_PLATFORM_LEGS_HPP
 
 #include <algorithm>
-#include <optional>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>

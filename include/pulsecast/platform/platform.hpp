@@ -3,10 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <concepts>
-#include <optional>
-#include <vector>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>

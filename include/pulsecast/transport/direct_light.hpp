@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 #define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 
-#include <span>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
 
 #include <algorithm>
-#include <span>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>

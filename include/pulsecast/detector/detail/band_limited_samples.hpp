@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/simd.hpp>

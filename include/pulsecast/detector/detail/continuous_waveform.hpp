@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/units.hpp>

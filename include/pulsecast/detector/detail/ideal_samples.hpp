@@ -5,8 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>

@@ -5,9 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <concepts>
-#include <span>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/simd.hpp>

@@ -4,17 +4,14 @@
 #define PULSECAST_IO_DETAIL_ARCHIVE_HPP
 
 #include <array>
-#include <concepts>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
-#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <typeinfo>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

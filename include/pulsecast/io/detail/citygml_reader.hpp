@@ -18,8 +18,6 @@
 #include <citygml/polygon.h>
 #include <citygml/transformmatrix.h>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/citygml.hpp>
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>

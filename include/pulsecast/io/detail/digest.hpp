@@ -8,7 +8,6 @@
 
 #include <xxhash.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -7,7 +7,6 @@
 #include <array>
 #include <functional>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -12,7 +12,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 
 #include <cmath>
-#include <span>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>

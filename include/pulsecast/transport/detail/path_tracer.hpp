@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>

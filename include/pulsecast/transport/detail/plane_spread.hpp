@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>

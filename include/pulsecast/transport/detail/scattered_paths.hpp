@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <span>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>

@@ -8,7 +8,6 @@
 #include <functional>
 #include <limits>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/hierarchy.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>

@@ -188,10 +188,9 @@ class MeshFileMaker {
 
   /// Materials in use, and their pictures.
   void describe() {
-    const MaterialRules rules(settings_.reflectance_of_colour);
-    const PictureFinder find(path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files);
+    const PictureFinder find{path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files};
     for (const std::uint32_t number : used_) {
-      file_.materials.push_back(rules(scene_.materials[number]));
+      file_.materials.push_back(material_of(scene_.materials[number], settings_.reflectance_of_colour));
       file_.pictures.push_back(find(scene_.materials[number]));
     }
   }

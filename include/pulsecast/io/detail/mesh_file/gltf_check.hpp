@@ -7,7 +7,6 @@
 #include <array>
 #include <vector>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 /// Features that change a mesh but are not read by assimp: extensions and numbers of glTF, strips of PLY.

@@ -7,10 +7,10 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
@@ -126,12 +126,13 @@ struct RawScene {
 
 /// Text with `%20` as a blank, and so on. Source: RFC 3986, 2.1.
 [[nodiscard]] inline std::string unescaped(const std::string& text) {
-  constexpr std::string_view digits = "0123456789abcdef0123456789ABCDEF";
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool escape = text[i] == '%' && i + 2 < text.size() && digits.find(text[i + 1]) != digits.npos &&
-                        digits.find(text[i + 2]) != digits.npos;
-    made += escape ? static_cast<char>(digits.find(text[i + 1]) % 16 * 16 + digits.find(text[i + 2]) % 16) : text[i];
+    std::string_view digits = std::string_view(text).substr(i + 1, 2);
+    const bool marked = text[i] == '%' && digits.size() == 2;
+    const std::optional<unsigned> code = marked ? text::take_number<unsigned>(digits, 16) : std::nullopt;
+    const bool escape = code && digits.empty();
+    made += escape ? static_cast<char>(*code) : text[i];
     if (escape) i += 2;
   }
   return made;

@@ -11,8 +11,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 /// Statements of OBJ and MTL files.

@@ -7,8 +7,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -4,9 +4,6 @@
 #define PULSECAST_IO_DETAIL_PACKETS_PACKET_STREAM_HPP
 
 #include <algorithm>
-#include <concepts>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

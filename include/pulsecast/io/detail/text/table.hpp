@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

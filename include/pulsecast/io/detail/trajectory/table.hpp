@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/columns.hpp>
