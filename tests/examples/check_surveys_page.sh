@@ -97,6 +97,15 @@ awk '/^struct / { split("", said) }
          print FILENAME ":" FNR ": the comment of " part[3] " does not name " part[2]
      }' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp >> "$faults"
 
+# Each struct with rows has its table, but for those whose attributes are told in words: of `<attribute>` and `<leg>`, which takes a
+# negative `maxDuration_s`, too, and those without rows of their own.
+awk '/^struct / { struct = $2 }
+     /^  void fields\(FieldIo/ && struct !~ /^(AttributeSettings|LegSettings|ConicOptic|RotationList)$/ { print struct }' \
+    include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp |
+  while read -r struct; do
+    grep -qE "^<!-- rows of ([A-Za-z]+ )*$struct( [A-Za-z]+)* -->$" "$page" || echo "$page has no table with the rows of $struct"
+  done >> "$faults"
+
 # A table below <!-- rows of STRUCT... --> has a row for each row of these settings, with the values and the default that the program
 # of tables prints; texts, vectors and what an absent value means are described on the page. A row for several attributes has the values of each. A row that is
 # missing gets the comment of the member in the header; its meaning may be told at more length on the page.
