@@ -80,9 +80,9 @@ TEST_CASE("points are located against an offset that comes later") {
 }
 
 TEST_CASE("the level of less than 1e-20 is that of nothing") {
-  CHECK(las_level(1) == 0);
-  CHECK(las_level(100) == 20);
-  for (const double ratio : {1e-20, 1e-25, 0.0, -1.0}) CHECK(las_level(ratio) == -200);
+  CHECK(level_of(1) == 0);
+  CHECK(level_of(100) == 20);
+  for (const double ratio : {1e-20, 1e-25, 0.0, -1.0}) CHECK(level_of(ratio) == -200);
 }
 
 TEST_CASE("packets are moved, and where there is none, nothing is") {
