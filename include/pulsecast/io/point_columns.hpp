@@ -94,7 +94,7 @@ struct PointSurface {
   Vec3 velocity{};                   ///< velocity in the world, in the axes of the points [m/s]
 };
 
-/// Point of an echo, as columns read it. A sink or file fills in what its columns need.
+/// Point of an echo, as columns read it. What no column of a layout needs is empty.
 struct PointView {
   const Shot& shot;                       ///< pulse of the echo
   const Echo& echo;                       ///< echo

@@ -41,8 +41,7 @@ std::size_t differences(const pcl::PCLPointCloud2& cloud, const PointBuffer& poi
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto* const at =
           reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
-      const double number =
-          detail::visit_field_type(fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
+      const double number = number_in(at, {.type = fields[k].type});
       const double expected = points.number(i, fields[k]);
       wrong += !(number == expected || (std::isnan(number) && std::isnan(expected)));
     }

@@ -55,8 +55,7 @@ TEST_CASE("PCL reads the same numbers from PLY, of all types") {
           const auto* const at =
               reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
           const double expected = points.number(i, layout.fields[k]);
-          const double number = detail::visit_field_type(
-              layout.fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
+          const double number = number_in(at, {.type = layout.fields[k].type});
           wrong += !(number == expected || (std::isnan(number) && std::isnan(expected)));
         }
       }

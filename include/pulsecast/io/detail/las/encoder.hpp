@@ -193,12 +193,14 @@ class LasEncoder {
   }
   template <std::size_t K>
   [[nodiscard, gnu::always_inline]] static std::byte* put_extra(const PointView& view, std::byte* to) noexcept {
-    constexpr const detail::LasUsualExtra& extra = detail::las_usual_extras[K];
+    constexpr detail::LasUsualExtra extra = detail::las_usual_extras[K];
+    constexpr auto get = extra.column->get;
+    constexpr auto whole = extra.column->whole;
     return detail::visit_number_type(extra.type, [&]<class Number>() {
       if constexpr (std::is_integral_v<Number>)
-        detail::store_whole<Number>(extra.column->whole(view), to);
+        detail::store_whole<Number>(whole(view), to);
       else
-        detail::store_number<Number>(extra.column->get(view) * extra.scale, to);
+        detail::store_number<Number>(get(view) * extra.scale, to);
       return to + sizeof(Number);
     });
   }
