@@ -52,7 +52,7 @@ int main(int count, char** arguments) try {
       load(document.survey, {.seed = seed, .assets = assets, .threads = threads});
   Cloud cloud;
   const double start = user_seconds();
-  simulation->run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
+  run(simulation->survey(), {.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
   std::cout << user_seconds() - start << '\n';
 
   if (*arguments[4] == '\0') return 0;

@@ -63,7 +63,7 @@ class Digest {
   };
 
   void add_folder(const std::filesystem::path& path) {
-    const auto files = files_in<std::filesystem::recursive_directory_iterator>(path);
+    const auto files = detail::files_in<std::filesystem::recursive_directory_iterator>(path);
     for (const std::filesystem::path& file : files) {
       add(std::string_view(file.lexically_relative(path).string()));
       add_file(file);
