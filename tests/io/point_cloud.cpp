@@ -238,7 +238,7 @@ TEST_CASE("colours are averaged as squares") {
   CHECK(cloud.colours[0][2] == 0.2f);
   CHECK(cloud.colours[1] == std::array<float, 3>{0.4f, 1, 0});
   CHECK(read("0 0 0 0.5 1 0.25\n",
-             {.colours = true, .colour_max = 1, .columns = {.colour = PointColumns::Columns{3, 4, 5}}})
+             {.colours = true, .colour_max = 1, .columns = {.colour = TextPointColumns::Columns{3, 4, 5}}})
             .colours == std::vector<std::array<float, 3>>{{0.5f, 1, 0.25f}});
   CHECK(error("0 0 0 0 0 1 0 0 0\n0 0 0 0 0 1 256 0 0\n", {.colours = true}).place() == "line 2");
   CHECK(error("0 0 0 0 0 1 0 -1 0\n", {.colours = true}).problem() == "has the colour -1: expected one from 0 to 255");

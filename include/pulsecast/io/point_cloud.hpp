@@ -11,7 +11,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/point_columns.hpp>
+#include <pulsecast/io/detail/text/text_point_columns.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -38,7 +38,7 @@ struct PointCloudSettings {
   std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels without a normal, of any length but 0
   bool colours = false;                               ///< true to give voxels colours
   std::optional<double> colour_max = std::nullopt;    ///< maximum of a channel; by default 65535 in LAS, 255 in text
-  PointColumns columns = {};                          ///< columns of text files
+  TextPointColumns columns = {};                      ///< columns of text files
 
   void validate() const {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");

@@ -60,7 +60,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzS
               : source.snap_neighbor_normal ? io::VoxelNormals::nearest
                                             : io::VoxelNormals::mean;
   s.columns.separators = source.separator;
-  io::PointColumns::Columns normal{};
+  io::TextPointColumns::Columns normal{};
   std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
                  [](int column) { return static_cast<std::size_t>(column); });
   s.columns.normal = normal;

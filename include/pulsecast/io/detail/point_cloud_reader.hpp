@@ -55,7 +55,7 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
     function(points);
   } else {
     refuse_other_kinds(file);
-    PointColumns columns = settings.columns;
+    TextPointColumns columns = settings.columns;
     if (settings.normals != VoxelNormals::mean && settings.normals != VoxelNormals::nearest) columns.normal.reset();
     if (!settings.colours) columns.colour.reset();
     TextPoints points(std::move(file), std::move(columns));

@@ -23,7 +23,7 @@ struct Read {
   std::vector<std::string> warnings;
 };
 
-Read read(const std::string& text, const PointColumns& columns = {}) {
+Read read(const std::string& text, const TextPointColumns& columns = {}) {
   const TemporaryFolder folder;
   std::ofstream(folder / "a.xyz", std::ios::binary) << text;
   TextPoints points(InputFile(folder / "a.xyz", "a point cloud"), columns);
@@ -37,7 +37,7 @@ Read read(const std::string& text, const PointColumns& columns = {}) {
   return result;
 }
 
-FileError error(const std::string& text, const PointColumns& columns = {}) {
+FileError error(const std::string& text, const TextPointColumns& columns = {}) {
   return support::file_error([&] { (void)read(text, columns); });
 }
 
@@ -71,8 +71,9 @@ TEST_CASE("comments and blank rows do not count, lines do") {
 }
 
 TEST_CASE("columns stand in any order") {
-  const PointColumns columns{
-      .position = {4, 0, 2}, .normal = PointColumns::Columns{1, 1, 3}, .colour = PointColumns::Columns{5, 6, 7}};
+  const TextPointColumns columns{.position = {4, 0, 2},
+                                 .normal = TextPointColumns::Columns{1, 1, 3},
+                                 .colour = TextPointColumns::Columns{5, 6, 7}};
   const Read found = read("2 0.5 3 0.25 1 10 20 30\n5e3 -1 .25 7 -4.5 40 50 60 tree 5\n", columns);
   CHECK(found.positions == two);
   CHECK(found.normals == Points{{0.5, 0.5, 0.25}, {-1, -1, 7}});
@@ -154,13 +155,14 @@ TEST_CASE("a last line without an end is read, with a warning") {
 TEST_CASE("columns and separators that cannot be are refused") {
   for (const char* separators : {"1", ",e", "E", ".", "+", "-", "#", "/", "\n"}) {
     CAPTURE(separators);
-    CHECK_THROWS_WITH_AS((PointColumns{.separators = separators}.validate()),
-                         doctest::Contains("PointColumns::separators"), SettingError);
+    CHECK_THROWS_WITH_AS((TextPointColumns{.separators = separators}.validate()),
+                         doctest::Contains("TextPointColumns::separators"), SettingError);
   }
-  CHECK_THROWS_AS((PointColumns{.position = {0, 1, 1000}}.validate()), SettingError);
-  CHECK_THROWS_AS((PointColumns{.normal = PointColumns::Columns{0, 1, 1000}}.validate()), SettingError);
-  CHECK_THROWS_AS((PointColumns{.colour = PointColumns::Columns{std::size_t(-1), 1, 2}}.validate()), SettingError);
-  CHECK_NOTHROW((PointColumns{.separators = " \t,;|_", .normal = std::nullopt}.validate()));
+  CHECK_THROWS_AS((TextPointColumns{.position = {0, 1, 1000}}.validate()), SettingError);
+  CHECK_THROWS_AS((TextPointColumns{.normal = TextPointColumns::Columns{0, 1, 1000}}.validate()), SettingError);
+  CHECK_THROWS_AS((TextPointColumns{.colour = TextPointColumns::Columns{std::size_t(-1), 1, 2}}.validate()),
+                  SettingError);
+  CHECK_NOTHROW((TextPointColumns{.separators = " \t,;|_", .normal = std::nullopt}.validate()));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/point_columns.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/detail/text/text_point_columns.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -28,7 +28,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// in use. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
-  TextPoints(InputFile file, PointColumns columns) : file_(std::move(file)), columns_(validated(std::move(columns))) {}
+  TextPoints(InputFile file, TextPointColumns columns)
+      : file_(std::move(file)), columns_(validated(std::move(columns))) {}
 
   /// Advances to the next point; false at the end.
   [[nodiscard]] bool next() {
@@ -72,7 +73,7 @@ class TextPoints {
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
  private:
-  using Columns = PointColumns::Columns;
+  using Columns = TextPointColumns::Columns;
 
   /// Of the current row.
   [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }
@@ -89,7 +90,7 @@ class TextPoints {
       separators = has(';') ? ";" : has(',') ? "," : text::blanks;
     }
     cells_ = RowCells(separators, true);
-    cells_.split(text, PointColumns::max_column + 1);
+    cells_.split(text, TextPointColumns::max_column + 1);
   }
 
   /// True if a row of names has x, y and z, and one of them in another column than that which is read.
@@ -153,7 +154,7 @@ class TextPoints {
   }
 
   InputFile file_;
-  PointColumns columns_;
+  TextPointColumns columns_;
   RowCells cells_;
   std::size_t needed_ = 0;  // columns in use
   std::vector<std::string> notes_;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_IO_DETAIL_TEXT_POINT_COLUMNS_HPP
-#define PULSECAST_IO_DETAIL_TEXT_POINT_COLUMNS_HPP
+#ifndef PULSECAST_IO_DETAIL_TEXT_TEXT_POINT_COLUMNS_HPP
+#define PULSECAST_IO_DETAIL_TEXT_TEXT_POINT_COLUMNS_HPP
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace PULSECAST_NAMESPACE::io {
 
 /// Columns of a text file of points, counted from 0.
-struct PointColumns {
+struct TextPointColumns {
   using Columns = std::array<std::size_t, 3>;
 
   std::string separators = {};  ///< any of these characters; if empty, found in the first row: see `TextPoints`
@@ -27,11 +27,11 @@ struct PointColumns {
     for (const char c : separators)
       if (std::string_view("+-.#/\r\n").find(c) != std::string_view::npos || (c >= '0' && c <= '9') ||
           (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'))
-        throw SettingError("PointColumns::separators (character code)", static_cast<unsigned char>(c), "",
+        throw SettingError("TextPointColumns::separators (character code)", static_cast<unsigned char>(c), "",
                            "that of a character outside numbers, comments and line ends");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
       for (const std::size_t column : columns)
-        require_within("PointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
+        require_within("TextPointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
   }
 };
 
