@@ -22,7 +22,7 @@ namespace tradeoff {
 
 using namespace pulsecast;
 
-using Mesh = TriangleMesh<>;
+using Mesh = MaskedMesh<>;
 using ExactMesh = TriangleMesh<Bvh<double>>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Foliage = VoxelGrid<TransmissiveVoxels>;

@@ -84,7 +84,7 @@ found() {
 }
 rule 'GLM is named in base/vector.hpp only' found '<glm/|glm::' 'base/vector\.hpp'
 rule 'threads live in run.hpp, its reorder buffer and three headers of base/ only' found \
-     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|detail/(reorder_buffer|run_chunks)|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/bind)\.hpp'
+     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|detail/reorder_buffer|base/(parallel|scratch_memory|thread_pool)|page/(server|detail/local_server)|python/bind)\.hpp'
 rule 'files are for the rooms beside the core' found '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
 rule 'degrees and nanoseconds are for the rooms beside the core' found '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 rule 'the library never prints and never exits' found '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('

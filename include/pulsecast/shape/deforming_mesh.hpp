@@ -102,9 +102,8 @@ class DeformingMesh {
   void build(const MeshData& data, const Workers& workers) {
     auto mesh = std::make_shared<Mesh>(data, workers);
     const auto order = mesh->index_.order();
-    constexpr std::uint32_t none = 0xFFFFFFFF;
     struct Last {
-      std::uint32_t block = none;
+      std::uint32_t block = 0xFFFFFFFF;  // none
       std::uint16_t corner = 0;
     };
     std::vector<Last> last(data.vertices.size());
