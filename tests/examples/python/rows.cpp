@@ -19,6 +19,7 @@
 
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/helios/document.hpp>
+#include <pulsecast/run.hpp>
 
 #include "../../../examples/pulsecast/loading.hpp"
 
