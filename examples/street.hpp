@@ -296,7 +296,7 @@ inline void add_shop(MeshData& mesh, double width, double floor, double ceiling)
   return mesh;
 }
 
-using Mesh = pulsecast::MaskedMesh<>;
+using Mesh = pulsecast::TriangleMesh<>;
 using Scene = pulsecast::Scene<Mesh>;
 
 /// Houses of six kinds.

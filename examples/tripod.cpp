@@ -41,17 +41,17 @@ auto set_up(const Vec3& foot, double step) {
 
 /// Scene of mesh files, a part for each node. Formats other than OBJ are read by a child process, as they may come from
 /// anywhere.
-wood::Scene read_scene(const std::vector<std::string>& files, bool y_up) {
+Scene<MaskedMesh<>> read_scene(const std::vector<std::string>& files, bool y_up) {
   io::MeshFileSettings settings{.isolated = true};
   if (y_up) settings.up = io::UpAxis::y;
-  std::vector<wood::Scene::Part> parts;
+  std::vector<Part<MaskedMesh<>>> parts;
   for (const std::string& file : files) {
     io::MeshFile model = io::read_mesh_file(file, settings);
     for (const std::string& warning : model.warnings) std::cerr << "warning: " << warning << '\n';
-    for (wood::Scene::Part& part : io::parts_of(std::move(model), static_cast<ObjectId>(parts.size())))
+    for (Part<MaskedMesh<>>& part : io::parts_of(std::move(model), static_cast<ObjectId>(parts.size())))
       parts.push_back(std::move(part));
   }
-  return wood::Scene(std::move(parts));
+  return Scene<MaskedMesh<>>(std::move(parts));
 }
 
 /// Three places around a box, at the height of its floor.
@@ -89,8 +89,7 @@ int main(int argc, char** argv) {
   line.add_flag("--y-up", y_up, "Vertical axis of the files is y; by default z, or as the file says");
   line.add_flag("--xyz", xyz, "Write the points as text, too");
 
-  return line.run(argc, argv, [&] {
-    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up);
+  const auto scan = [&](const auto& scene) {
     if (positions.empty()) positions = files.empty() ? wood::glades(line.seed) : places_around(scene.bounds());
     std::vector<decltype(set_up({}, 1))> set_ups;
     for (const Vec3& place : positions) set_ups.push_back(set_up(place, radians(step_deg)));
@@ -118,5 +117,6 @@ int main(int argc, char** argv) {
     std::cout << "Scanned from " << positions.size() << " set-ups; the results are in " << line.output.string()
               << ".\n";
     print(summary);
-  });
+  };
+  return line.run(argc, argv, [&] { files.empty() ? scan(wood::scene(line.seed)) : scan(read_scene(files, y_up)); });
 }

@@ -174,7 +174,7 @@ class Terrain {
   return mesh;
 }
 
-using Mesh = pulsecast::MaskedMesh<>;
+using Mesh = pulsecast::TriangleMesh<>;
 using Scene = pulsecast::Scene<Mesh>;
 
 /// The parts planted so far.

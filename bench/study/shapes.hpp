@@ -22,7 +22,7 @@ namespace tradeoff {
 
 using namespace pulsecast;
 
-using Mesh = MaskedMesh<>;
+using Mesh = TriangleMesh<>;
 using ExactMesh = TriangleMesh<Bvh<double>>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Foliage = VoxelGrid<TransmissiveVoxels>;
