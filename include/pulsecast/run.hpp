@@ -133,15 +133,16 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   static_assert(detail::members_checked<Survey, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>);
   const RunSlots slots = options.slots(survey.size());
   using Memory = detail::WorkspaceMemory<Survey>;
-  ScratchMemory* const kept = IdentifiedSurvey<Survey> ? options.executor.memory() : nullptr;
-  if (kept)
-    kept->provide<Memory>(options.workers().count(),
-                          survey);  // for all threads, as some may have their first work in a later run
+  ScratchMemory* const kept = options.executor.memory();
+  if constexpr (IdentifiedSurvey<Survey>)
+    if (kept)
+      kept->provide<Memory>(options.workers().count(),
+                            survey);  // for all threads, as some may have their first work in a later run
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
   const auto work = [&](detail::ChunkQueue& queue) {  // each worker runs until no chunk is left
     detail::ResultChunk* chunk = queue.next();
     if (!chunk) return;
-    const Borrowed<Memory> memory(kept, survey);
+    const Borrowed<Memory> memory(IdentifiedSurvey<Survey> ? kept : nullptr, survey);
     for (; chunk; chunk = queue.next()) {
       detail::simulate(survey, slots, chunk->begin, chunk->end, memory->workspace, empty_shots, *chunk);
       queue.finish(*chunk);
