@@ -140,8 +140,8 @@ TEST_CASE("an OBJ file brings its pictures: colour, outline and reflectance") {
   CHECK(model.materials[0].picture->colour({0.5, 0.75}) == Vec3{1, 0, 0});
   CHECK(model.materials[0].picture->colour({0.5, 0.25}) == Vec3{0, 0, 1});
   CHECK(model.materials[0].reflectance_map);
-  const Scene<TriangleMesh<>> scene(
-      {{.geometry = std::make_shared<const TriangleMesh<>>(model.mesh), .materials = material_table(model.materials)}});
+  const Scene<MaskedMesh<>> scene(
+      {{.geometry = std::make_shared<const MaskedMesh<>>(model.mesh), .materials = material_table(model.materials)}});
   CHECK(scene.closest_hit(Ray{.origin = {-0.5, 0.3, 5}, .direction = -axis::up}));
   CHECK_FALSE(scene.closest_hit(Ray{.origin = {0.5, 0.3, 5}, .direction = -axis::up}));
 }

@@ -24,8 +24,9 @@ using Mesh = TriangleMesh<>;
 namespace {
 
 /// Requires that two meshes have the same triangles and meet rays at the same ranges.
-void require_same(const Mesh& mesh, const MeshData& data, Generator& any, double reach) {
-  const Mesh fresh(data, 1);
+template <class AnyMesh>
+void require_same(const AnyMesh& mesh, const MeshData& data, Generator& any, double reach) {
+  const AnyMesh fresh(data, 1);
   REQUIRE(mesh.size() == fresh.size());
   REQUIRE(mesh.is_consistent());
   REQUIRE(mesh.bounds() == fresh.bounds());
@@ -64,7 +65,7 @@ TEST_CASE("texture coordinates and masks stay when the index is built anew") {
     data.texture.push_back({Vec2{0, 0}, {1, 0}, {0, 1}});
   }
   data.masks = {{2, 1, {1}}};  // solid on the left
-  DeformingMesh mesh(data);
+  DeformingMesh<MaskedMesh<>> mesh(data);
   const auto before = mesh.mesh()->memory();
   for (std::uint32_t i = 0; i < 2000; ++i) {
     const Vec3 at = any.point(10);  // a scattering that no refit bears
