@@ -94,14 +94,16 @@ class TriangleMesh {
   /// For a bundle or a `SingleRayPacket`, which an accelerator that takes bundles only gets as one.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
+    const auto alone = [this](const auto& ray, auto& hit) noexcept { this->closest(ray, hit); };
+    if constexpr (std::is_same_v<Rays, RayBundle> &&
+                  detail::Searches<Index, SingleRayPacket, Test<SingleRayPacket, ClosestHit>, ClosestHit>)
+      if (rays.size == 1) return detail::closest_one_by_one(rays, nearest, alone);
     const Test<Rays, Hits> test(*this, rays, nearest);
     using Limit = detail::BudgetedLimit<Hits>;
     if constexpr (Rays::capacity > 1 && detail::Searches<Index, Rays, Test<Rays, Hits>, Limit>) {
       Limit limit{nearest};
       index_.closest(rays, test, limit);
-      if (limit.spent())
-        detail::closest_one_by_one(rays, nearest,
-                                   [this](const auto& ray, auto& hit) noexcept { this->closest(ray, hit); });
+      if (limit.spent()) detail::closest_one_by_one(rays, nearest, alone);
     } else if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {
