@@ -36,7 +36,8 @@ void store_number(double value, std::byte* to) noexcept {
     number = static_cast<Number>(value);
   } else {
     using Limits = std::numeric_limits<Number>;
-    constexpr Number most_exact = sizeof(Number) == 8 ? Limits::max() - (Limits::max() >> 53) : Limits::max();
+    constexpr auto beyond_53_bits = static_cast<Number>(static_cast<std::uint64_t>(Limits::max()) >> 53);
+    constexpr auto most_exact = static_cast<Number>(Limits::max() - beyond_53_bits);
     constexpr double least = static_cast<double>(Limits::min()), most = static_cast<double>(most_exact);
     number = std::isnan(value) ? Number{} : static_cast<Number>(std::nearbyint(std::clamp(value, least, most)));
   }
