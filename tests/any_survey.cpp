@@ -65,6 +65,8 @@ struct LeastSurvey {
   }
 };
 static_assert(PulseSurvey<LeastSurvey> && !SkipsBlocked<LeastSurvey> && !SimulatesInOrder<LeastSurvey>);
+static_assert(PulseSurvey<AnySurvey> && SkipsBlocked<AnySurvey> && SimulatesInOrder<AnySurvey> &&
+              IdentifiedSurvey<AnySurvey>);
 static_assert(std::is_convertible_v<LeastSurvey, AnySurvey> && !std::is_convertible_v<int, AnySurvey>);
 static_assert(std::is_copy_assignable_v<AnySurvey> && std::is_nothrow_move_constructible_v<AnySurvey>);
 

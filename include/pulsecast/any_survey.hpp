@@ -97,9 +97,6 @@ class AnySurvey {
   std::shared_ptr<const Model> survey_;
 };
 
-static_assert(PulseSurvey<AnySurvey> && SkipsBlocked<AnySurvey> && SimulatesInOrder<AnySurvey> &&
-              IdentifiedSurvey<AnySurvey>);
-
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

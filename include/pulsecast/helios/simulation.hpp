@@ -19,7 +19,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
-/// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
+/// Surveys of XML documents, ready to run. `make_simulation` makes them, and `run` of run.hpp runs them.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;

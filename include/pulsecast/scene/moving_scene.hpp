@@ -145,8 +145,6 @@ class MovingScene {
 
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
-    if constexpr (Scene<Shapes...>::template takes_alone<Rays>)
-      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());
     scene_.search(rays, hits);
     const auto test = [&](PrimitiveIndex i) noexcept {
       scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits);

@@ -249,14 +249,10 @@ class Scene {
   auto searcher() const noexcept {
     return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
-  /// True if all shapes take the ray of a bundle of one by itself.
-  template <class Rays>
-  static constexpr bool takes_alone = std::is_same_v<Rays, RayBundle> &&
-                                      (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...);
   /// Offers the hits of a bundle, or of a single ray, to `hits`.
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
-    if constexpr (takes_alone<Rays>)
+    if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...))
       if (rays.size == 1)
         return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
