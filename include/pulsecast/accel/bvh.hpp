@@ -85,8 +85,8 @@ class Bvh {
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
 
-  /// True only if no ray of a cone comes near a primitive, as required by `MissesCones`. Opens few nodes: a cone
-  /// between the leaves deep in the tree gets false.
+  /// True only if no ray of a cone comes near a primitive, as required by `MissesCones`. Opens few
+  /// nodes: a cone between the leaves deep in the tree gets false.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     if (nodes_.empty() || cone.passes(bounds_)) return true;
     constexpr std::size_t max_opened = 16;
@@ -172,8 +172,8 @@ class Bvh {
     }
   }
 
-  /// Child of a node, to be visited by a single ray: first primitive of a leaf, or index of a node. The key has the
-  /// size of a leaf as its tag, or 0.
+  /// Child of a node, to be visited by a single ray: first primitive of a leaf, or index of a node.
+  /// The key has the size of a leaf as its tag, or 0.
   struct Child {
     typename RayInterval<Real>::Key key;
     std::uint32_t first;
@@ -288,8 +288,8 @@ class Bvh {
     depth_ = depth;
   }
 
-  /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain` primitives go to `below`
-  /// instead. Returns the depth.
+  /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain`
+  /// primitives go to `below` instead. Returns the depth.
   static std::size_t make_nodes(const BinaryTree& binary, const Open& open, std::vector<Node>& nodes,
                                 const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, std::size_t grain,
                                 std::vector<Open>& below) {

@@ -17,14 +17,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is in every leaf that
-/// its box reaches: at most four leaves on average. Source: Wald & Havran 2006; binned: Shevtsov, Soupikov & Kapustin
-/// 2007.
+/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is
+/// in every leaf that its box reaches: at most four leaves on average. Source: Wald & Havran 2006;
+/// binned: Shevtsov, Soupikov & Kapustin 2007.
 template <std::floating_point Real = float>
 class KdTree {
  public:
-  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. It is the same for any
-  /// workers.
+  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. It
+  /// is the same for any workers.
   /// @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit KdTree(const detail::BoxRangeRef& boxes, const Workers& workers = {}) {
     const detail::BuildInput<Real> input(boxes, workers);

@@ -15,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Accelerator without a search structure: tests every primitive. Oracle for the other accelerators, and efficient for
-/// a handful of primitives.
+/// Accelerator without a search structure: tests every primitive. Oracle for the other
+/// accelerators, and efficient for a handful of primitives.
 template <std::floating_point Real = float>
 class Linear {
  public:

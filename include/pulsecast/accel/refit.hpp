@@ -23,8 +23,8 @@ class BvhRefit {
  public:
   static constexpr double max_growth = 1.6;  ///< SAH cost at which a tree is made anew, in units of its cost when built
 
-  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for a tree without
-  /// surface.
+  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for
+  /// a tree without surface.
   [[nodiscard]] static double cost(const Bvh<Real>& tree) noexcept {
     double sum = 0, root = 0;
     for (const Node& node : tree.nodes_) {
@@ -67,8 +67,8 @@ class BvhRefit {
     return finish(topology.data(), order, depth, bounds, box_of, to);
   }
 
-  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new
-  /// one, built by `workers`.
+  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as
+  /// many boxes, or a new one, built by `workers`.
   void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to,
               const Workers& workers = {}) {
     Box bounds;

@@ -42,8 +42,8 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
-  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no number by itself is at
-  /// fault.
+  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no
+  /// number by itself is at fault.
   SettingError(std::string field, std::string problem)
       : std::invalid_argument(text::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
 

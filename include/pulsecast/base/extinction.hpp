@@ -15,9 +15,9 @@ enum class AerosolModel : std::uint8_t {
   kruse,  ///< as in clear air, with a jump at 6 km; that of HELIOS++. Source: Kruse, McGlauchlin & McQuistan 1962
 };
 
-/// Extinction coefficient of aerosols [1/m] for a wavelength, from 0.4 to 1.6 um [m], and a visibility [m]; 0 for an
-/// infinite visibility: 3.91/V (lambda / 0.55 um)^-q per km, V in km. As published, both models jump at 50 km: by -27 %
-/// at 1,550 nm, by -14 % at 905 nm.
+/// Extinction coefficient of aerosols [1/m] for a wavelength, from 0.4 to 1.6 um [m], and a
+/// visibility [m]; 0 for an infinite visibility: 3.91/V (lambda / 0.55 um)^-q per km, V in km. As
+/// published, both models jump at 50 km: by -27 % at 1,550 nm, by -14 % at 905 nm.
 [[nodiscard]] inline double extinction(double wavelength, double visibility,
                                        AerosolModel model = AerosolModel::kim) noexcept {
   const double v = visibility * 1e-3;
@@ -26,8 +26,8 @@ enum class AerosolModel : std::uint8_t {
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
-/// True if `extinction` is within what was measured: wavelengths from 0.4 to 1.6 um, and, below a visibility of 6 km,
-/// the model of Kim.
+/// True if `extinction` is within what was measured: wavelengths from 0.4 to 1.6 um, and, below a
+/// visibility of 6 km, the model of Kim.
 [[nodiscard]] inline bool extinction_is_valid(double wavelength, double visibility, AerosolModel model) noexcept {
   if (std::isinf(visibility)) return true;
   return wavelength >= 0.4e-6 && wavelength <= 1.6e-6 && (visibility >= 6e3 || model == AerosolModel::kim);

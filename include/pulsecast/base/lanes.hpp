@@ -8,8 +8,8 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector_math.hpp>
 
-/// Ticks, vectors and poses in SIMD batches of `simd::lane_count`. A lane has the same bits as if all lanes held its
-/// tick or pose, so a motion's pose does not depend on the other lanes.
+/// Ticks, vectors and poses in SIMD batches of `simd::lane_count`. A lane has the same bits as if
+/// all lanes held its tick or pose, so a motion's pose does not depend on the other lanes.
 namespace PULSECAST_NAMESPACE {
 
 /// Mask of all lanes.

@@ -11,8 +11,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Promise of a type to model refinements, by a tag of the name of each concept: a public member
-/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. The absence of a promised member is an
-/// error.
+/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. The absence of a
+/// promised member is an error.
 template <class... Tags>
 struct refines {
   /// True; refuses a type that breaks the promise.
@@ -58,8 +58,8 @@ inline constexpr bool members_checked = promise_kept<T> && (Tags::template check
   };                                                                                                                \
   }
 
-/// Defines the concept `Model` of types with a constant `static constexpr bool name = true`, and its checks. A constant
-/// that is false is as one that is absent.
+/// Defines the concept `Model` of types with a constant `static constexpr bool name = true`, and
+/// its checks. A constant that is false is as one that is absent.
 #define PULSECAST_OPTIONAL_CONSTANT(Model, name)                                                     \
   template <class T>                                                                                 \
   concept Model = std::same_as<decltype(T::name), const bool> && std::bool_constant<T::name>::value; \

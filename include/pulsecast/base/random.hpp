@@ -78,8 +78,8 @@ template <class... Lower>
   return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }
 
-/// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source: Wichura 1988,
-/// algorithm AS 241 (PPND16).
+/// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source:
+/// Wichura 1988, algorithm AS 241 (PPND16).
 [[nodiscard]] inline double normal_quantile(double p) noexcept {
   using detail::polynomial;
   const double q = p - 0.5;

@@ -20,8 +20,8 @@ namespace PULSECAST_NAMESPACE {
 /// Limit of angles [rad]: one turn, and room for rounding.
 inline constexpr double max_angle = 6.2831854;
 
-/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than 1 Hz. Separate from
-/// the checks, so that these stay small when inlined.
+/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than
+/// 1 Hz. Separate from the checks, so that these stay small when inlined.
 [[noreturn]] inline void throw_setting_error(std::string_view field, double value, std::string_view unit,
                                              std::string_view allowed) {
   const bool degrees = unit == "rad" && std::isfinite(value) && std::fabs(value) > max_angle;
@@ -37,8 +37,8 @@ inline void require_positive(std::string_view field, double value, std::string_v
   if (!(value > 0) || !std::isfinite(value)) throw_setting_error(field, value, unit, "finite and greater than 0");
 }
 
-/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` resolves the phase of 1e12 Hz to some 1e-4 of
-/// a cycle.
+/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` resolves the phase of
+/// 1e12 Hz to some 1e-4 of a cycle.
 inline void require_rate(std::string_view field, double value) {
   if (!(value > 0 && value <= 1e12)) throw_setting_error(field, value, "Hz", "greater than 0 and at most 1e12");
 }

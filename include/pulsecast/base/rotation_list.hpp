@@ -32,8 +32,8 @@ struct AxisAngle {
   return normalize(all);
 }
 
-/// Intrinsic rotations in sequence, each about an axis of the rotated frame; equal to `extrinsic` of the turns in
-/// reverse order. Throws a `SettingError` for an invalid turn.
+/// Intrinsic rotations in sequence, each about an axis of the rotated frame; equal to `extrinsic`
+/// of the turns in reverse order. Throws a `SettingError` for an invalid turn.
 [[nodiscard]] inline Rotation intrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) {

@@ -25,8 +25,8 @@ class ScratchItem {
   std::unique_ptr<ScratchItem> next_{};
 };
 
-/// Objects that calls leave for later calls, by type. Thread-safe. An object of type T returns whether it `fits(need)`,
-/// and if not, whether it is `outdated(need)`: no later call can use it.
+/// Objects that calls leave for later calls, by type. Thread-safe. An object of type T returns
+/// whether it `fits(need)`, and if not, whether it is `outdated(need)`: no later call can use it.
 class ScratchMemory {
  public:
   /// Removes an object of type T that fits; null if there is none. Deletes outdated ones that it comes upon.
@@ -92,8 +92,8 @@ class ScratchMemory {
   std::unique_ptr<ScratchItem> items_;  // linked list
 };
 
-/// Object of type T for the duration of a call: taken from `memory` if one fits, or else new, and given back to
-/// `memory` unless that is null.
+/// Object of type T for the duration of a call: taken from `memory` if one fits, or else new, and
+/// given back to `memory` unless that is null.
 template <class T>
 class Borrowed {
  public:

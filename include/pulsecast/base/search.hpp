@@ -7,8 +7,8 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Index of the first of `count` elements for which `before(i)` is false, by binary search. Requires a partition: true,
-/// then false. Compiles in a fraction of the time of std::lower_bound.
+/// Index of the first of `count` elements for which `before(i)` is false, by binary search.
+/// Requires a partition: true, then false. Compiles in a fraction of the time of std::lower_bound.
 [[nodiscard]] constexpr std::size_t first_not(std::size_t count, const auto& before) noexcept {
   std::size_t first = 0;
   while (count > 0) {
@@ -29,15 +29,15 @@ struct Neighbours {
   friend bool operator==(const Neighbours&, const Neighbours&) = default;
 };
 
-/// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all elements before the
-/// place.
+/// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all
+/// elements before the place.
 [[nodiscard]] constexpr Neighbours neighbours(std::size_t count, const auto& before) noexcept {
   const std::size_t i = first_not(count, before);
   return {i == 0 ? 0 : i - 1, i == count ? count - 1 : i};
 }
 
-/// Value at `x` in a table of at least one entry, ascending in the member `key`: linear between entries, constant
-/// beyond the ends.
+/// Value at `x` in a table of at least one entry, ascending in the member `key`: linear between
+/// entries, constant beyond the ends.
 template <class Table, class Entry>
 [[nodiscard]] constexpr double interpolated(const Table& table, double x, double Entry::*key,
                                             double Entry::*value) noexcept {

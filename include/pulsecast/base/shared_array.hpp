@@ -21,8 +21,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and
-/// with small pages the address translation takes longer than the read.
+/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access
+/// memory at random, and with small pages the address translation takes longer than the read.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;

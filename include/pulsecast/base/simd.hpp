@@ -9,8 +9,8 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-/// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set
-/// in the lanes where it holds; `mask ? a : b` selects by lane.
+/// SIMD registers as vector types of the compiler, with their operators. A comparison gives a
+/// `Mask` with all bits set in the lanes where it holds; `mask ? a : b` selects by lane.
 namespace PULSECAST_NAMESPACE::simd {
 
 /// Size of a SIMD register [byte].
@@ -96,8 +96,8 @@ template <class V>
   return a > b ? a : b;
 }
 
-/// Numbers that a sum over a column adds up side by side, in one register or two: the same for every instruction set,
-/// so that sums are.
+/// Numbers that a sum over a column adds up side by side, in one register or two: the same for
+/// every instruction set, so that sums are.
 inline constexpr std::size_t sum_stride = 4;
 static_assert(sum_stride % lane_count == 0);
 

@@ -18,8 +18,8 @@ namespace PULSECAST_NAMESPACE::text {
 
 namespace detail {
 
-/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored.
-/// Source: optimal string alignment distance, Damerau 1964.
+/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the
+/// other; case is ignored. Source: optimal string alignment distance, Damerau 1964.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto is_same = [](char x, char y) { return lower(x) == lower(y); };
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);

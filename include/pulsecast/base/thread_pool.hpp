@@ -18,14 +18,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Threads that are kept from call to call, with the memory of runs: the executor of this library. The caller of
-/// `for_each` works, too, and waits for its own tasks only, so that calls may be nested. Several threads may use a pool
-/// at once. It must outlive its calls. After `fork`, which copies no threads, the child's calls run on their caller
-/// alone.
+/// Threads that are kept from call to call, with the memory of runs: the executor of this library.
+/// The caller of `for_each` works, too, and waits for its own tasks only, so that calls may be
+/// nested. Several threads may use a pool at once. It must outlive its calls. After `fork`, which
+/// copies no threads, the child's calls run on their caller alone.
 class ThreadPool {
  public:
-  /// Starts `threads` - 1 threads, as the caller is one; 0 as in `thread_count`. Throws a `SettingError`, or a
-  /// `std::system_error` if the machine has no more threads.
+  /// Starts `threads` - 1 threads, as the caller is one; 0 as in `thread_count`. Throws a
+  /// `SettingError`, or a `std::system_error` if the machine has no more threads.
   explicit ThreadPool(unsigned threads = 0) : state_(std::make_unique<State>()) {
     const unsigned count = thread_count(threads);
     helpers_.reserve(count - 1);
@@ -53,8 +53,8 @@ class ThreadPool {
     job.rethrow();
   }
 
-  /// Memory that runs leave for the next run over a survey of the same type. `memory().clear()` releases it, as is due
-  /// before a shared library is unloaded whose surveys ran here.
+  /// Memory that runs leave for the next run over a survey of the same type. `memory().clear()`
+  /// releases it, as is due before a shared library is unloaded whose surveys ran here.
   [[nodiscard]] ScratchMemory& memory() noexcept { return memory_; }
 
  private:

@@ -18,8 +18,8 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-// GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it must not be linked.
-// Linkers accept an absolute symbol many times if it has one value.
+// GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it
+// must not be linked. Linkers accept an absolute symbol many times if it has one value.
 #if defined(__ELF__)
 #if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_DATA_XYZW)
 __asm__(".globl pulsecast_order_of_quaternion_data\n.set pulsecast_order_of_quaternion_data, 1");

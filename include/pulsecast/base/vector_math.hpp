@@ -53,8 +53,8 @@ template <class V>
   return set != 0;
 }
 
-/// Greatest argument that `reduced` takes: its number of quarter turns has 20 bits, so that its products with 33 bits
-/// are exact.
+/// Greatest argument that `reduced` takes: its number of quarter turns has 20 bits, so that its
+/// products with 33 bits are exact.
 inline constexpr double greatest_angle = 1e6;
 
 /// Angle less its nearest multiple of pi/2, as a sum of two numbers, and the number of quarter turns.
@@ -213,9 +213,9 @@ template <class V>
   return x > 0.0 ? (x < infinity ? value : edge) : edge;
 }
 
-/// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2 |ln(result)| ulp. 1 for the
-/// exponent 0 and for the base 1; 0 for results below e^-708, and infinity for those above e^709. NaN for a base below
-/// 0, and for NaN arguments otherwise.
+/// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2
+/// |ln(result)| ulp. 1 for the exponent 0 and for the base 1; 0 for results below e^-708, and
+/// infinity for those above e^709. NaN for a base below 0, and for NaN arguments otherwise.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V pow(const V& base, const V& exponent) noexcept {
   const V zero{};
@@ -224,8 +224,8 @@ template <class V>
   return exponent == 0.0 ? zero + 1.0 : (base == 1.0 ? zero + 1.0 : value);
 }
 
-/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0. Error at most
-/// `exponent` ulp.
+/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0.
+/// Error at most `exponent` ulp.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V whole_power(V base, unsigned exponent) noexcept {
   V power = V{} + 1.0;

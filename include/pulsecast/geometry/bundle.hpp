@@ -81,8 +81,8 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
-  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds
-  /// `directions_min` and `directions_max`. To be called once the directions are set.
+  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect,
+  /// and finds `directions_min` and `directions_max`. To be called once the directions are set.
   void pad() noexcept {
     PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
@@ -118,8 +118,8 @@ struct RayBundle : BundleOrigin {
   }
 };
 
-/// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at most their minimum.
-/// Triangles respect the ranges; other shapes may be hit before a ray begins.
+/// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at
+/// most their minimum. Triangles respect the ranges; other shapes may be hit before a ray begins.
 struct StaggeredBundle : RayBundle {
   alignas(64) Column begin;  ///< ray j has no hits up to this range; set for `padded_size()` rays [m]
 

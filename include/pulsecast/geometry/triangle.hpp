@@ -35,8 +35,8 @@ struct Triangle {
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 
-  /// Barycentric weights of a, b and c at the point that a ray hits, none negative; they sum to one. A third each
-  /// without area.
+  /// Barycentric weights of a, b and c at the point that a ray hits, none negative; they sum to
+  /// one. A third each without area.
   [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
     const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
     const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),
@@ -128,8 +128,8 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in the 1-norm bounds
-  // each sum of products, which is at most seven roundings from the true one.
+  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in
+  // the 1-norm bounds each sum of products, which is at most seven roundings from the true one.
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -143,8 +143,8 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   };
   const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
-  // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once
-  // more
+  // no ray is inside where all of them pass one plane on its right and one on its left; rounding
+  // may come in here once more
   simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
     return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +

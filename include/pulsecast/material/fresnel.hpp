@@ -37,8 +37,8 @@ struct FresnelSplit {
   return direction - 2 * dot(direction, normal) * normal;
 }
 
-/// Direction of a ray refracted at a plane whose normal is towards the side it comes from; unit vectors. `split` is
-/// that of the same ray and index. Source: Snell's law.
+/// Direction of a ray refracted at a plane whose normal is towards the side it comes from; unit
+/// vectors. `split` is that of the same ray and index. Source: Snell's law.
 [[nodiscard]] inline Vec3 refracted(const Vec3& direction, const Vec3& normal, double relative_index,
                                     const FresnelSplit& split) noexcept {
   const double per = 1 / relative_index;
@@ -54,8 +54,8 @@ struct PaneSplit {
   double cos_inside = 1;   ///< cosine between the ray inside and the normal
 };
 
-/// Splits light at a pane in a medium, by default air. Source: sum of the geometric series of reflections, for each
-/// polarisation; Born & Wolf 1999, 7.6, without interference.
+/// Splits light at a pane in a medium, by default air. Source: sum of the geometric series of
+/// reflections, for each polarisation; Born & Wolf 1999, 7.6, without interference.
 [[nodiscard]] inline PaneSplit pane_split(double cos_incidence, const SmoothInterface& pane,
                                           const Medium& around = {}) noexcept {
   const double n = pane.inside.index / around.index, d = pane.thickness;

@@ -75,8 +75,8 @@ struct Material {
     return {wavelength, reflectance_at(wavelength, texture), index()};
   }
 
-  /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters, as an energy ledger
-  /// counts it.
+  /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters,
+  /// as an energy ledger counts it.
   [[nodiscard]] double scattered_share(double wavelength, double cos_incidence,
                                        const std::optional<Vec2>& texture = {}) const noexcept {
     return scattered_share(light(wavelength, texture), cos_incidence);
@@ -86,8 +86,8 @@ struct Material {
     return law.model() ? law.model()->scattered_share(cos_incidence, in) : std::min(in.reflectance, 1.0);
   }
 
-  /// Light scattered from one direction towards another, as of a law that `ScattersBetween`; 0 to and from behind. A
-  /// normal of zero is that of leaves, which scatter into all directions alike.
+  /// Light scattered from one direction towards another, as of a law that `ScattersBetween`; 0 to
+  /// and from behind. A normal of zero is that of leaves, which scatter into all directions alike.
   [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal, double wavelength,
                                  const std::optional<Vec2>& texture = {}) const noexcept {
     const SurfaceLight in = light(wavelength, texture);

@@ -55,8 +55,8 @@ struct MediumRegion {
   }
 };
 
-/// Media in the air, in boxes of which each is inside another or apart from it: the innermost counts. Copies share
-/// their memory.
+/// Media in the air, in boxes of which each is inside another or apart from it: the innermost
+/// counts. Copies share their memory.
 class Media {
  public:
   /// Clear air.
@@ -81,8 +81,8 @@ class Media {
                                    [](const MediumRegion& r) { return r.particles.density > 0; });
   }
 
-  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium,
-  /// in their order.
+  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m]
+  /// that are in a medium, in their order.
   void along(const Vec3& origin, const Vec3& direction, double near, double far, const auto& visit) const noexcept {
     if (empty()) return;
     if (uniform_) return near < far ? visit(near, far, regions_->front(), 1.0) : void();

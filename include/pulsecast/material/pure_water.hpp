@@ -24,8 +24,8 @@ struct WaterState {
 
 namespace detail {
 
-/// Index of refraction of water as a polynomial in the reciprocal wavelength: a + b/w + c/w^2 + d/w^3, w in nm.
-/// Source: Quan & Fry 1995, with their ten coefficients.
+/// Index of refraction of water as a polynomial in the reciprocal wavelength: a + b/w + c/w^2 +
+/// d/w^3, w in nm. Source: Quan & Fry 1995, with their ten coefficients.
 struct WaterDispersion {
   double a, b;
   double c = -4382;
@@ -88,9 +88,9 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
   return n.a + x * (n.b + x * (n.c + x * n.d));
 }
 
-/// Speed of a pulse in air by that in water: n - w dn/dw of `water_index` n over the wavelength w, by its exact
-/// derivative. Differs from that of Daimon & Masumura 2007 by at most 5e-4 in the visible (3e-5 at 0.532 um), by 5e-3
-/// at 1.06 um.
+/// Speed of a pulse in air by that in water: n - w dn/dw of `water_index` n over the wavelength w,
+/// by its exact derivative. Differs from that of Daimon & Masumura 2007 by at most 5e-4 in the
+/// visible (3e-5 at 0.532 um), by 5e-3 at 1.06 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_group_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);
@@ -99,9 +99,9 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
   return n.a + x * (2 * n.b + x * (3 * n.c + x * 4 * n.d));
 }
 
-/// Absorption coefficient of pure water [1/m] for a wavelength from 0.7 to 1.6 um [m]: 4 pi kappa / wavelength, kappa
-/// linear between the rows of the table. Varies by some per cent with temperature and salinity. Source: Segelstein
-/// 1981. @throws SettingError out of range
+/// Absorption coefficient of pure water [1/m] for a wavelength from 0.7 to 1.6 um [m]: 4 pi kappa /
+/// wavelength, kappa linear between the rows of the table. Varies by some per cent with temperature
+/// and salinity. Source: Segelstein 1981. @throws SettingError out of range
 [[nodiscard]] inline double pure_water_absorption(double wavelength) {
   require_within("pure_water_absorption (wavelength)", wavelength, 0.7e-6, 1.6e-6, "m");
   using detail::AbsorptiveIndex;

@@ -12,16 +12,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB) at wavelengths of
-/// their own; between these the reflectance is linear, beyond them constant. A grey picture is the same at all
-/// wavelengths.
+/// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB)
+/// at wavelengths of their own; between these the reflectance is linear, beyond them constant. A
+/// grey picture is the same at all wavelengths.
 struct ReflectanceMap final : ReflectanceByTexture {
   Image image{};  ///< picture
   std::array<double, 3> wavelengths{612e-9, 549e-9,
                                     465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
-  /// If not zero, the mean of red, green and blue: the picture is a pattern, and the reflectance is that of the
-  /// material times the ratio of a pixel to the mean, at most 1. For wavelengths that the picture does not show, such
-  /// as 1064 nm.
+  /// If not zero, the mean of red, green and blue: the picture is a pattern, and the reflectance is
+  /// that of the material times the ratio of a pixel to the mean, at most 1. For wavelengths that
+  /// the picture does not show, such as 1064 nm.
   Vec3 mean{};
 
   ReflectanceMap() = default;

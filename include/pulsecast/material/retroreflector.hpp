@@ -23,8 +23,8 @@ struct Beads {
   }
 };
 
-/// Cube corners: what they return falls with their open area, inside glass by Snell's law. Source: open area of a round
-/// cube corner, Chang, Currie, Alley & Pittman 1971, as in Degnan 1993.
+/// Cube corners: what they return falls with their open area, inside glass by Snell's law. Source:
+/// open area of a round cube corner, Chang, Currie, Alley & Pittman 1971, as in Degnan 1993.
 struct CubeCorners {
   double index = 1;  ///< refractive index: 1 of three mirrors, 1.5 of prisms of glass or plastic; from 1 to 4
 
@@ -41,12 +41,12 @@ struct CubeCorners {
 /// Lambert's law and light that returns to its source, as of sheeting and road marks: `Beads` or `CubeCorners`.
 template <class Optics = Beads>
 struct Retroreflector {
-  /// Coefficient of retroreflection R_A, for light along the normal, at most 1e6 [cd/(lx m^2)]. That of a white
-  /// Lambertian surface is 1/pi; beaded sheeting has some 70, prismatic 300 to 1,000. The budget holds from a few
-  /// apertures' diameters on. Source: ASTM E808, CIE 54.2.
+  /// Coefficient of retroreflection R_A, for light along the normal, at most 1e6 [cd/(lx m^2)].
+  /// That of a white Lambertian surface is 1/pi; beaded sheeting has some 70, prismatic 300 to
+  /// 1,000. The budget holds from a few apertures' diameters on. Source: ASTM E808, CIE 54.2.
   double coefficient = 0;
-  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide against the aperture, of unknown energy
-  /// [rad].
+  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide against the aperture, of
+  /// unknown energy [rad].
   double half_angle = 0;
   Optics optics{};  ///< law by entrance angle
 

@@ -72,12 +72,12 @@ concept ScattersInLanes = ScatteringLaw<L> && requires(const L law, const simd::
 // each law has a `backscatter` of a cosine, too
 PULSECAST_OPTIONAL_MEMBER(ScattersInLanes, "simd::Doubles backscatter(const simd::Doubles&, double) const noexcept", backscatter, (simd::Doubles{}, 1.0), && false)
 
-/// Law of the light from one direction towards another, without which `MultipleScattering` refuses a material. `in` and
-/// `out` are unit vectors away from the surface, on the side of its unit normal; the result is by the light of a white
-/// Lambertian surface towards its normal.
-/// Law: reciprocal: `scattered(in, out) / dot(out, normal)` stays the same if they are exchanged; the integral of
-/// `scattered / pi` over all `out` is the share. `scattered(in, in)` is the backscatter, but for laws with a peak towards
-/// the source that others directions do not see.
+/// Law of the light from one direction towards another, without which `MultipleScattering` refuses
+/// a material. `in` and `out` are unit vectors away from the surface, on the side of its unit
+/// normal; the result is by the light of a white Lambertian surface towards its normal.
+/// Law: reciprocal: `scattered(in, out) / dot(out, normal)` stays the same if they are exchanged;
+/// the integral of `scattered / pi` over all `out` is the share. `scattered(in, in)` is the
+/// backscatter, but for laws with a peak towards the source that others directions do not see.
 template <class L>
 concept ScattersBetween = ScatteringLaw<L> && requires(const L law, const Vec3& in, const Vec3& out, const Vec3& normal, double wavelength) {
   { law.scattered(in, out, normal, wavelength) } noexcept -> std::convertible_to<double>;
@@ -91,8 +91,8 @@ struct SampledDirection {
   double density = 0;  ///< [1/sr]
 };
 
-/// Law that draws directions by importance, for two numbers that are uniform in [0, 1). Others are sampled by the cosine.
-/// Law: the density integrates to 1 over the directions.
+/// Law that draws directions by importance, for two numbers that are uniform in [0, 1). Others are
+/// sampled by the cosine. Law: the density integrates to 1 over the directions.
 template <class L>
 concept SamplesDirections = ScattersBetween<L> && requires(const L law, const Vec3& in, const Vec3& normal, double u, double v) {
   { law.sample(in, normal, u, v) } noexcept -> std::same_as<SampledDirection>;

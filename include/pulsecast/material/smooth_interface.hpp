@@ -38,8 +38,8 @@ struct SmoothInterface {
     return {.kind = InterfaceKind::dielectric, .inside = soda_lime};
   }
 
-  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. For foam and the glint of waves that are not
-  /// modelled, see `Microfacet` and `Material::reflectance`.
+  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. For foam and the glint of
+  /// waves that are not modelled, see `Microfacet` and `Material::reflectance`.
   [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
     return {.kind = InterfaceKind::water, .inside = inside};
   }

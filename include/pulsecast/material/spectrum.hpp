@@ -18,8 +18,8 @@ struct SpectralSample {
   double reflectance = 0;  ///< reflectance, in [0, 1]
 };
 
-/// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the
-/// samples.
+/// Reflectance over wavelength: linear between the samples, constant beyond the first and last.
+/// Copies share the samples.
 class Spectrum {
  public:
   /// Takes at least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise

@@ -11,13 +11,13 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/material/material.hpp>
 
-/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its copies with a table of
-/// materials each.
+/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its
+/// copies with a table of materials each.
 namespace PULSECAST_NAMESPACE {
 
-/// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum,
-/// by a uniform random amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same
-/// variants; `variants` only sets their number.
+/// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or
+/// its whole spectrum, by a uniform random amount between minus and plus `range`, and clips it to
+/// [0, 1]. The same seed gives the same variants; `variants` only sets their number.
 /// @throws SettingError for a bad material or a `range` outside [0, 1]
 [[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants,
                                                             double range, std::uint64_t seed) {
@@ -46,8 +46,8 @@ namespace PULSECAST_NAMESPACE {
   return all;
 }
 
-/// Uniform random material indices of primitives. The same seed gives the same draws. @throws SettingError for no
-/// materials
+/// Uniform random material indices of primitives. The same seed gives the same draws. @throws
+/// SettingError for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials,
                                                                 std::uint64_t seed) {
   require_within("assign_randomly (materials)", materials, 1, 4294967295.0, "");

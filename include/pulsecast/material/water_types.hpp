@@ -44,9 +44,9 @@ inline constexpr double jerlov_shortest = 0.35e-6;  ///< wavelength of the first
 inline constexpr double jerlov_longest = 0.7e-6;    ///< wavelength of the last row [m]
 inline constexpr double jerlov_step = 25e-9;        ///< wavelength from row to row [m]
 
-/// Diffuse attenuation of downward irradiance [1/m] by wavelength (row) and type (column). Source: I to 1C by Austin &
-/// Petzold 1986, table VI, which replaces Jerlov's: in places his were below pure water; their type I is pure sea
-/// water. 3C to 9C: Jerlov 1976, table XXVII.
+/// Diffuse attenuation of downward irradiance [1/m] by wavelength (row) and type (column). Source:
+/// I to 1C by Austin & Petzold 1986, table VI, which replaces Jerlov's: in places his were below
+/// pure water; their type I is pure sea water. 3C to 9C: Jerlov 1976, table XXVII.
 // clang-format off
 inline constexpr std::array<std::array<double, jerlov_type_count>, 15> jerlov_attenuation{{
     {0.0510, 0.0632, 0.0782, 0.1325, 0.2335, 0.3345, 1.70, 2.30, 3.00, 3.90},
@@ -90,16 +90,16 @@ struct MolecularScattering {
   [[nodiscard]] double total() const noexcept { return 2 * backward(); }
 };
 
-/// Shares of the light scattered by particles: straight back [1/sr], and to the backward half space. Means of the three
-/// stations in San Diego Harbor at 0.53 um, without the water itself. Source: Petzold 1972, who measured to 170 degrees
-/// and extrapolated to 180.
+/// Shares of the light scattered by particles: straight back [1/sr], and to the backward half
+/// space. Means of the three stations in San Diego Harbor at 0.53 um, without the water itself.
+/// Source: Petzold 1972, who measured to 170 degrees and extrapolated to 180.
 inline constexpr double particles_straight_back = 3.17e-3;
 inline constexpr double particles_backward = 0.018;
 
-/// Scattering coefficient of the particles at 0.532 um [1/m] for an attenuation at that wavelength [1/m]. Linear
-/// between the types of which scattering was measured, none in pure sea water, and beyond 5C in proportion to the
-/// attenuation above that of pure sea water. Source: Williamson & Hollins 2022 for IB, II, III, 1C, 3C and 5C; the
-/// other types lie on these lines.
+/// Scattering coefficient of the particles at 0.532 um [1/m] for an attenuation at that wavelength
+/// [1/m]. Linear between the types of which scattering was measured, none in pure sea water, and
+/// beyond 5C in proportion to the attenuation above that of pure sea water. Source: Williamson &
+/// Hollins 2022 for IB, II, III, 1C, 3C and 5C; the other types lie on these lines.
 [[nodiscard]] inline double particle_scattering(double attenuation) noexcept {
   struct Measured {
     JerlovType type;
@@ -169,9 +169,9 @@ inline constexpr double particles_backward = 0.018;
                                state);
 }
 
-/// Water of a measured diffuse attenuation coefficient [1/m] and backscatter coefficient [1/(m sr)] at a laser's
-/// wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles by Petzold 1972 with this
-/// backscatter, which must not exceed the attenuation.
+/// Water of a measured diffuse attenuation coefficient [1/m] and backscatter coefficient [1/(m sr)]
+/// at a laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles
+/// by Petzold 1972 with this backscatter, which must not exceed the attenuation.
 /// @throws SettingError out of range
 [[nodiscard]] inline Medium measured_water(double attenuation, double backscatter, double wavelength,
                                            const WaterState& state = {}) {
@@ -185,10 +185,10 @@ inline constexpr double particles_backward = 0.018;
           .backscatter = backscatter};
 }
 
-/// Water of a Secchi depth, from 0.1 to 80 m [m], for a green laser, from 0.49 to 0.57 um [m], which is about what the
-/// eye sees of the disk. Attenuation: 1.7 / depth (Poole & Atkins 1929), at least that of type I. Factors from 1.4 in
-/// turbid water to 1.7 are in use. Scattering and backscatter as in `water`, for a type of this attenuation. @throws
-/// SettingError out of range
+/// Water of a Secchi depth, from 0.1 to 80 m [m], for a green laser, from 0.49 to 0.57 um [m],
+/// which is about what the eye sees of the disk. Attenuation: 1.7 / depth (Poole & Atkins 1929), at
+/// least that of type I. Factors from 1.4 in turbid water to 1.7 are in use. Scattering and
+/// backscatter as in `water`, for a type of this attenuation. @throws SettingError out of range
 [[nodiscard]] inline Medium secchi_water(double depth, double wavelength, const WaterState& state = {}) {
   require_within("secchi_water (depth)", depth, 0.1, 80, "m");
   require_within("secchi_water (wavelength)", wavelength, 0.49e-6, 0.57e-6, "m");

@@ -17,8 +17,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Air with particles of an extinction coefficient [1/m], a share of it that is scattered, and a ratio of it to the
-/// backscatter [sr].
+/// Air with particles of an extinction coefficient [1/m], a share of it that is scattered, and a
+/// ratio of it to the backscatter [sr].
 [[nodiscard]] inline Medium hazy_air(double extinction, double albedo, double lidar_ratio) noexcept {
   return {.index = 1,
           .group_index = 1,
@@ -27,8 +27,8 @@ namespace detail {
           .backscatter = extinction / lidar_ratio};
 }
 
-/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive terms for small y, else
-/// its closed form.
+/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive
+/// terms for small y, else its closed form.
 template <int order>
 [[nodiscard]] double lower_gamma(double y) noexcept {
   if constexpr (order == 1) return -std::expm1(-y);
@@ -63,10 +63,10 @@ template <int order>
   return detail::hazy_air(extinction(wavelength, visibility), 1, 18.8);
 }
 
-/// Haze of a visibility, from 1 to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
-/// 2001. Lidar ratio: 50 sr, of polluted continental air at 0.532 um (Li et al. 2022, 20 sr and more below the 70 sr of
-/// CALIPSO's version 4); unverified at other wavelengths. Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over
-/// India). @throws SettingError out of range
+/// Haze of a visibility, from 1 to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
+/// `extinction` by Kim 2001. Lidar ratio: 50 sr, of polluted continental air at 0.532 um (Li et al.
+/// 2022, 20 sr and more below the 70 sr of CALIPSO's version 4); unverified at other wavelengths.
+/// Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over India). @throws SettingError out of range
 [[nodiscard]] inline Medium haze(double visibility, double wavelength) {
   require_within("haze (visibility)", visibility, 1e3, 1e5, "m");
   require_within("haze (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -130,9 +130,9 @@ struct Precipitation {
         diameter_min, diameter_max);
   }
 
-  /// Differential cross section for scattering straight back of a particle of a diameter [m] [m^2/sr]: by the shadow,
-  /// of its front, reflectance / (4 pi), that of a mirror sphere; of its inside, the rest to `lidar_ratio`, weakened by
-  /// absorption.
+  /// Differential cross section for scattering straight back of a particle of a diameter [m]
+  /// [m^2/sr]: by the shadow, of its front, reflectance / (4 pi), that of a mirror sphere; of its
+  /// inside, the rest to `lidar_ratio`, weakened by absorption.
   [[nodiscard]] double backscatter_cross_section(double diameter) const noexcept {
     return std::numbers::pi / 4 * diameter * diameter * (front() + inside() * std::exp(-absorption * diameter));
   }

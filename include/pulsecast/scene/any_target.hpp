@@ -18,8 +18,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>,
-/// MovingScene<TriangleMesh<>>>`. Holds its target by value, and must outlive the survey as any map must.
-/// `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered` does.
+/// MovingScene<TriangleMesh<>>>`. Holds its target by value, and must outlive the survey as any map
+/// must. `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered` does.
 template <Target First, Target... Others>
 class AnyTarget {
   static constexpr bool answers = SceneQueries<First> && (SceneQueries<Others> && ...);
@@ -81,8 +81,8 @@ class AnyTarget {
     return std::visit([](const auto& target) noexcept -> Box { return target.bounds(); }, target_);
   }
 
-  /// Height of the ground of the target at a place that is nearest to a height; by default of the highest [m]. Empty if
-  /// there is none.
+  /// Height of the ground of the target at a place that is nearest to a height; by default of the
+  /// highest [m]. Empty if there is none.
   [[nodiscard]] std::optional<double> ground_height(
       const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
       requires(requires(const First& f, const Others&... o) {

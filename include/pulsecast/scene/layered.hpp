@@ -19,9 +19,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties go to the first
-/// target. Refers to its targets, which must outlive it. A target assigned anew, as by `Scene::with_placements`, is met
-/// as it then is.
+/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties
+/// go to the first target. Refers to its targets, which must outlive it. A target assigned anew, as
+/// by `Scene::with_placements`, is met as it then is.
 template <Target First, Target... Others>
 class Layered {
   static constexpr bool answers = SceneQueries<First> && (SceneQueries<Others> && ...);
@@ -108,8 +108,8 @@ class Layered {
     return all;
   }
 
-  /// Height of the ground of the targets at a place that is nearest to a height; by default of the highest [m]. Empty
-  /// if none has any.
+  /// Height of the ground of the targets at a place that is nearest to a height; by default of the
+  /// highest [m]. Empty if none has any.
   [[nodiscard]] std::optional<double> ground_height(
       const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
       requires(requires(const First& f, const Others&... o) {

@@ -25,8 +25,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves
-/// along. A helix if the velocity is along the axis; rest if both are zero.
+/// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a
+/// centre that moves along. A helix if the velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
   Vec3 velocity{};          ///< [m/s]
   Vec3 axis = axis::up;     ///< direction, of any non-zero length
@@ -59,8 +59,8 @@ enum class AfterLastPose : std::uint8_t {
   start_again,  ///< jumps to its pose at the start of the survey and repeats from there
 };
 
-/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so that no digits are lost
-/// far from the world's origin.
+/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so
+/// that no digits are lost far from the world's origin.
 struct Displacement {
   Rotation rotation = no_rotation;  ///< unit quaternion
   Vec3 about{};                     ///< [m]
@@ -70,9 +70,9 @@ struct Displacement {
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return about + shift + rotation * (p - about); }
 };
 
-/// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds` [s]: a screw, the
-/// shorter way around. Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical
-/// Kinematics, ch. III.
+/// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds`
+/// [s]: a screw, the shorter way around. Source: Chasles 1830; the centre of a plane displacement,
+/// Bottema & Roth 1979, Theoretical Kinematics, ch. III.
 /// @throws SettingError unless `seconds` is positive, the position [m] finite and the rotation unit
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
   require_positive("steady_motion (seconds)", seconds, "s");
@@ -87,16 +87,16 @@ struct Displacement {
           .centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2))};
 }
 
-/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement. Times count from the
-/// start of the survey; before it, the part is as placed. "Its own centre" is the centre of its box as placed, and
-/// moves along.
+/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement.
+/// Times count from the start of the survey; before it, the part is as placed. "Its own centre" is
+/// the centre of its box as placed, and moves along.
 class PartMotion {
  public:
   /// Follows one motion, then rests at its end. @throws SettingError for values out of range
   explicit PartMotion(const SteadyMotion& motion) : PartMotion(std::vector<MotionSequence>{{.motions = {motion}}}) {}
 
-  /// Follows sequences in succession, then rests; or repeats them for ever from index `again_from` on. Only the very
-  /// last motion may be infinite. @throws SettingError for values out of range
+  /// Follows sequences in succession, then rests; or repeats them for ever from index `again_from`
+  /// on. Only the very last motion may be infinite. @throws SettingError for values out of range
   explicit PartMotion(const std::vector<MotionSequence>& sequences,
                       std::optional<std::size_t> again_from = std::nullopt) {
     if (sequences.empty()) throw SettingError("PartMotion::sequences (number)", 0, "", "at least 1");
@@ -115,9 +115,9 @@ class PartMotion {
     again_from ? end_cycle(so_far.time, so_far.change) : end(so_far);
   }
 
-  /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis, the shorter way.
-  /// Before the first pose the body rests there. A pose applies on top of the placement: rotation about the world's
-  /// origin, then a shift by `position`.
+  /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis,
+  /// the shorter way. Before the first pose the body rests there. A pose applies on top of the
+  /// placement: rotation about the world's origin, then a shift by `position`.
   /// @throws SettingError for values out of range, or times that do not ascend
   explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest)
       : from_origin_(true) {
@@ -159,8 +159,8 @@ class PartMotion {
     return {state.attitude, centre, state.centre - start};
   }
 
-  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that time [m]. Zero before
-  /// the start; at a change of motion that of the later one.
+  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that
+  /// time [m]. Zero before the start; at a change of motion that of the later one.
   [[nodiscard]] Vec3 velocity(const Tick& tick, const Vec3& own_centre, const Vec3& point) const noexcept {
     if (tick < Tick{}) return {};
     const Vec3 start = (from_origin_ ? Vec3{} : own_centre) - reference_;
@@ -170,9 +170,9 @@ class PartMotion {
            place.piece->attitude.angular_rate * cross(place.piece->attitude.axis, point - reference_ - centre);
   }
 
-  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its
-  /// centre there as the body's own. Tight for small rotations and few changes of motion in this time, loose otherwise.
-  /// Empty for an empty box.
+  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a
+  /// part, with its centre there as the body's own. Tight for small rotations and few changes of
+  /// motion in this time, loose otherwise. Empty for an empty box.
   [[nodiscard]] Box swept(const Box& box, const Placement& placement, const Tick& from, const Tick& to) const noexcept {
     if (box.empty()) return {};
     const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;

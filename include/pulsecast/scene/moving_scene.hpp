@@ -29,9 +29,9 @@ class MovingScene {
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
-  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same,
-  /// but all moving parts are tested. `workers` build the indices. @throws SettingError as `Scene` and
-  /// `MovingIndexSettings`
+  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other
+  /// times are the same, but all moving parts are tested. `workers` build the indices. @throws
+  /// SettingError as `Scene` and `MovingIndexSettings`
   MovingScene(std::vector<Part> parts, const MovingIndexSettings& time, const Workers& workers = {})
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out, workers),
         movers_(movers(scene_.parts())),

@@ -22,8 +22,8 @@ namespace PULSECAST_NAMESPACE {
 class ObjectAttributes {
  public:
   ObjectAttributes() = default;
-  /// Those of parts, such as `scene.parts()`. Names come in order of first use. An object of several parts has all
-  /// their attributes.
+  /// Those of parts, such as `scene.parts()`. Names come in order of first use. An object of
+  /// several parts has all their attributes.
   /// @throws SettingError if two parts of an object have different values of one name
   template <class PartOfScene>
   explicit ObjectAttributes(std::span<const PartOfScene> parts) {

@@ -16,8 +16,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box
-/// if it has none.
+/// Point of a part placed at the height of the ground. Points of a part are the corners of its
+/// triangles, or of its box if it has none.
 enum class GroundPlacement : std::uint8_t {
   origin,        ///< its own origin: for models whose origin is their foot
   lowest_point,  ///< its lowest point, or the middle of several: for a tree
@@ -45,9 +45,9 @@ void visit_points(const Shape& shape, const Placement& placement, const Visit& v
   }
 }
 
-/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in question has ground
-/// above or below. Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying
-/// parts.
+/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in
+/// question has ground above or below. Calls `ground(place)` once per point; suitable:
+/// `Scene::ground_height` of a scene of the carrying parts.
 template <Geometry Shape>
 [[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Placement& placement,
                                                      const Ground auto& ground,
@@ -89,8 +89,8 @@ template <Geometry Shape>
 
 }  // namespace detail
 
-/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts
-/// there.
+/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is
+/// ignored: it starts there.
 /// @throws SettingError for a placement out of range or a missing geometry
 template <Geometry... Shapes>
 [[nodiscard]] std::optional<Part<Shapes...>> on_ground(

@@ -152,8 +152,8 @@ struct SharedShape<Shape> {
   return {reach(0), reach(1), reach(2)};
 }
 
-/// Box around a placed box [m], from its centre and half sides; as `Placement::box` up to rounding. Empty for an empty
-/// box.
+/// Box around a placed box [m], from its centre and half sides; as `Placement::box` up to rounding.
+/// Empty for an empty box.
 [[nodiscard]] inline Box placed_box(const Placement& placement, const Box& box) noexcept {
   if (box.empty()) return {};
   const Matrix3 turn = matrix_of(placement.rotation);
@@ -202,8 +202,8 @@ struct Attribute {
 /// Named numbers of a part, shareable among parts.
 using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 
-/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws SettingError for a name that
-/// is empty or comes twice
+/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws
+/// SettingError for a name that is empty or comes twice
 [[nodiscard]] inline Attributes attributes(std::vector<Attribute> all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& name = all[i].name;

@@ -41,8 +41,8 @@ inline constexpr double near_infrared_wavelength = 842e-9;
           sixteen_bits(material.colour.z * picture.z), sixteen_bits(material.reflectance_at(near_infrared_wavelength))};
 }
 
-/// Colours of the surfaces of a world, which must outlive them, by one more ray per echo as in `surfaces_of`. @throws
-/// SettingError
+/// Colours of the surfaces of a world, which must outlive them, by one more ray per echo as in
+/// `surfaces_of`. @throws SettingError
 template <SceneQueries World>
 [[nodiscard]] PointColours colours_of(const World& world, double tolerance = 0.2) {
   return [surfaces = surfaces_of(world, tolerance)](const EchoBatch& batch, const Shot& shot, const Echo& echo) {

@@ -20,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along its direction, at
-/// its tick. A blocked slot has a ray whose `far` is 0, which meets nothing.
+/// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along
+/// its direction, at its tick. A blocked slot has a ray whose `far` is 0, which meets nothing.
 template <InstrumentSource Sensor>
 [[nodiscard]] std::vector<Ray> sensor_rays(const Sensor& sensor) {
   std::vector<Ray> rays(static_cast<std::size_t>(sensor.size()));
@@ -35,11 +35,11 @@ template <InstrumentSource Sensor>
   return rays;
 }
 
-/// Ranges that equal sensors at many poses measure in one map [m], without echoes, noise or energy: for learning and
-/// planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in single precision (6e-8 relative);
-/// infinite without a hit. `rays` are in the sensor's frame. A ray's `pulse` is replaced by that index: together with
-/// its `seed`, it is the key of leaves that are met at random. The ranges do not depend on the number of threads.
-/// Allocates nothing.
+/// Ranges that equal sensors at many poses measure in one map [m], without echoes, noise or energy:
+/// for learning and planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in
+/// single precision (6e-8 relative); infinite without a hit. `rays` are in the sensor's frame. A
+/// ray's `pulse` is replaced by that index: together with its `seed`, it is the key of leaves that
+/// are met at random. The ranges do not depend on the number of threads. Allocates nothing.
 /// @throws SettingError if `ranges` has another size, or for a pose that is not rigid
 template <class Target>
 requires(RayTarget<Target> ||

@@ -46,8 +46,8 @@ class Scene {
   using Part = pulsecast::Part<Shapes...>;
 
   /// `workers` build the index over the parts; the scene is the same for any.
-  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of
-  /// range
+  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a
+  /// placement out of range
   explicit Scene(std::vector<Part> parts, const Workers& workers = {});
 
   /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is
@@ -56,8 +56,8 @@ class Scene {
   [[nodiscard]] Scene with_placements(std::span<const Placement> placements, const Workers& workers = {}) const {
     return with_placements(placements, Scene(std::vector<Part>()), workers);
   }
-  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its
-  /// second tick.
+  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates
+  /// nothing after its second tick.
   [[nodiscard]] Scene with_placements(std::span<const Placement> placements, Scene&& unused,
                                       const Workers& workers = {}) const {
     const auto count = static_cast<double>(parts_.size());
@@ -154,8 +154,8 @@ class Scene {
     return detail::closest_hit(ray, searcher());
   }
 
-  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at the first hit
-  /// found.
+  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at
+  /// the first hit found.
   [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
     return detail::occluded(ray, range, searcher());
   }
@@ -175,8 +175,8 @@ class Scene {
     return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
   }
 
-  /// Height of the surface of a ground material at a place that is nearest to a height; by default of the highest [m].
-  /// Empty if there is none.
+  /// Height of the surface of a ground material at a place that is nearest to a height; by default
+  /// of the highest [m]. Empty if there is none.
   [[nodiscard]] std::optional<double> ground_height(
       const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
@@ -277,8 +277,8 @@ class Scene {
     visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
-  /// Sets the geometry of the hits of rays, and visits their surfaces. `placement_of(i)` returns the placement of part
-  /// i.
+  /// Sets the geometry of the hits of rays, and visits their surfaces. `placement_of(i)` returns
+  /// the placement of part i.
   template <class PlacementOf, class Visitor>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
                 const Visitor& visit) const noexcept {

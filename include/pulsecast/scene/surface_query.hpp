@@ -14,8 +14,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Surface that an echo of a batch came from: what a sink asks for normal, part, material and velocity of a point.
-/// Empty if unknown.
+/// Surface that an echo of a batch came from: what a sink asks for normal, part, material and
+/// velocity of a point. Empty if unknown.
 using SurfaceQuery = std::function<std::optional<SurfaceInteraction>(const EchoBatch&, const Shot&, const Echo&)>;
 
 /// Query of the surfaces of a world, which must outlive it, by one more ray per echo. The ray follows the pulse's axis,

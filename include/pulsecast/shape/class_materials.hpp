@@ -27,9 +27,9 @@ struct ClassMaterials {
   }
 };
 
-/// Gives each code that occurs in a raster the colour of a colour table (sRGB, each channel from 0 to 1), whose entry n
-/// is that of code n. A code that is not listed gets a copy of the first material; one beyond the table or that is no
-/// whole number stays as it is.
+/// Gives each code that occurs in a raster the colour of a colour table (sRGB, each channel from 0
+/// to 1), whose entry n is that of code n. A code that is not listed gets a copy of the first
+/// material; one beyond the table or that is no whole number stays as it is.
 /// @throws SettingError for more than 256 materials, and as `Raster::validate`
 inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::span<const Vec3> colours) {
   classes.validate();

@@ -97,8 +97,8 @@ class DeformingMesh {
                               "finite and within 1e18 m of the origin; see vertex " + std::to_string(number));
   }
 
-  /// Builds the index over new data, and numbers the corners of each block by vertex. A `TriangleMesh` merges vertices
-  /// at the same place, which may part here.
+  /// Builds the index over new data, and numbers the corners of each block by vertex. A
+  /// `TriangleMesh` merges vertices at the same place, which may part here.
   void build(const MeshData& data, const Workers& workers) {
     auto mesh = std::make_shared<Mesh>(data, workers);
     const auto order = mesh->index_.order();

@@ -211,8 +211,8 @@ class HeightField {
 
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
-  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be
-  /// the top.
+  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level
+  /// must do so, or be the top.
   [[nodiscard]] unsigned level_of(const Cells& cells, unsigned level) const noexcept {
     for (; level > 0; --level) {
       const Cells nodes = cells.in_nodes(levels_[level - 1].shift[0], levels_[level - 1].shift[1]);

@@ -36,9 +36,9 @@ namespace detail {
   return static_cast<double>(heights[grid.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
 }
 
-/// Height of the pixel `east` columns and `south` rows from one of a height `own` [m]. What is missing, or beyond the
-/// edge, is as on a plane through `own` and its opposite neighbour, or its neighbours to the sides; level without
-/// these.
+/// Height of the pixel `east` columns and `south` rows from one of a height `own` [m]. What is
+/// missing, or beyond the edge, is as on a plane through `own` and its opposite neighbour, or its
+/// neighbours to the sides; level without these.
 [[nodiscard]] double height_beside(const auto& at, double own, int east, int south) noexcept {
   if (const double height = at(east, south); !std::isnan(height)) return height;
   if (const double opposite = at(-east, -south); !std::isnan(opposite)) return 2 * own - opposite;

@@ -32,8 +32,8 @@ class LeafAngles {
   /// Inclinations of a sphere's surface: G is 1/2 in all directions.
   [[nodiscard]] static LeafAngles spherical() { return {}; }
 
-  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965; closed forms: Goel &
-  // Strebel 1984.
+  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965;
+  // closed forms: Goel & Strebel 1984.
 
   /// Mostly horizontal.
   [[nodiscard]] static LeafAngles planophile() { return of_density({.second = 1}); }
@@ -89,9 +89,9 @@ class LeafAngles {
     return detail::interpolated(table_, std::atan2(level, steep), &LeafProjection::zenith, &LeafProjection::g);
   }
 
-  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per leaf area that the
-  /// light hits, as the leaves do: the mean squared cosine by the mean cosine, between light along a direction and
-  /// normals of leaves. 2/3 for spherical ones.
+  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per
+  /// leaf area that the light hits, as the leaves do: the mean squared cosine by the mean cosine,
+  /// between light along a direction and normals of leaves. 2/3 for spherical ones.
   [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
     const double up = direction.z * direction.z / dot(direction, direction);
     const double mean = projection(direction), mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);

@@ -14,9 +14,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole. Without pixels, there
-/// is no hole. Where the two triangles of a quad meet, a ray along the border of two pixels may find different ones in
-/// the two: a mask and its complement may both be hit.
+/// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole.
+/// Without pixels, there is no hole. Where the two triangles of a quad meet, a ray along the border
+/// of two pixels may find different ones in the two: a mask and its complement may both be hit.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
   std::vector<std::uint64_t> bits{};  ///< of the pixels, row by row from the top left, from the lowest bit of a word up

@@ -15,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may jump at an edge, as in
-/// OBJ files.
+/// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may
+/// jump at an edge, as in OBJ files.
 struct MeshData {
   std::vector<Vec3> vertices{};                           ///< positions [m]
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
@@ -24,8 +24,8 @@ struct MeshData {
   std::vector<std::array<Vec2, 3>> texture{};  ///< one per triangle: texture coordinates of its corners; empty without
   std::vector<Mask> masks{};  ///< by material: its holes, by texture coordinates; those beyond have none
 
-  /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite, columns of different
-  /// lengths, or masks without texture coordinates
+  /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite,
+  /// columns of different lengths, or masks without texture coordinates
   void validate() const {
     if (triangles.empty()) throw_setting_error("MeshData::triangles", 0, "", "at least one in number");
     validate_counts(vertices.size(), triangles.size());
@@ -44,8 +44,8 @@ struct MeshData {
     validate_texture();
   }
 
-  /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle. @throws
-  /// SettingError
+  /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle.
+  /// @throws SettingError
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
     require_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
     require_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");

@@ -15,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Heights as whole numbers of 16 bits, which take half of the memory of `float`: the height of number n is
-/// `offset` + `scale` (n - `zero`), rounded to `float`.
+/// Heights as whole numbers of 16 bits, which take half of the memory of `float`: the height of
+/// number n is `offset` + `scale` (n - `zero`), rounded to `float`.
 struct PackedHeights {
   std::vector<std::uint16_t> numbers{};    ///< one a pixel, row by row from the north; empty if heights are not packed
   double scale = 1;                        ///< height of one step [m]
@@ -38,8 +38,8 @@ struct PackedHeights {
 
 namespace detail {
 
-/// Heights of the numbers from 0 to the greatest of a raster [m], rounded in this place only; NaN for that of missing
-/// heights.
+/// Heights of the numbers from 0 to the greatest of a raster [m], rounded in this place only; NaN
+/// for that of missing heights.
 [[nodiscard]] inline std::vector<float> height_table(const PackedHeights& packed) {
   const std::size_t last = packed.numbers.empty() ? 0 : *std::max_element(packed.numbers.begin(), packed.numbers.end());
   std::vector<float> table;
@@ -77,8 +77,8 @@ class PixelHeights {
       least = std::min(least, number);
       greatest = std::max(greatest, number);
     }
-    // places in the table count from the least number, so that it is short; that of missing heights is the last one, or
-    // between others
+    // places in the table count from the least number, so that it is short; that of missing heights
+    // is the last one, or between others
     std::vector<float> table;
     if (least <= greatest) table.assign(all.begin() + least, all.begin() + greatest + 1);
     std::size_t hole = table.size();

@@ -45,8 +45,8 @@ struct RasterGrid {
                  std::min(static_cast<std::uint32_t>(south), rows - 1));
   }
 
-  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two triangles, about its
-  /// centre.
+  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two
+  /// triangles, about its centre.
   [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, which = i % 2, cells = columns - 1;
     return index(cell % cells + which, cell / cells + which);
@@ -94,8 +94,8 @@ struct Raster {
   Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
   Vec2 pixel{1, 1};  ///< spacing of the centres, to the next column in the east and the next row in the south [m]
   std::vector<float> heights{};  ///< heights, row by row from the north [m]; NaN if missing
-  /// Index of each pixel into the part's table of materials, for the two triangles with their right angle there; empty
-  /// if all are 0.
+  /// Index of each pixel into the part's table of materials, for the two triangles with their right
+  /// angle there; empty if all are 0.
   std::vector<std::uint8_t> materials{};
   PackedHeights packed{};  ///< heights in 16 bits, in place of `heights`
 
@@ -124,8 +124,8 @@ struct Raster {
   /// True if the heights are in 16 bits.
   [[nodiscard]] bool is_packed() const noexcept { return !packed.numbers.empty(); }
 
-  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a `std::vector<float>`
-  /// or a value that is indexed like it.
+  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a
+  /// `std::vector<float>` or a value that is indexed like it.
   decltype(auto) read(const auto& work) const {
     if (!is_packed()) return work(heights);
     const std::vector<float> table = detail::height_table(packed);
@@ -288,9 +288,9 @@ struct CodeMaterial {
   std::uint8_t material = 0;  ///< index into the part's table of materials
 };
 
-/// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes the code of the pixel
-/// that its centre is in. `otherwise` is that of pixels without a code, or with one that is not listed; returns their
-/// number.
+/// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes
+/// the code of the pixel that its centre is in. `otherwise` is that of pixels without a code, or
+/// with one that is not listed; returns their number.
 /// @throws SettingError as `Raster::validate`, of both
 inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed,
                                  std::uint8_t otherwise = 0) {

@@ -48,8 +48,8 @@ class TriangleMesh {
   static constexpr bool uniform_surface = true;  ///< as the concept UniformGeometry describes
   static constexpr bool deterministic = true;    ///< as the concept DeterministicGeometry describes
 
-  /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, for coordinates beyond 1e18 m, or
-  /// for masks unless this is a `MaskedMesh`
+  /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, for coordinates
+  /// beyond 1e18 m, or for masks unless this is a `MaskedMesh`
   explicit TriangleMesh(MeshData data, const Workers& workers = {});
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}

@@ -54,8 +54,8 @@ template <class To, class From>
 
 }  // namespace detail
 
-/// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below
-/// `cells` have one entry per cell, or none.
+/// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without
+/// duplicates. The columns below `cells` have one entry per cell, or none.
 struct VoxelData {
   Vec3 corner{};                                      ///< lower corner of the cell (0, 0, 0) [m]
   double edge = 1;                                    ///< edge of a cell [m]

@@ -80,8 +80,8 @@ enum class Incidence : std::uint8_t {
   perpendicular,  ///< always towards the scanner
 };
 
-/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel hits its far
-/// side, as with any closed surface.
+/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a
+/// voxel hits its far side, as with any closed surface.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 

@@ -19,9 +19,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension [rad/s]; `wavenumber`
-/// in rad/m. Source: Lamb 1932, Hydrodynamics, article 267; surface tension: IAPWS R1-76(2014), over the density of
-/// water, 998.2 kg/m^3.
+/// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension
+/// [rad/s]; `wavenumber` in rad/m. Source: Lamb 1932, Hydrodynamics, article 267; surface tension:
+/// IAPWS R1-76(2014), over the density of water, 998.2 kg/m^3.
 [[nodiscard]] inline double wave_frequency(double wavenumber) noexcept {
   constexpr double tension = 72.74e-3 / 998.2;  // per density [m^3/s^2]
   return std::sqrt(wavenumber * (standard_gravity + tension * wavenumber * wavenumber));
@@ -65,8 +65,8 @@ class WaveSum {
   simd::Doubles parts_[count]{};
 };
 
-/// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it
-/// belongs to.
+/// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of
+/// the sum that it belongs to.
 [[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const auto& add) noexcept {
   // unrolled, so that the sums stay in registers
   const auto each_part = [&]<std::size_t... part>(std::size_t i, std::index_sequence<part...>) noexcept {
@@ -113,9 +113,9 @@ class WaveProfile;
 
 }  // namespace detail
 
-/// Waves on a water surface about its mean level, as a sum of sine waves: a closed form in place and time. Copies share
-/// the waves. Its laws are those of linear waves: heights add up, crests and troughs are alike. Places are within 1e9 m
-/// of the origin.
+/// Waves on a water surface about its mean level, as a sum of sine waves: a closed form in place
+/// and time. Copies share the waves. Its laws are those of linear waves: heights add up, crests and
+/// troughs are alike. Places are within 1e9 m of the origin.
 class WaveField {
  public:
   static constexpr std::size_t max_size = detail::max_waves;  ///< greatest number of waves
@@ -184,8 +184,8 @@ class WaveField {
   friend class detail::WaveProfile;
   friend class WaterSurface;
 
-  /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half turns/s], phase
-  /// [half turns].
+  /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half
+  /// turns/s], phase [half turns].
   enum Column : std::size_t { amplitude, east, north, frequency, phase, column_count };
 
   [[nodiscard]] const double* column(Column c) const noexcept { return columns_.data() + c * size_; }
@@ -249,8 +249,8 @@ class WaveProfile {
   /// Bound of |second derivative|.
   [[nodiscard]] double curviest(std::size_t groups) const noexcept { return curviest_[groups]; }
 
-  /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of the distance of the
-  /// sum from `z` [m].
+  /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of
+  /// the distance of the sum from `z` [m].
   [[nodiscard]] Sample at(double t, double z, double slack) const noexcept {
     WaveSum heights, rates;
     double height = 0;

@@ -29,8 +29,8 @@ struct SlopeDistribution {
     return {0.00316 * wind_speed, 0.003 + 0.00192 * wind_speed, toward};
   }
 
-  /// Probability density of a slope, the derivatives of the height by x and y; infinite or not a number if a variance
-  /// is zero.
+  /// Probability density of a slope, the derivatives of the height by x and y; infinite or not a
+  /// number if a variance is zero.
   [[nodiscard]] double density(const Vec2& slope) const noexcept {
     const double c = std::cos(toward), s = std::sin(toward);
     const double u = c * slope.x + s * slope.y, v = c * slope.y - s * slope.x;
@@ -80,8 +80,8 @@ class WindSpectrum {
 
   [[nodiscard]] double peak() const noexcept { return peak_; }  ///< wavenumber of the highest waves [rad/m]
 
-  /// Variance of the slope per unit of the logarithm of the wavenumber [rad/m]; that of the height [m^2] is k^2 times
-  /// less.
+  /// Variance of the slope per unit of the logarithm of the wavenumber [rad/m]; that of the height
+  /// [m^2] is k^2 times less.
   [[nodiscard]] double curvature(double k) const noexcept {
     const double root = std::sqrt(k / peak_) - 1, speed = phase_speed(k), ratio = peak_ / k;
     const double peaked =

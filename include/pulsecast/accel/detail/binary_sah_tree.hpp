@@ -27,15 +27,15 @@ class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the node's index; 0 for
-  /// one primitive.
+  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the
+  /// node's index; 0 for one primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of primitives per leaf
-  /// of the collapsed tree.
+  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of
+  /// primitives per leaf of the collapsed tree.
   BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, const Workers& workers)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // upper levels: one node at a time on all threads; then the subtrees in parallel
@@ -107,8 +107,8 @@ class BinarySahTree {
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;
 
-  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its position is the
-  /// node's index.
+  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its
+  /// position is the node's index.
   struct Node {
     BoundingBox<Real> box;
     std::uint32_t first, second;    ///< indices of the children, 0 for one primitive

@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Build of a kd-tree: large nodes level by level, in chunks of their primitives, then the subtrees below, both on all
-/// threads. Nodes and leaves are in depth-first order, lower children first, for any number of threads. `Node`: a node
-/// of 16 bytes, as `KdTree` has it.
+/// Build of a kd-tree: large nodes level by level, in chunks of their primitives, then the subtrees
+/// below, both on all threads. Nodes and leaves are in depth-first order, lower children first, for
+/// any number of threads. `Node`: a node of 16 bytes, as `KdTree` has it.
 template <std::floating_point Real, class Node>
 class KdTreeBuilder {
  public:

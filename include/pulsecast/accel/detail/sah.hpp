@@ -184,8 +184,8 @@ concept BoxRange = requires(const B& boxes) {
   { boxes[boxes.size()] } -> std::convertible_to<Box>;
 };
 
-/// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive
-/// the view, and yield the same `Box` for an index every time.
+/// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The
+/// range must outlive the view, and yield the same `Box` for an index every time.
 class BoxRangeRef {
  public:
   template <BoxRange Boxes>

@@ -92,8 +92,8 @@ struct QuantizedBox8 {
   void begin(const BoundingBox<Real>& around) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
-      // exponent of a power of two above the ratio, as `std::frexp` returns it, but without a call; that of a subnormal
-      // ratio is below the minimum
+      // exponent of a power of two above the ratio, as `std::frexp` returns it, but without a call;
+      // that of a subnormal ratio is below the minimum
       const int e = static_cast<int>(std::bit_cast<std::uint64_t>(extent / (steps - 1)) >> 52U) - 1022;
       origin[k] = around.min[k];
       exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));

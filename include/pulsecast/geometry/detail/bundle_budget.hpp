@@ -10,9 +10,9 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Limit of the search of an accelerator by a bundle, which reads it after each leaf. A bundle tests all primitives
-/// between its rays. Where they are many, such as the leaves in a broad beam, single rays are faster: the bundle gives
-/// up, as its limit then excludes all boxes.
+/// Limit of the search of an accelerator by a bundle, which reads it after each leaf. A bundle
+/// tests all primitives between its rays. Where they are many, such as the leaves in a broad beam,
+/// single rays are faster: the bundle gives up, as its limit then excludes all boxes.
 template <class Hits>
 struct BudgetedLimit {
   static constexpr int most = 128;  ///< leaves that cost about as much as single rays
@@ -29,8 +29,8 @@ struct BudgetedLimit {
   [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
 };
 
-/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a
-/// `SingleRayPacket` to a `ClosestHit`.
+/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers
+/// those of a `SingleRayPacket` to a `ClosestHit`.
 template <class Rays, HitsOf<Rays> Hits, class Search>
 void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) noexcept {
   for (std::size_t j = 0; j < rays.size; ++j) {

@@ -18,9 +18,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray hits a primitive in
-/// double precision, the bundle hits every box around that primitive, and the range is inside the box's span. NaN rays
-/// are left out; if none is left, every span is empty.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray
+/// hits a primitive in double precision, the bundle hits every box around that primitive, and the
+/// range is inside the box's span. NaN rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
@@ -153,8 +153,8 @@ class BundleInterval {
     return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
   }
 
-  // A plane behind the origin has a negative range: as entry it has no effect, as exit it puts the box behind the
-  // origin. Zero times infinity is NaN and fails every comparison.
+  // A plane behind the origin has a negative range: as entry it has no effect, as exit it puts the
+  // box behind the origin. Zero times infinity is NaN and fails every comparison.
   static void keep_above(Span& span, const Axis& a, Real low) noexcept {
     const Real range = (low - a.origin_high) * a.per_min;
     if (a.sense >= 0)
@@ -245,8 +245,8 @@ class RayInterval {
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not hit.
   static constexpr double max_limit = static_cast<double>(std::numeric_limits<Real>::max()) * (1 - 4 * tolerance);
-  /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast: from the margin on,
-  /// they leave a box so late that no hit lies beyond.
+  /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast:
+  /// from the margin on, they leave a box so late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
   static constexpr std::size_t wall_bytes = sizeof(boxes_type::walls[0][0]);
 

@@ -63,8 +63,8 @@ struct SweptBody {
 
   /// Radius of a ball about the own centre that holds the body [m].
   [[nodiscard]] double radius() const noexcept { return length(offset) + length(half); }
-  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and these axes of the
-  /// box [m].
+  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and
+  /// these axes of the box [m].
   [[nodiscard]] double corner_distance(const Vec3& middle, const Matrix3& axes) const noexcept {
     double mixed = 0;  // the corner in the octant of `middle`
     for (int k = 0; k < 3; ++k) mixed += std::fabs(dot(middle, axes[k])) * half[k];
@@ -85,8 +85,8 @@ struct SweptState {
   }
 };
 
-/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else as
-/// `extend_by_piece`.
+/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else
+/// as `extend_by_piece`.
 inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end,
                            double span) noexcept {
   const MotionPiece& piece = *place.piece;
@@ -126,8 +126,8 @@ inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& 
   box.extend(grown(ends, bulge(radius, angle)));
 }
 
-/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that
-/// of a cycle.
+/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at
+/// the start or at that of a cycle.
 inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own, const MotionRun& run,
                           std::int64_t first, std::int64_t last, double end) noexcept {
   const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);

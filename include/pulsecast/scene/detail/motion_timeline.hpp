@@ -17,8 +17,8 @@
 /// Motion of a body as a list of steady pieces, in closed form over time.
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation
-/// about its own centre.
+/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two
+/// differ after rotation about its own centre.
 struct Change {
   Rotation attitude = no_rotation;
   Screw path{};

@@ -32,15 +32,15 @@ struct MovingIndexSettings {
   }
 };
 
-/// Index of moving bodies: the time span is divided into windows, each with a tree over the boxes swept in it. Faster
-/// bodies get shorter windows, halved per level until a body moves at most about its own size per window. If that takes
-/// too many boxes, the shortest windows are lengthened. Outside of the time span all bodies are tested: slow but
-/// correct.
+/// Index of moving bodies: the time span is divided into windows, each with a tree over the boxes
+/// swept in it. Faster bodies get shorter windows, halved per level until a body moves at most
+/// about its own size per window. If that takes too many boxes, the shortest windows are
+/// lengthened. Outside of the time span all bodies are tested: slow but correct.
 class MovingIndex {
  public:
-  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, and `size(i)` about its greatest
-  /// side at rest [m], for i < `things`. Both are called by the caller's thread; `workers` build the trees. @throws
-  /// SettingError for a time span out of range
+  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, and `size(i)`
+  /// about its greatest side at rest [m], for i < `things`. Both are called by the caller's thread;
+  /// `workers` build the trees. @throws SettingError for a time span out of range
   template <class Swept, class Size>
   MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept, const Size& size,
               const Workers& workers = {})
@@ -144,8 +144,8 @@ class MovingIndex {
     return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
   }
 
-  /// First level in whose windows a body moves at most about its own size, judged by samples; it is of this size [m] at
-  /// first, and `whole` is its box of all the time. Affects speed only.
+  /// First level in whose windows a body moves at most about its own size, judged by samples; it is
+  /// of this size [m] at first, and `whole` is its box of all the time. Affects speed only.
   template <class Swept>
   std::size_t level_of(PrimitiveIndex thing, double size, const Box& whole, const Swept& swept) const {
     constexpr std::size_t max_samples = 8;

@@ -16,8 +16,8 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 
-/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a
-/// `AllHits`.
+/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an
+/// `AnyHit` or a `AllHits`.
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Shape that takes such rays and hits.
@@ -32,8 +32,8 @@ concept SurfacedBySingleRay = requires(const Shape& shape, const SingleRayPacket
   shape.surface(PrimitiveIndex{}, ray, std::size_t{});
 };
 
-/// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays nor such hits is
-/// asked for the closest hit of a bundle.
+/// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays
+/// nor such hits is asked for the closest hit of a bundle.
 template <class Shape, class Rays, class Hits>
 void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   if constexpr (Intersects<Shape, Rays, Hits>) {

@@ -69,9 +69,9 @@ struct RotationParts {
   return 2 * pi * Tick{n, 0}.phase(angle / (2 * pi));
 }
 
-/// A rigid motion repeated n times: a screw of n times the angle and n times the glide. Across the axis, the n equal
-/// steps sum up as the sides of a regular polygon. Source: Chasles 1830, every rigid motion is a screw; sum of sin(k
-/// a): Gradshteyn & Ryzhik, 1.341.
+/// A rigid motion repeated n times: a screw of n times the angle and n times the glide. Across the
+/// axis, the n equal steps sum up as the sides of a regular polygon. Source: Chasles 1830, every
+/// rigid motion is a screw; sum of sin(k a): Gradshteyn & Ryzhik, 1.341.
 [[nodiscard]] inline Screw repeated(const Screw& once, std::int64_t n) noexcept {
   if (n == 0) return {};
   if (once.turn == no_rotation) return {no_rotation, static_cast<double>(n) * once.shift};

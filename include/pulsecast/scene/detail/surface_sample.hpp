@@ -25,8 +25,8 @@ struct SurfaceSample {
   std::optional<Vec2> texture{};
 };
 
-/// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape sets only what is
-/// read.
+/// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape
+/// sets only what is read.
 template <class Part>
 struct SurfaceSampler {
   const Part& part;

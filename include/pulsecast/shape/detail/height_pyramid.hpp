@@ -36,9 +36,9 @@ struct HeightInterval {
   }
 };
 
-/// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2 cells, then
-/// alternately 2 by 4 and 4 by 2 nodes. The pyramid holds the heights of the children, node by node: eight minima, then
-/// eight maxima; an empty interval where there is no triangle.
+/// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2
+/// cells, then alternately 2 by 4 and 4 by 2 nodes. The pyramid holds the heights of the children,
+/// node by node: eight minima, then eight maxima; an empty interval where there is no triangle.
 struct PyramidLevel {
   std::uint32_t columns = 0, rows = 0;
   std::size_t begin = 0;                 ///< start in the pyramid

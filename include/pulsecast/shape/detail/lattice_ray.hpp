@@ -14,9 +14,9 @@ namespace PULSECAST_NAMESPACE {
 /// Cell of a lattice, along x, y and z.
 using LatticeCell = std::array<std::int32_t, 3>;
 
-/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x comes before y
-/// before z (symbolic perturbation). So a ray through an edge or a corner still passes from a cell to its neighbour
-/// through a face.
+/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x
+/// comes before y before z (symbolic perturbation). So a ray through an edge or a corner still
+/// passes from a cell to its neighbour through a face.
 struct Crossing {
   static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings at that range
 

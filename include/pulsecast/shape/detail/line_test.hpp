@@ -24,8 +24,8 @@ class LineTest {
   LineTest() noexcept {}
   /// Line through the only ray of a bundle, for triangles within `bounds` [m].
   LineTest(const auto& ray, const Box& bounds) noexcept : origin_(ray.origin), direction_(ray.direction(0)) {
-    // `intersect` lets a side be in doubt by 17 roundings of 4 reach^2 times the direction's length, and this test adds
-    // 12 of its 1-norm
+    // `intersect` lets a side be in doubt by 17 roundings of 4 reach^2 times the direction's
+    // length, and this test adds 12 of its 1-norm
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes from = axes(origin_);

@@ -53,8 +53,8 @@ inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
   return static_cast<std::size_t>(mixed * slots >> 32);
 }
 
-/// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a
-/// hash; an unset bit still proves its cube empty.
+/// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing
+/// shares its words by a hash; an unset bit still proves its cube empty.
 struct VoxelLevel {
   std::uint64_t first = 0;                ///< first word
   std::uint64_t words = 0;                ///< words of a hashed level; 0 if indexed directly
@@ -184,8 +184,8 @@ class VoxelIndex {
 
   explicit VoxelIndex(DeserializeTag) {}
 
-  /// Sets `order` to the data's cell index of each number. `shape/voxel_grid.hpp` defines this; it takes no part in
-  /// tracing.
+  /// Sets `order` to the data's cell index of each number. `shape/voxel_grid.hpp` defines this; it
+  /// takes no part in tracing.
   /// @throws SettingError for a duplicate cell, or an extent above `longest`
   VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order);
 

@@ -152,8 +152,8 @@ class VoxelIndexBuilder {
     index_.slots_ = SharedArray<std::uint32_t>(std::move(slots));
   }
 
-  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A fourth of the
-  /// budget bounds each level indexed directly; hashed levels share the rest.
+  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A
+  /// fourth of the budget bounds each level indexed directly; hashed levels share the rest.
   void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
     const std::size_t affordable = budget / sizeof(std::uint64_t);
     std::vector<VoxelLevel> levels;
