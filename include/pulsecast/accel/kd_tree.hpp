@@ -4,10 +4,6 @@
 #define PULSECAST_ACCEL_KD_TREE_HPP
 
 #include <algorithm>
-#include <array>
-#include <concepts>
-#include <span>
-#include <vector>
 
 #include <pulsecast/accel/detail/kd_tree_builder.hpp>
 #include <pulsecast/accel/detail/sah.hpp>

@@ -4,10 +4,6 @@
 #define PULSECAST_ACCEL_LINEAR_HPP
 
 #include <algorithm>
-#include <concepts>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/base/shared_array.hpp>

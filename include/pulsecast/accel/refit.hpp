@@ -4,11 +4,6 @@
 #define PULSECAST_ACCEL_REFIT_HPP
 
 #include <algorithm>
-#include <array>
-#include <concepts>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -6,8 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <concepts>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/optional_member.hpp>

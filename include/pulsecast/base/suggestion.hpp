@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>

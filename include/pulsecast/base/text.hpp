@@ -8,8 +8,6 @@
 #include <cmath>
 #include <concepts>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <system_error>
 
 #include <pulsecast/base/error.hpp>

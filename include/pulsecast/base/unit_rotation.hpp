@@ -4,8 +4,6 @@
 #define PULSECAST_BASE_UNIT_ROTATION_HPP
 
 #include <cmath>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

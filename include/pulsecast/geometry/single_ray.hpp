@@ -4,9 +4,7 @@
 #define PULSECAST_GEOMETRY_SINGLE_RAY_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include <pulsecast/base/require.hpp>

@@ -4,13 +4,9 @@
 #define PULSECAST_GEOMETRY_TRIANGLE_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <concepts>
-#include <limits>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_MATERIAL_HPP
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include <pulsecast/base/require.hpp>

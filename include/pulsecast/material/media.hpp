@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

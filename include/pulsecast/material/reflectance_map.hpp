@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_REFLECTANCE_MAP_HPP
 
 #include <algorithm>
-#include <array>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

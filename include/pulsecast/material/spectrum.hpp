@@ -3,9 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SPECTRUM_HPP
 #define PULSECAST_MATERIAL_SPECTRUM_HPP
 
-#include <span>
-#include <vector>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>

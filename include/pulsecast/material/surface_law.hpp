@@ -4,7 +4,6 @@
 #define PULSECAST_MATERIAL_SURFACE_LAW_HPP
 
 #include <algorithm>
-#include <concepts>
 #include <memory>
 #include <optional>
 #include <span>

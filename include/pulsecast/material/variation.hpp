@@ -4,8 +4,6 @@
 #define PULSECAST_MATERIAL_VARIATION_HPP
 
 #include <algorithm>
-#include <memory>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

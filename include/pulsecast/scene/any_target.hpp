@@ -3,13 +3,7 @@
 #ifndef PULSECAST_SCENE_ANY_TARGET_HPP
 #define PULSECAST_SCENE_ANY_TARGET_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <limits>
-#include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include <pulsecast/concepts.hpp>

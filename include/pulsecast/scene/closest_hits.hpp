@@ -4,13 +4,7 @@
 #define PULSECAST_SCENE_CLOSEST_HITS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <utility>
 
 #include <pulsecast/concepts.hpp>
 

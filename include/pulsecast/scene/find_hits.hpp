@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <span>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>

@@ -4,13 +4,7 @@
 #define PULSECAST_SCENE_LAYERED_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
 #include <tuple>
 #include <type_traits>
 

@@ -5,12 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>

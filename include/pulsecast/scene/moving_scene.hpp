@@ -3,13 +3,7 @@
 #ifndef PULSECAST_SCENE_MOVING_SCENE_HPP
 #define PULSECAST_SCENE_MOVING_SCENE_HPP
 
-#include <cstddef>
-#include <limits>
-#include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/scene/detail/moving_index.hpp>

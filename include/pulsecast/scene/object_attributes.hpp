@@ -4,13 +4,7 @@
 #define PULSECAST_SCENE_OBJECT_ATTRIBUTES_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <limits>
 #include <map>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>

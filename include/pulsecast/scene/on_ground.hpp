@@ -4,11 +4,6 @@
 #define PULSECAST_SCENE_ON_GROUND_HPP
 
 #include <algorithm>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>

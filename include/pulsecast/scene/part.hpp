@@ -4,14 +4,8 @@
 #define PULSECAST_SCENE_PART_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>

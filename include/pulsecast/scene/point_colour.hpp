@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
-#include <optional>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>

@@ -4,12 +4,6 @@
 #define PULSECAST_SCENE_RUN_BATCH_HPP
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -4,16 +4,7 @@
 #define PULSECAST_SCENE_SCENE_HPP
 
 #include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <span>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/refit.hpp>

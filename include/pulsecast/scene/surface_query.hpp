@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <optional>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -4,13 +4,7 @@
 #define PULSECAST_SHAPE_DEFORMING_MESH_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/refit.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -4,13 +4,9 @@
 #define PULSECAST_SHAPE_HEIGHT_FIELD_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <span>
-#include <utility>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_SHAPE_MASK_HPP
 
 #include <algorithm>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

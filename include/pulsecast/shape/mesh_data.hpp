@@ -3,10 +3,7 @@
 #ifndef PULSECAST_SHAPE_MESH_DATA_HPP
 #define PULSECAST_SHAPE_MESH_DATA_HPP
 
-#include <array>
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

@@ -4,13 +4,8 @@
 #define PULSECAST_SHAPE_RASTER_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <span>
-#include <string>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

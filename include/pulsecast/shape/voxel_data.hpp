@@ -7,10 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>

@@ -4,11 +4,6 @@
 #define PULSECAST_SHAPE_VOXEL_GRID_HPP
 
 #include <algorithm>
-#include <array>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>

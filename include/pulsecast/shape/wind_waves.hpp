@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

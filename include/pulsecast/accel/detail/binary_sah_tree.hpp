@@ -4,13 +4,7 @@
 #define PULSECAST_ACCEL_DETAIL_BINARY_SAH_TREE_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <concepts>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -4,12 +4,7 @@
 #define PULSECAST_ACCEL_DETAIL_KD_TREE_BUILDER_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <concepts>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -4,11 +4,7 @@
 #define PULSECAST_ACCEL_DETAIL_SAH_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <concepts>
-#include <limits>
-#include <span>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>

@@ -4,11 +4,8 @@
 #define PULSECAST_GEOMETRY_DETAIL_BUNDLE_INTERVAL_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <concepts>
-#include <limits>
 #include <type_traits>
 
 #include <pulsecast/base/simd.hpp>

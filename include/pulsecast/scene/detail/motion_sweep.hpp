@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>

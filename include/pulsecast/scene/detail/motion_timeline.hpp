@@ -4,8 +4,6 @@
 #define PULSECAST_SCENE_DETAIL_MOTION_TIMELINE_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 

@@ -4,14 +4,7 @@
 #define PULSECAST_SCENE_DETAIL_MOVING_INDEX_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>

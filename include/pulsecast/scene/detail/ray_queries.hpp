@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
 #include <type_traits>
 
 #include <pulsecast/concepts.hpp>

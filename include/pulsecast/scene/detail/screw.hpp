@@ -4,7 +4,6 @@
 #define PULSECAST_SCENE_DETAIL_SCREW_HPP
 
 #include <cmath>
-#include <cstdint>
 
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 #define PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/material/material.hpp>

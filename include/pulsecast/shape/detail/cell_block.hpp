@@ -4,7 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_CELL_BLOCK_HPP
 
 #include <algorithm>
-#include <limits>
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>

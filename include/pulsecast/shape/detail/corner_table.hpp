@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>

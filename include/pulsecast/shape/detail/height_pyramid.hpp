@@ -4,9 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_HEIGHT_PYRAMID_HPP
 
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/geometry/box.hpp>

@@ -3,9 +3,7 @@
 #ifndef PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
 #define PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
 
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_LINE_TEST_HPP
 #define PULSECAST_SHAPE_DETAIL_LINE_TEST_HPP
 
-#include <limits>
-
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>

@@ -4,10 +4,7 @@
 #define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <limits>
-#include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>

@@ -4,11 +4,7 @@
 #define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_BUILDER_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
