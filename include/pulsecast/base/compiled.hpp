@@ -6,10 +6,10 @@
 #include <pulsecast/base/namespace.hpp>
 #include <pulsecast/version.hpp>
 
-/// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML
-/// surveys. The target defines `PULSECAST_COMPILED` for its users, who then include declarations only.
+/// `pulsecast::compiled` is a library with the definitions of readers and XML surveys. Its users
+/// get `PULSECAST_COMPILED` from the target, and include declarations only.
 
-/// True where a header ends with its definitions: in no user of the library, and in its source of that header.
+/// True where a header ends with its definitions: not for users of the library, only in its source.
 #if defined(PULSECAST_COMPILED)
 #define PULSECAST_DEFINES(header) PULSECAST_DEFINES_##header
 #else
@@ -43,8 +43,8 @@ namespace PULSECAST_NAMESPACE::detail {
 #if defined(PULSECAST_COMPILED)
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Marks a build of the library by what a program must have in common with it: its version here, and all else in the
-/// namespace. A program of another build does not link, because this function is missing.
+/// Marks a build of the library by its version, and by all else in the namespace: a program of
+/// another build does not link, as it misses this function.
 template <unsigned version>
 void compiled_library_of_this_build()
 #if defined(PULSECAST_COMPILED_SOURCE)
@@ -54,7 +54,7 @@ void compiled_library_of_this_build()
 #endif
 
 namespace {
-  [[gnu::used]] void (*const reference_to_the_compiled_library)() = &compiled_library_of_this_build<version_number()>;
+  [[gnu::used]] void (*const compiled_library)() = &compiled_library_of_this_build<version_number()>;
 }
 
 }  // namespace PULSECAST_NAMESPACE::detail

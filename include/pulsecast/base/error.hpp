@@ -23,7 +23,7 @@ inline std::string to_text(double value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-/// Concatenated texts, such as a message. Compiled once, while each `+` of two texts is compiled anew where it stands.
+/// Concatenated texts, such as a message. Compiled once, but each `+` of texts where it stands.
 [[gnu::noinline]] inline std::string joined(std::initializer_list<std::string_view> texts) {
   std::string all;
   for (const std::string_view text : texts) all.append(text);
@@ -34,7 +34,7 @@ inline std::string to_text(double value) {
 /// Setting outside its allowed range. Thrown when the stage that holds it is made, never later.
 class SettingError : public std::invalid_argument {
  public:
-  /// `field` as in `Scanner::pulse_rate`; `value` in `unit`, an SI symbol; `allowed` range in words.
+  /// `field` as in `Scanner::pulse_rate`; `value` in `unit`, an SI symbol; `allowed` in words.
   SettingError(std::string field, double value, std::string unit, std::string allowed)
       : std::invalid_argument(message(field, value, unit, allowed)),
         field_(std::move(field)),
@@ -42,8 +42,8 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
-  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no
-  /// number by itself is at fault.
+  /// `problem` follows `field` in the message: `tEnd` and ` is not after tStart`. No number is at
+  /// fault.
   SettingError(std::string field, std::string problem)
       : std::invalid_argument(text::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
 
@@ -54,24 +54,24 @@ class SettingError : public std::invalid_argument {
                             : SettingError(std::move(field), problem_);
   }
 
-  /// Name of the setting, as in `Scanner::pulse_rate`.
+  /// Name, as in `Scanner::pulse_rate`.
   [[nodiscard]] const std::string& field() const noexcept { return field_; }
-  [[nodiscard]] double value() const noexcept { return value_; }  ///< value that was refused, in `unit()`; NaN if none
-  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }  ///< SI symbol; empty for a pure number
-  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
+  [[nodiscard]] double value() const noexcept { return value_; }                  ///< in `unit()`; NaN if none
+  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol, or empty
+  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< in words
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit,
                              const std::string& allowed) {
-    return text::joined(
-        {field, " is ", text::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
+    const std::string_view blank = unit.empty() ? "" : " ";
+    return text::joined({field, " is ", text::to_text(value), blank, unit, ", but must be ", allowed});
   }
 
   std::string field_, unit_, allowed_, problem_;
   double value_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there already.
+/// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there.
 decltype(auto) naming(const std::string& name, const auto& function) {
   try {
     return function();
@@ -84,7 +84,7 @@ decltype(auto) naming(const std::string& name, const auto& function) {
 /// Missing, malformed, truncated or unwritable file. Thrown by the rooms beside the core only.
 class FileError : public std::runtime_error {
  public:
-  /// `place` in the file, as in "line 12" or "byte 375"; empty if the error concerns the whole file.
+  /// `place`, as in "line 12" or "byte 375", is empty if the error concerns the whole file.
   FileError(std::string path, std::string place, std::string problem)
       : std::runtime_error(text::joined({path, place.empty() ? "" : ", ", place, ": ", problem})),
         path_(std::move(path)),
@@ -94,7 +94,7 @@ class FileError : public std::runtime_error {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< name of the file
   /// As in "line 12"; empty for the whole file.
   [[nodiscard]] const std::string& place() const noexcept { return place_; }
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< defect and expectation, in words
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< and expectation
 
  private:
   std::string path_, place_, problem_;

@@ -15,9 +15,18 @@
 namespace PULSECAST_NAMESPACE {
 
 namespace simd::detail {
-/// Bits of a number, or of the lanes of a vector of numbers. Unsigned: sums may overflow in lanes that are not used.
+/// Bits of a number, or of the lanes of a vector. Unsigned: sums may overflow in unused lanes.
 template <class V>
-using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / sizeof(double)>>;
+using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / 8>>;
+
+/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
+template <class V, class... Lower>
+[[nodiscard, gnu::always_inline]] constexpr V polynomial(const V& x, double highest, double second,
+                                                         Lower... lower) noexcept {
+  V value = highest * x + second;
+  ((value = value * x + lower), ...);
+  return value;
+}
 }  // namespace simd::detail
 
 /// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative
@@ -28,22 +37,17 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 
     std::same_as<Number, simd::Vec<double, 4>> || std::same_as<Number, simd::Vec<double, 8>>
 [[nodiscard]] inline Number exponential(const Number& x) noexcept {
   using Bits = simd::detail::Bits<Number>;
-  constexpr double per_ln2 = 1.4426950408889634, ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-  constexpr double whole = 0x1.8p52;  // adding it drops the fraction and leaves n in the lowest bits
+  constexpr double per_ln2 = 1.4426950408889634;
+  constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
+  constexpr double whole = 0x1.8p52;  // a sum with it ends in the bits of n
   constexpr double least = -708;
   const Number shifted = x * per_ln2 + whole, n = shifted - whole;
   const Number r = (x - n * ln2_high) - n * ln2_low;
-  const Number upper =
-      (((((r * (1.0 / 6227020800) + 1.0 / 479001600) * r + 1.0 / 39916800) * r + 1.0 / 3628800) * r + 1.0 / 362880) *
-           r +
-       1.0 / 40320);
   const Number series =
-      (((((((upper * r + 1.0 / 5040) * r + 1.0 / 720) * r + 1.0 / 120) * r + 1.0 / 24) * r + 1.0 / 6) * r + 0.5) * r +
-       1.0) *
-          r +
-      1.0;
-  const Number power_of_two = std::bit_cast<Number>(static_cast<Bits>((std::bit_cast<Bits>(shifted) + 1023) << 52));
-  return x < least ? Number{} : series * power_of_two;
+      simd::detail::polynomial(r, 1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
+                               1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0);
+  const Bits exponent = (std::bit_cast<Bits>(shifted) + 1023) << 52;
+  return x < least ? Number{} : series * std::bit_cast<Number>(exponent);
 }
 
 }  // namespace PULSECAST_NAMESPACE

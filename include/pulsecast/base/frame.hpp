@@ -42,7 +42,7 @@ struct Pose {
     return std::isfinite(sum);  // a sum keeps NaN and infinity
   }
 
-  /// True if the position is finite and the rotation unit to 1e-6 (single precision): the law of every motion.
+  /// True if the position is finite and the rotation unit to 1e-6: the law of every motion.
   [[nodiscard]] bool rigid() const noexcept {
     return pulsecast::finite(position) && std::fabs(length(rotation) - 1) <= 1e-6;
   }
@@ -61,13 +61,13 @@ struct TimedPose {
   Rotation rotation = no_rotation;  ///< rotation from the body to the world; unit to within 1e-3
 };
 
-/// Converts axes x right, y forward, z up to x forward, y left, z up, as in ROS. Source: ROS REP 103.
+/// Converts axes x right, y forward, z up to x forward, y left, z up. Source: ROS REP 103.
 [[nodiscard]] inline Vec3 to_forward_left_up(const Vec3& v) noexcept { return {v.y, -v.x, v.z}; }
 
 /// Converts axes x forward, y left, z up (ROS REP 103) to x right, y forward, z up.
 [[nodiscard]] inline Vec3 from_forward_left_up(const Vec3& v) noexcept { return {-v.y, v.x, v.z}; }
 
-/// Heading of a direction: clockwise from north, in [-pi, pi]; `otherwise` if the direction is vertical or zero [rad].
+/// Heading of a direction, clockwise from north [rad]; `otherwise` if it is vertical or zero.
 [[nodiscard]] inline double heading_of(const Vec3& direction, double otherwise = 0) noexcept {
   return direction.x == 0 && direction.y == 0 ? otherwise : std::atan2(direction.x, direction.y);
 }

@@ -26,16 +26,16 @@ namespace detail {
 /// One number in all lanes, with its sign if it is zero.
 [[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
 
-/// Rounding error of a product, exact while products of halves neither overflow nor underflow. Source: Dekker 1971, A
-/// floating-point technique for extending the available precision, with the halves of Veltkamp.
+/// Rounding error of a product, unless a product of halves overflows or underflows. Source: Dekker
+/// 1971, A floating-point technique for extending the available precision; halves of Veltkamp.
 [[nodiscard, gnu::always_inline]] inline simd::Doubles product_error(const simd::Doubles& a, const simd::Doubles& b,
                                                                      const simd::Doubles& product) noexcept {
 #if defined(__FMA__)
   if constexpr (sizeof(simd::Doubles) == 32) return __builtin_ia32_vfmaddpd256(a, b, -product);
 #endif
   constexpr double splitter = 0x1p27 + 1;
-  const simd::Doubles a_scaled = splitter * a, a_high = a_scaled - (a_scaled - a), a_low = a - a_high;
-  const simd::Doubles b_scaled = splitter * b, b_high = b_scaled - (b_scaled - b), b_low = b - b_high;
+  const simd::Doubles a_far = splitter * a, a_high = a_far - (a_far - a), a_low = a - a_high;
+  const simd::Doubles b_far = splitter * b, b_high = b_far - (b_far - b), b_low = b - b_high;
   return a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
 }
 

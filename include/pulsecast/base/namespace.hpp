@@ -6,8 +6,8 @@
 #include <cstddef>  // for all headers; with the macros of the standard library
 #include <cstdint>  // for all headers
 
-/// Rejects compiler options that give up IEEE 754 arithmetic: infinities, NaN rays, the order of additions. Contraction
-/// of a product and a sum into one rounding (-ffp-contract=fast, on machines that have it) is welcome.
+/// Rejects compiler options that give up IEEE 754 arithmetic: infinities, NaN, the order of
+/// additions. Contraction of a product and a sum into one rounding (-ffp-contract=fast) is welcome.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
 // clang-format off
@@ -15,11 +15,10 @@
 // clang-format on
 #endif
 
-/// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones
-/// by macros that change the layout of types or the meaning of their constructors. Files of one program may thus be
-/// compiled for different processors, and with different settings of GLM and of the standard library: their functions
-/// and types have different names, so that the linker never takes one for another. What passes between such files does
-/// not link. `pulsecast::Scene` names that of the file's own flags.
+/// Namespace of the library. Inline namespaces name the instruction set of the compiler's flags,
+/// and macros that change layouts or constructors. So files of one program may be compiled for
+/// different processors, and with different settings of GLM and of the standard library: the linker
+/// never takes one's function for another's. What passes between such files does not link.
 #if defined(__AVX512F__)
 #define PULSECAST_INSTRUCTIONS avx512
 #elif defined(__AVX2__)

@@ -31,16 +31,16 @@ inline constexpr bool promise_kept = true;
 template <PromisesRefinements T>
 inline constexpr bool promise_kept<T> = T::refinements::template kept<T>;
 
-/// True; refuses a type that breaks its promise, or has a member of one of the refinements in another form.
+/// True; refuses a type that breaks its promise, or has a member of a refinement in another form.
 template <class T, class... Tags>
 inline constexpr bool members_checked = promise_kept<T> && (Tags::template checked<T>() && ...);
 
 }  // namespace detail
 }  // namespace PULSECAST_NAMESPACE
 
-/// Defines the tag of a refinement, the concept `Model` of one optional member `name`, with its checks. A type has the
-/// member if it is accessible, or callable with the arguments `call`, as one of several overloads is. A last argument
-/// `&& ...` excepts types `T` with a member of that name for another purpose. Other names are never looked at.
+/// Defines the tag of a refinement, the concept `Model` of one optional member `name`. A type has
+/// the member if it is accessible, or callable with the arguments `call`. A last argument `&& ...`
+/// excepts types `T` with a member of that name for another purpose.
 #define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                                     \
   namespace tag {                                                                                                   \
   struct Model {                                                                                                    \

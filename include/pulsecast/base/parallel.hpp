@@ -17,7 +17,7 @@ namespace PULSECAST_NAMESPACE {
 
 inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for threads
 
-/// Number of threads to use: `asked`, or the hardware concurrency if 0. Throws a `SettingError` above `max_threads`.
+/// Threads to use: `asked`, or the machine's if 0. Throws a `SettingError` above `max_threads`.
 [[nodiscard]] inline unsigned thread_count(unsigned asked) {
   require_within("threads", asked, 0, max_threads, "");
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
@@ -39,11 +39,11 @@ class IndexTask {
   void (*call_)(const void*, std::size_t);
 };
 
-/// Threads of the user's: `ThreadPool`, or an adaptor to a task scheduler. `threads()` is the number of threads that a
-/// call may use, the caller's included. `for_each(count, task)` calls task(i) once for each i below `count`, on any
-/// threads. Law: `for_each` returns when all calls have returned. While it waits it runs no task of another call
-/// (oneTBB: by `this_task_arena::isolate`). If several threads share an executor, they may call it at once. Not
-/// required: tasks that run at the same time; an order; handling of exceptions, as the library's tasks throw none.
+/// Threads of the user's: `ThreadPool`, or an adaptor to a task scheduler. `threads()`: number of
+/// threads that a call may use, with the caller's. `for_each(count, task)` calls task(i) once for
+/// each i below `count`, on any threads. Law: it returns after all calls, and while it waits runs
+/// no task of another call (oneTBB: `this_task_arena::isolate`). Threads may share an executor. Not
+/// required: tasks at the same time; an order; exceptions, as the library's tasks throw none.
 template <class E>
 concept Executor = requires(E& e, std::size_t count, const IndexTask& task) {
   { e.threads() } -> std::convertible_to<unsigned>;
@@ -58,7 +58,7 @@ concept MemoryKeepingExecutor = Executor<E> && requires(E& e) {
   { e.memory() } -> std::same_as<ScratchMemory&>;
 };
 
-/// Reference to an executor, or none. Refers to the executor, which must outlive it; temporaries are refused.
+/// Reference to an executor, or none. The executor must outlive it; temporaries are refused.
 class ExecutorRef {
  public:
   ExecutorRef() = default;
@@ -111,7 +111,7 @@ class ExecutorRef {
   const Functions* functions_ = nullptr;
 };
 
-/// Threads for a call: a number of them, which live for the call, or an executor. Converts from either.
+/// Threads for a call: a number of them, which live for the call, or an executor.
 class Workers {
  public:
   /// Up to `threads` threads with the caller's; 0 as in `thread_count`.
@@ -120,7 +120,7 @@ class Workers {
   template <class E>
   requires Executor<E> Workers(E& executor)
   noexcept : executor_(executor) {}
-  /// Up to `threads` threads of an executor, 0 for all of its threads; without an executor as above.
+  /// Up to `threads` threads of an executor, 0 for all of them; without an executor as above.
   Workers(ExecutorRef executor, unsigned threads) noexcept : executor_(executor), threads_(threads) {}
 
   /// Number of threads. Throws a `SettingError` above `max_threads`.
@@ -153,7 +153,7 @@ class IndexLoop {
       }
   }
   [[nodiscard]] bool exhausted() const noexcept { return next_ >= count_; }
-  /// Rethrows the first exception of a task, if there is one. Due when all calls of `work` have returned.
+  /// Rethrows the first exception of a task, if any. Due when all calls of `work` have returned.
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -179,9 +179,9 @@ inline void work_on_threads(IndexLoop& loop, std::size_t threads) {
 
 }  // namespace detail
 
-/// Calls task(i) once for each i below `count`, low ones first, on up to as many threads as `workers` says. Tasks that
-/// share no data need no lock. Starts no thread for a single index, and none with an executor. Rethrows the exception
-/// of a task, or one of several; indices not yet begun are then skipped.
+/// Calls task(i) once for each i below `count`, low ones first, on as many threads as `workers`
+/// says. Starts none for a single index, or with an executor. Rethrows the exception of a task, or
+/// one of several; indices not yet begun are then skipped.
 inline void for_each_index(std::size_t count, const Workers& workers, const IndexTask& task) {
   detail::IndexLoop loop(count, task);
   const std::size_t threads = std::min<std::size_t>(workers.count(), count);

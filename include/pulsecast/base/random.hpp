@@ -6,12 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/tick.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Purpose of a random number; numbers for different purposes are independent. Results depend on the values, so they
-/// never change and new ones come last. Values 128 to 255 are free for user models: `Purpose{128}`.
+/// Purpose of a random number; numbers for different purposes are independent. Results depend on
+/// the values: new ones come last. 128 to 255 are free for user models: `Purpose{128}`.
 enum class Purpose : std::uint32_t {
   range_noise = 0,
   position_noise = 1,
@@ -35,26 +36,20 @@ struct RandomKey {
   PulseIndex pulse = 0;              ///< number of the pulse, or of another draw
   std::uint32_t subray = 0;          ///< number of the subray, or of another draw
   Purpose purpose = Purpose::scene;  ///< purpose of the draw
-  std::uint32_t part = 0;            ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
+  std::uint32_t part = 0;            ///< part of the scene, below 2^24
 };
 
 namespace detail {
 
-/// Polynomial in x by Horner's rule, its coefficients from the highest power down.
-template <class... Lower>
-[[nodiscard]] constexpr double polynomial(double x, double value, Lower... lower) noexcept {
-  ((value = value * x + lower), ...);
-  return value;
-}
+[[nodiscard]] constexpr std::uint32_t low32(std::uint64_t word) noexcept { return static_cast<std::uint32_t>(word); }
+[[nodiscard]] constexpr std::uint32_t high32(std::uint64_t word) noexcept { return low32(word >> 32); }
 
-/// Philox4x32-10 generator: four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011.
-[[nodiscard]] constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
-                                                            std::array<std::uint32_t, 2> key) noexcept {
+/// Philox4x32-10 generator: four random words. Source: Salmon, Moraes, Dror & Shaw 2011.
+[[nodiscard]] constexpr auto philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) noexcept {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t a = std::uint64_t{0xD2511F53} * counter[0];
     const std::uint64_t b = std::uint64_t{0xCD9E8D57} * counter[2];
-    counter = {static_cast<std::uint32_t>(b >> 32) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(b),
-               static_cast<std::uint32_t>(a >> 32) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(a)};
+    counter = {high32(b) ^ counter[1] ^ key[0], low32(b), high32(a) ^ counter[3] ^ key[1], low32(a)};
     key[0] += 0x9E3779B9;
     key[1] += 0xBB67AE85;
   }
@@ -63,12 +58,11 @@ template <class... Lower>
 
 }  // namespace detail
 
-/// Four random words of a key. Purposes are below 256, so the part takes the upper bits of their word.
+/// Four random words of a key. Purposes are below 256; the part takes the bits above.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> random_words(const RandomKey& k) noexcept {
   const std::uint32_t purpose = static_cast<std::uint32_t>(k.purpose) ^ k.part << 8;
-  return detail::philox(
-      {static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, purpose},
-      {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
+  using namespace detail;
+  return philox({low32(k.pulse), high32(k.pulse), k.subray, purpose}, {low32(k.seed), high32(k.seed)});
 }
 
 /// Uniform draw from the open interval (0, 1), so that its logarithm is finite; 52 random bits.
@@ -81,7 +75,7 @@ template <class... Lower>
 /// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source:
 /// Wichura 1988, algorithm AS 241 (PPND16).
 [[nodiscard]] inline double normal_quantile(double p) noexcept {
-  using detail::polynomial;
+  using simd::detail::polynomial;
   const double q = p - 0.5;
   if (std::fabs(q) <= 0.425) {
     const double r = 0.180625 - q * q;

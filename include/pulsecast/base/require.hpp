@@ -10,7 +10,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/optional_member.hpp>
 
-/// Asserts a condition that only a bug of the caller can break; checked in debug builds, on the hot path too.
+/// Asserts a condition that only a bug of the caller can break, in debug builds.
 #define PULSECAST_ASSERT(condition) assert(condition)
 
 namespace PULSECAST_NAMESPACE {
@@ -18,8 +18,8 @@ namespace PULSECAST_NAMESPACE {
 /// Limit of angles [rad]: one turn, and room for rounding.
 inline constexpr double max_angle = 6.2831854;
 
-/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than
-/// 1 Hz. Separate from the checks, so that these stay small when inlined.
+/// Throws a `SettingError`. Asks about the unit for angles beyond a turn and rates below 1 Hz.
+/// Separate from the checks, so that these stay small when inlined.
 [[noreturn]] inline void throw_setting_error(std::string_view field, double value, std::string_view unit,
                                              std::string_view allowed) {
   const bool degrees = unit == "rad" && std::isfinite(value) && std::fabs(value) > max_angle;
@@ -35,8 +35,8 @@ inline void require_positive(std::string_view field, double value, std::string_v
   if (!(value > 0) || !std::isfinite(value)) throw_setting_error(field, value, unit, "finite and greater than 0");
 }
 
-/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` resolves the phase of
-/// 1e12 Hz to some 1e-4 of a cycle.
+/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12], where a `Tick` resolves 1e-4 of a
+/// cycle.
 inline void require_rate(std::string_view field, double value) {
   if (!(value > 0 && value <= 1e12)) throw_setting_error(field, value, "Hz", "greater than 0 and at most 1e12");
 }
@@ -54,8 +54,7 @@ inline void require_finite(std::string_view field, double value, std::string_vie
 namespace detail {
 [[noreturn]] inline void refuse_outside(std::string_view field, double value, double low, double high,
                                         std::string_view unit) {
-  throw_setting_error(field, value, unit,
-                      std::string("from ").append(text::to_text(low)).append(" to ").append(text::to_text(high)));
+  throw_setting_error(field, value, unit, text::joined({"from ", text::to_text(low), " to ", text::to_text(high)}));
 }
 }  // namespace detail
 
@@ -71,7 +70,7 @@ inline void require_angle(std::string_view field, double value) {
 
 struct Laser;
 
-/// Settings that refuse values out of range, by a `SettingError` when the stage that holds them is made.
+/// Settings that refuse values out of range, by a `SettingError` when their stage is made.
 template <class Settings>
 concept Validated = requires(const Settings& settings) {
   { settings.validate() } -> std::same_as<void>;
@@ -83,7 +82,7 @@ concept ValidatesLaser = requires(const Instrument& detector, const Laser& laser
   { detector.validate(laser) } -> std::same_as<void>;
 };
 
-/// Settings with rotations: `normalize()` makes them unit after `validate()` has accepted their norms.
+/// Settings with rotations: `normalize()` makes them unit, after `validate()`.
 template <class Settings>
 concept Normalizable = requires(Settings& settings) {
   { settings.normalize() }

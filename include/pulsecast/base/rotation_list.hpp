@@ -21,8 +21,8 @@ struct AxisAngle {
   }
 };
 
-/// Extrinsic rotations in sequence, each about an axis of the fixed outer frame: `extrinsic({{axis::right, -90_deg},
-/// {axis::up, 90_deg}})` tilts a forward view down, then turns it left. Throws a `SettingError` for an invalid turn.
+/// Extrinsic rotations in sequence, each about a fixed axis: `extrinsic({{axis::right, -90_deg},
+/// {axis::up, 90_deg}})` tilts a forward view down, then turns it left. Throws a `SettingError`.
 [[nodiscard]] inline Rotation extrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) {
@@ -32,8 +32,8 @@ struct AxisAngle {
   return normalize(all);
 }
 
-/// Intrinsic rotations in sequence, each about an axis of the rotated frame; equal to `extrinsic`
-/// of the turns in reverse order. Throws a `SettingError` for an invalid turn.
+/// Intrinsic rotations in sequence, each about an axis of the rotated frame: `extrinsic` of the
+/// turns in reverse order.
 [[nodiscard]] inline Rotation intrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) {

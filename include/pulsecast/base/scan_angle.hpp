@@ -10,14 +10,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angle of a beam from the vertical, about the level heading of the body: 0 straight down, positive to the right, in
-/// [-pi, pi] [rad]. It includes the roll of the body. Made from a direction, it is computed where it is read. Source:
-/// ASPRS LAS 1.4 R15, Scan Angle, formats 6 to 10.
+/// Angle of a beam from the vertical, about the level heading of the body: 0 straight down,
+/// positive to the right, in [-pi, pi] [rad]; it includes roll. Made from a direction, it is
+/// computed when read. Source: ASPRS LAS 1.4 R15, Scan Angle, formats 6 to 10.
 class ScanAngle {
  public:
   ScanAngle() = default;
   /// Of an angle [rad].
-  ScanAngle(double angle) noexcept : right_(angle), down_(none) {}  // NOLINT: is read and written as a number
+  ScanAngle(double angle) noexcept : right_(angle), down_(none) {}  // NOLINT: is a number
   /// Of a direction with these components to the right and down, of any length.
   ScanAngle(double right, double down) noexcept : right_(std::isnan(down) ? down : right), down_(down) {}
 

@@ -29,7 +29,7 @@ class ScratchItem {
 /// whether it `fits(need)`, and if not, whether it is `outdated(need)`: no later call can use it.
 class ScratchMemory {
  public:
-  /// Removes an object of type T that fits; null if there is none. Deletes outdated ones that it comes upon.
+  /// Removes an object of type T that fits; null if none does. Deletes outdated ones on its way.
   template <class T, class Need>
   [[nodiscard]] std::unique_ptr<T> take(const Need& need) noexcept {
     const std::lock_guard lock(mutex_);
@@ -107,9 +107,7 @@ class Borrowed {
     if (memory_) memory_->give_back(std::move(item_));
   }
 
-  /// The object.
   [[nodiscard]] T& operator*() const noexcept { return *item_; }
-  /// Member of the object.
   [[nodiscard]] T* operator->() const noexcept { return item_.get(); }
 
  private:

@@ -23,7 +23,7 @@ namespace PULSECAST_NAMESPACE::detail {
   return first;
 }
 
-/// Indices of the elements of a table before and after a place; twice the outermost one where the place is beyond it.
+/// Indices of the elements before and after a place; twice the outermost one if it is beyond.
 struct Neighbours {
   std::size_t before, behind;
   friend bool operator==(const Neighbours&, const Neighbours&) = default;

@@ -21,8 +21,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access
-/// memory at random, and with small pages the address translation takes longer than the read.
+/// Requests 2 MiB pages, where the system has them, for memory not yet written to: with small
+/// pages, reads at random spend more time in address translation.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
@@ -41,7 +41,7 @@ inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 
 }  // namespace detail
 
-/// Array under construction, uninitialized at first. Several threads may write to different elements. Copies share it.
+/// Array under construction, uninitialized. Threads may write to different elements. Copies share.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class SharedBuffer {

@@ -24,7 +24,8 @@ namespace detail {
   for (std::size_t i = 1; i <= a.size(); ++i) {
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (is_same(a[i - 1], b[j - 1]) ? 0 : 1)});
+      const std::size_t changed = is_same(a[i - 1], b[j - 1]) ? 0 : 1;
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + changed});
       if (i > 1 && j > 1 && is_same(a[i - 1], b[j - 2]) && is_same(a[i - 2], b[j - 1]))
         row[j] = std::min(row[j], before_last[j - 2] + 1);
     }
@@ -53,7 +54,7 @@ struct NearestName {
   return nearest;
 }
 
-/// "; did you mean 'pulseFreq_hz'?", with the nearest of the known names; all of them if none is near.
+/// "; did you mean 'pulseFreq_hz'?", with the nearest known name; all of them if none is near.
 [[nodiscard]] inline std::string suggestion(std::string_view unknown, std::span<const std::string> known) {
   constexpr std::size_t max_listed = 40, longest = 100;
   if (known.empty()) return "";

@@ -55,8 +55,7 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
 [[nodiscard]] inline std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 80;
   std::string out(text.substr(0, longest));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  for (char& c : out) c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   return text::joined({"'", out, text.size() > longest ? "...'" : "'"});
 }
 
@@ -76,8 +75,8 @@ inline std::string_view take_line(std::string_view& text) noexcept {
   return line;
 }
 
-/// Removes a number from the beginning of a text. Empty if there is none, or `Number` cannot hold it; the text is kept
-/// then. `format` may limit the notation of a floating-point number, as in `std::chars_format::fixed`.
+/// Removes a number from the beginning of a text. Empty, and the text is kept, if there is none
+/// that `Number` can hold. `format` may limit its notation, as in `std::chars_format::fixed`.
 template <class Number, class... Format>
 std::optional<Number> take_number(std::string_view& text, Format... format) noexcept {
   Number value{};
@@ -87,7 +86,7 @@ std::optional<Number> take_number(std::string_view& text, Format... format) noex
   return value;
 }
 
-/// Number that makes up a whole text, with a decimal point, and perhaps a plus sign. Empty for anything else, also NaN.
+/// Number that makes up a whole text, perhaps with a plus sign. Empty for all else, and NaN.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view text) noexcept {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);

@@ -18,10 +18,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Threads that are kept from call to call, with the memory of runs: the executor of this library.
-/// The caller of `for_each` works, too, and waits for its own tasks only, so that calls may be
-/// nested. Several threads may use a pool at once. It must outlive its calls. After `fork`, which
-/// copies no threads, the child's calls run on their caller alone.
+/// Threads that are kept from call to call, with the memory of runs: the library's executor. The
+/// caller of `for_each` works, too, and waits for its own tasks only, so calls may be nested, and
+/// threads share a pool. It must outlive its calls. In a child of `fork`, calls run on their caller
+/// alone.
 class ThreadPool {
  public:
   /// Starts `threads` - 1 threads, as the caller is one; 0 as in `thread_count`. Throws a
@@ -43,7 +43,7 @@ class ThreadPool {
   /// Number of threads, the caller's included.
   [[nodiscard]] unsigned threads() const noexcept { return static_cast<unsigned>(helpers_.size()) + 1; }
 
-  /// Calls task(i) once for each i below `count`, low ones first. Allocates nothing. Exceptions as in `for_each_index`.
+  /// Calls task(i) once for each i below `count`, low ones first. Allocates nothing.
   void for_each(std::size_t count, const IndexTask& task) {
     Job job(count, task);
     if (count > 1 && !helpers_.empty() && !forked())

@@ -21,8 +21,8 @@ struct Tick {
   /// Begin of slot i of a source of constant rate [Hz].
   [[nodiscard]] static Tick of(PulseIndex i, double rate) noexcept {
     const double n = static_cast<double>(i);
-    double whole = std::floor(n / rate),
-           rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two candidates
+    double whole = std::floor(n / rate);
+    double rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two
     if (rest < 0) {
       --whole;
       rest = std::fma(-whole, rate, n);
@@ -66,11 +66,11 @@ struct Tick {
   }
 };
 
-/// Index, from 0, of the current step in a cycle of n steps at a constant rate [Hz].
-/// A time between two steps takes the nearer one, so at the pulse rate every pulse takes one step in spite of rounding.
+/// Current step, from 0, in a cycle of n steps at a constant rate [Hz]. A time between two takes
+/// the nearer, so that at the pulse rate every pulse takes one step in spite of rounding.
 [[nodiscard]] inline std::size_t step_in_cycle(const Tick& t, double steps_per_second, std::size_t n) noexcept {
-  const double length = static_cast<double>(n);
-  const auto step = static_cast<std::size_t>(std::floor(t.phase(steps_per_second / length) * length + 0.5));
+  const double length = static_cast<double>(n), place = t.phase(steps_per_second / length) * length;
+  const auto step = static_cast<std::size_t>(std::floor(place + 0.5));
   return step < n ? step : 0;
 }
 

@@ -8,7 +8,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// Rotations in settings. In single precision, or with few decimals, they are unit up to rounding only.
+/// Rotations in settings: in single precision or with few decimals, unit only up to rounding.
 namespace PULSECAST_NAMESPACE {
 
 /// Throws a `SettingError` unless the norm of a rotation is within 1e-3 of 1.

@@ -46,10 +46,10 @@ inline constexpr double planck_constant = 6.62607015e-34;
 inline constexpr double standard_gravity = 9.80665;
 
 /// Converts degrees, as in files and user input, to radians.
-[[nodiscard]] constexpr double radians(double angle_deg) noexcept { return angle_deg * (std::numbers::pi / 180.0); }
+[[nodiscard]] constexpr double radians(double angle_deg) noexcept { return angle_deg * (std::numbers::pi / 180); }
 
 /// Converts radians to degrees, as in files and user output.
-[[nodiscard]] constexpr double degrees(double angle) noexcept { return angle * (180.0 / std::numbers::pi); }
+[[nodiscard]] constexpr double degrees(double angle) noexcept { return angle * (180 / std::numbers::pi); }
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -4,6 +4,7 @@
 #define PULSECAST_BASE_VECTOR_HPP
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -53,15 +54,18 @@ using glm::dot;
 using glm::length;
 using glm::normalize;
 using std::numbers::pi;
+namespace detail {
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+}
 
 namespace axis {
-inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x: east in the world, right of a body or instrument
-inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north in the world, direction of a beam
+inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x: east in the world
+inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north, or along a beam
 inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
 }  // namespace axis
 
 namespace detail {
-/// Rotation of a unit quaternion. Constructors of GLM take the parts in another order with GLM_FORCE_QUAT_CTOR_XYZW.
+/// Rotation of a unit quaternion. GLM_FORCE_QUAT_CTOR_XYZW reorders the parts of constructors.
 [[nodiscard]] inline GLM_CONSTEXPR Rotation rotation_wxyz(double w, double x, double y, double z) noexcept {
   Rotation rotation{};
   rotation.w = w;
@@ -79,7 +83,7 @@ inline const Rotation no_rotation = detail::rotation_wxyz(1, 0, 0, 0);  ///< ide
   return glm::angleAxis(angle, normalize(axis));
 }
 
-/// Rotation matrix: its columns are the rotated x, y and z. Cheaper than the quaternion for more than one vector.
+/// Rotation matrix: columns are the rotated x, y, z. Cheaper than a quaternion for several vectors.
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 /// Matrix of a unit quaternion.
 [[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }

@@ -13,13 +13,12 @@
 #include <pulsecast/base/simd.hpp>
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored \
-    "-Wpsabi"  // of vectors wider than a register: all functions are inlined, so that none is passed
+#pragma GCC diagnostic ignored "-Wpsabi"  // of wide vectors: all functions are inlined
 
-/// Elementary functions of a number or of all lanes of a vector, without tables and branches by lane. Without
-/// contraction of products and sums (`-ffp-contract=off`), a lane has the bits that the plain number gives, whatever
-/// the number of lanes and the instruction set. With contraction the errors below hold, but the last bits differ.
-/// Errors are in units in the last place of the result (ulp).
+/// Elementary functions of a number or of all lanes of a vector, without tables and branches by
+/// lane. Without contraction of products and sums (`-ffp-contract=off`), a lane has the bits of the
+/// plain number, for any number of lanes and instruction set; with it, the last bits differ. Errors
+/// are in units in the last place of the result (ulp).
 namespace PULSECAST_NAMESPACE::simd {
 
 /// Sine and cosine of the same angle.
@@ -39,7 +38,8 @@ inline constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
 /// `x` with the sign of `sign`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V with_sign(const V& x, const V& sign) noexcept {
-  return std::bit_cast<V>(static_cast<Bits<V>>((bits_of(x) & ~sign_bit) | (bits_of(sign) & sign_bit)));
+  const Bits<V> bits = (bits_of(x) & ~sign_bit) | (bits_of(sign) & sign_bit);
+  return std::bit_cast<V>(bits);
 }
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V magnitude(const V& x) noexcept {
@@ -57,13 +57,13 @@ template <class V>
 /// products with 33 bits are exact.
 inline constexpr double greatest_angle = 1e6;
 
-/// Angle less its nearest multiple of pi/2, as a sum of two numbers, and the number of quarter turns.
+/// Angle less its nearest multiple of pi/2, as a sum of two numbers, and the quarter turns.
 template <class V>
 struct Reduced {
   V high, low;
   Bits<V> quarters;  ///< exact in the two lowest bits
 };
-/// Source: Cody & Waite 1980, and fdlibm e_rem_pio2.c for pi/2 in three parts; two-sum of Knuth, TAOCP vol. 2, 4.2.2.
+/// Source: Cody & Waite 1980; fdlibm e_rem_pio2.c for pi/2; two-sum: Knuth, TAOCP vol. 2, 4.2.2.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline Reduced<V> reduced(const V& x) noexcept {
   constexpr double per_quarter = 6.36619772367581382433e-01, whole = 0x1.8p52;
@@ -84,7 +84,7 @@ template <class V>
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V short_sine(const V& high, const V& low) noexcept {
   const V z = high * high, v = z * high;
-  const V r = 8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * 2.75573137070700676789e-06) +
+  const V r = polynomial(z, 2.75573137070700676789e-06, -1.98412698298579493134e-04, 8.33333333332248946124e-03) +
               z * (z * z) * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10);
   return high - ((z * (0.5 * low - v * r) - low) + v * 1.66666666666666324348e-01);
 }
@@ -92,8 +92,9 @@ template <class V>
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V short_cosine(const V& high, const V& low) noexcept {
   const V z = high * high, w = z * z;
-  const V r = z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * 2.48015872894767294178e-05)) +
-              w * w * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11));
+  const V r =
+      z * polynomial(z, 2.48015872894767294178e-05, -1.38888888888741095749e-03, 4.16666666666666019037e-02) +
+      w * w * polynomial(z, -1.13596475577881948265e-11, 2.08757232129817482790e-09, -2.75573143513906633035e-07);
   const V half = 0.5 * z, most = 1.0 - half;
   return most + (((1.0 - most) - half) + (z * r - high * low));
 }
@@ -115,24 +116,25 @@ template <class V>
   std::memcpy(&both.cos, cosines, sizeof x);
 }
 
-/// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
+/// Natural logarithm of positive, normal numbers; error at most 1 ulp. Source: fdlibm e_log.c.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
-  constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
+  constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000;
   const Bits<V> shifted = bits_of(x) + (one - root_half);
-  const V k = std::bit_cast<V>(static_cast<Bits<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
-  const V f = std::bit_cast<V>(static_cast<Bits<V>>((shifted & fraction) + root_half)) - 1.0;
+  const Bits<V> whole = ((shifted >> 52) & 0xfff) | 0x4330000000000000,
+                part = (shifted & 0x000fffffffffffff) + root_half;
+  const V k = std::bit_cast<V>(whole) - (0x1p52 + 1023), f = std::bit_cast<V>(part) - 1.0;
   const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
-  const V r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
-              z * (6.666666666666735130e-01 +
-                   w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  const V r = w * polynomial(w, 1.531383769920937332e-01, 2.222219843214978396e-01, 3.999999999940941908e-01) +
+              z * polynomial(w, 1.479819860511658591e-01, 1.818357216161805012e-01, 2.857142874366239149e-01,
+                             6.666666666666735130e-01);
   return k * 6.93147180369123816490e-01 -
          ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
 }
 }  // namespace detail
 
-/// Sine and cosine of angles [rad]; errors at most 1 ulp. sin(+-0) = +-0 and cos(0) = 1; NaN for infinities and NaN.
-/// Lanes beyond a million radians are computed by the C library one by one. Source: fdlibm s_sin.c.
+/// Sine and cosine of angles [rad]; errors at most 1 ulp. sin(+-0) = +-0; NaN for infinities and
+/// NaN. Beyond a million radians the C library computes them, lane by lane. Source: fdlibm s_sin.c.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline SineCosine<V> sincos(const V& x) noexcept {
   const detail::Reduced<V> angle = detail::reduced(x);
@@ -164,8 +166,8 @@ template <class V>
   return sincos(x).cos;
 }
 
-/// Angle of (x, y) from the x axis, in [-pi, pi] [rad], with the signed zeros and infinities of `std::atan2`; error at
-/// most 2 ulp. Source: fdlibm s_atan.c, with the quotient reduced before the division.
+/// Angle of (x, y) from the x axis, in [-pi, pi] [rad]; zeros and infinities as of `std::atan2`;
+/// error at most 2 ulp. Source: fdlibm s_atan.c, with the quotient reduced before the division.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V atan2(const V& y, const V& x) noexcept {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -175,18 +177,15 @@ template <class V>
   const V scale = larger > 0x1p1000 ? zero + 0x1p-60 : one;  // keeps 2 m + n finite
   const V m = larger == infinity ? one : (larger == 0.0 ? one : larger * scale);
   const V n = larger == infinity ? (smaller == infinity ? one : zero) : smaller * scale;
-  const auto half = n > 0.4375 * m, whole = n > 0.6875 * m;  // turns back by atan(1/2), or by atan(1)
+  const auto half = n > 0.4375 * m, whole = n > 0.6875 * m;  // turned by atan(1/2), or atan(1)
   const V q = (whole ? n - m : (half ? 2.0 * n - m : n)) / (whole ? n + m : (half ? 2.0 * m + n : m));
   const V z = q * q, w = z * z;
-  const V even = z * (3.33333333333329318027e-01 +
-                      w * (1.42857142725034663711e-01 +
-                           w * (9.09088713343650656196e-02 +
-                                w * (6.66107313738753120669e-02 +
-                                     w * (4.97687799461593236017e-02 + w * 1.62858201153657823623e-02)))));
+  const V even =
+      z * detail::polynomial(w, 1.62858201153657823623e-02, 4.97687799461593236017e-02, 6.66107313738753120669e-02,
+                             9.09088713343650656196e-02, 1.42857142725034663711e-01, 3.33333333333329318027e-01);
   const V odd =
-      w * (1.99999999998764832476e-01 +
-           w * (1.11111104054623557880e-01 +
-                w * (7.69187620504482999495e-02 + w * (5.83357013379057348645e-02 + w * 3.65315727442169155270e-02))));
+      w * detail::polynomial(w, 3.65315727442169155270e-02, 5.83357013379057348645e-02, 7.69187620504482999495e-02,
+                             1.11111104054623557880e-01, 1.99999999998764832476e-01);
   const V part = q - q * (even - odd);
   const V back = whole ? zero + 7.85398163397448278999e-01 : (half ? zero + 4.63647609000806093515e-01 : zero);
   const V back_low = whole ? zero + 3.06161699786838301793e-17 : (half ? zero + 2.26987774529616870924e-17 : zero);
@@ -200,17 +199,17 @@ template <class V>
   return x == x ? (y == y ? detail::with_sign(angle, y) : nan) : nan;
 }
 
-/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: as of `log_of_normal`.
+/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: `log_of_normal`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
-  constexpr double least = std::numeric_limits<double>::min(), infinity = std::numeric_limits<double>::infinity();
+  using Limits = std::numeric_limits<double>;
   constexpr double binades = 54 * 6.93147180559945309417e-01;
   const V zero{};
-  const auto subnormal = x < least;
+  const auto subnormal = x < Limits::min();
   const V scaled = detail::log_of_normal(subnormal ? V(x * 0x1p54) : x);
   const V value = subnormal ? scaled - binades : scaled;
-  const V edge = x == infinity ? x : (x == 0.0 ? zero - infinity : zero + std::numeric_limits<double>::quiet_NaN());
-  return x > 0.0 ? (x < infinity ? value : edge) : edge;
+  const V edge = x == Limits::infinity() ? x : (x == 0.0 ? zero - Limits::infinity() : zero + Limits::quiet_NaN());
+  return x > 0.0 ? (x < Limits::infinity() ? value : edge) : edge;
 }
 
 /// base^exponent for a base of at least 0, as e^(exponent ln base). Error at most 4 + 2
