@@ -43,9 +43,9 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 
   constexpr double least = -708;
   const Number shifted = x * per_ln2 + whole, n = shifted - whole;
   const Number r = (x - n * ln2_high) - n * ln2_low;
-  const Number series =
-      simd::detail::polynomial(r, 1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
-                               1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0);
+  using simd::detail::polynomial;
+  const Number series = polynomial(r, 1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
+                                   1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0);
   const Bits exponent = (std::bit_cast<Bits>(shifted) + 1023) << 52;
   return x < least ? Number{} : series * std::bit_cast<Number>(exponent);
 }

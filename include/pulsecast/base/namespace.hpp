@@ -42,9 +42,9 @@
 #define PULSECAST_QUATERNIONS
 #endif
 #if defined(GLM_FORCE_QUAT_CTOR_XYZW)  // of GLM 1.0
-#define PULSECAST_CONSTRUCTORS ::inline constructors_xyzw
+#define PULSECAST_CTORS ::inline constructors_xyzw
 #else
-#define PULSECAST_CONSTRUCTORS
+#define PULSECAST_CTORS
 #endif
 #if defined(_GLIBCXX_DEBUG) || (defined(_LIBCPP_DEBUG) && _LIBCPP_DEBUG > 0) || defined(_LIBCPP_ENABLE_DEBUG_MODE)
 #define PULSECAST_CONTAINERS ::inline checked_containers
@@ -58,8 +58,8 @@
 #else
 #define PULSECAST_LIBRARY
 #endif
-#define PULSECAST_NAMESPACE                                                                             \
-  pulsecast::inline PULSECAST_INSTRUCTIONS PULSECAST_FUSED PULSECAST_QUATERNIONS PULSECAST_CONSTRUCTORS \
-      PULSECAST_CONTAINERS PULSECAST_LIBRARY
+#define PULSECAST_NAMESPACE                                                                                           \
+  pulsecast::inline PULSECAST_INSTRUCTIONS PULSECAST_FUSED PULSECAST_QUATERNIONS PULSECAST_CTORS PULSECAST_CONTAINERS \
+      PULSECAST_LIBRARY
 
 #endif

@@ -41,32 +41,33 @@ inline constexpr bool members_checked = promise_kept<T> && (Tags::template check
 /// Defines the tag of a refinement, the concept `Model` of one optional member `name`. A type has
 /// the member if it is accessible, or callable with the arguments `call`. A last argument `&& ...`
 /// excepts types `T` with a member of that name for another purpose.
-#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                                     \
-  namespace tag {                                                                                                   \
-  struct Model {                                                                                                    \
-    template <class T>                                                                                              \
-    static constexpr bool right =                                                                                   \
-        pulsecast::Model<T> || !(                                                                                   \
-                                   requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__);         \
-    template <class T, bool promised = false>                                                                       \
-    static consteval bool checked() {                                                                               \
-      static_assert(right<T>, "optional member '" #name "' has another form here; it must be: " form);              \
-      static_assert(pulsecast::Model<T> || !promised,                                                               \
-                    "optional member '" #name "' is promised by `refinements`, but is missing; it must be: " form); \
-      return true;                                                                                                  \
-    }                                                                                                               \
-  };                                                                                                                \
+#define PULSECAST_OPTIONAL_MEMBER(Model, form, name, call, ...)                                             \
+  namespace tag {                                                                                           \
+  struct Model {                                                                                            \
+    template <class T>                                                                                      \
+    static constexpr bool right =                                                                           \
+        pulsecast::Model<T> || !(                                                                           \
+                                   requires(T & t) { t.name call; } || requires { &T::name; } __VA_ARGS__); \
+    template <class T, bool promised = false>                                                               \
+    static consteval bool checked() {                                                                       \
+      static_assert(right<T>, "optional member '" #name "' has another form here; it must be: " form);      \
+      static_assert(pulsecast::Model<T> || !promised, "optional member '" #name                             \
+                                                      "' is promised by `refinements`, but is "             \
+                                                      "missing; it must be: " form);                        \
+      return true;                                                                                          \
+    }                                                                                                       \
+  };                                                                                                        \
   }
 
-/// Defines the concept `Model` of types with a constant `static constexpr bool name = true`, and
+/// Defines the concept `M` of types with a constant `static constexpr bool name = true`, and
 /// its checks. A constant that is false is as one that is absent.
-#define PULSECAST_OPTIONAL_CONSTANT(Model, name)                                                     \
-  template <class T>                                                                                 \
-  concept Model = std::same_as<decltype(T::name), const bool> && std::bool_constant<T::name>::value; \
-  PULSECAST_OPTIONAL_MEMBER(                                                                         \
-      Model, "static constexpr bool " #name " = true", name, (), &&!requires {                       \
-        requires std::same_as<decltype(T::name), const bool>;                                        \
-        typename std::bool_constant<T::name>;                                                        \
+#define PULSECAST_OPTIONAL_CONSTANT(M, name)                                                     \
+  template <class T>                                                                             \
+  concept M = std::same_as<decltype(T::name), const bool> && std::bool_constant<T::name>::value; \
+  PULSECAST_OPTIONAL_MEMBER(                                                                     \
+      M, "static constexpr bool " #name " = true", name, (), &&!requires {                       \
+        requires std::same_as<decltype(T::name), const bool>;                                    \
+        typename std::bool_constant<T::name>;                                                    \
       })
 
 #endif

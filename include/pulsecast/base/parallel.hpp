@@ -171,7 +171,7 @@ inline void work_on_threads(IndexLoop& loop, std::size_t threads) {
   std::unique_ptr<std::jthread[]> helpers;
   try {
     helpers = std::make_unique<std::jthread[]>(threads - 1);
-    for (std::size_t k = 0; k + 1 < threads; ++k) helpers[k] = std::jthread([&loop] { loop.work(); });
+    for (std::size_t k = 0; k + 1 < threads; ++k) helpers[k] = std::jthread(&IndexLoop::work, &loop);
   } catch (...) {  // no more threads available: the existing ones do all the work
   }
   loop.work();

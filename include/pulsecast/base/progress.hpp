@@ -20,12 +20,12 @@ struct Progress {
   double seconds = 0;        ///< time since the start of the run [s]
 };
 
-/// Function of the user's that is called with the `Progress` of a run, or none. Copies share the function.
+/// Function that is called with the `Progress` of a run, or none. Copies share the function.
 // std::function and its header would be a fiftieth of the cost of a small program
 class ProgressCallback {
  public:
   ProgressCallback() = default;
-  /// Takes a function, which may have state; none if it is a null pointer or an empty std::function.
+  /// Takes a function, which may have state; none if it is null or an empty std::function.
   template <class Function>
   requires(!std::same_as<Function, ProgressCallback> && std::is_invocable_v<Function&, const Progress&>)
       ProgressCallback(Function function) {

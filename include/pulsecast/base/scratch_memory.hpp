@@ -107,8 +107,8 @@ class Borrowed {
     if (memory_) memory_->give_back(std::move(item_));
   }
 
-  [[nodiscard]] T& operator*() const noexcept { return *item_; }
-  [[nodiscard]] T* operator->() const noexcept { return item_.get(); }
+  [[nodiscard]] T& operator*() const noexcept { return *item_; }        ///< the object
+  [[nodiscard]] T* operator->() const noexcept { return item_.get(); }  ///< its member
 
  private:
   ScratchMemory* memory_;

@@ -3,19 +3,14 @@
 #ifndef PULSECAST_GEOMETRY_BOX_HPP
 #define PULSECAST_GEOMETRY_BOX_HPP
 
-#include <limits>
-
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Axis-aligned box between two corners [m]; empty by default, so that the first extension sets it.
 struct Box {
-  /// Lower corner [m].
-  Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-           std::numeric_limits<double>::infinity()};
-  /// Upper corner [m].
-  Vec3 max = -min;
+  Vec3 min = Vec3(detail::infinity);  ///< lower corner [m]
+  Vec3 max = -min;                    ///< upper corner [m]
 
   /// True if a lower coordinate exceeds its upper one.
   [[nodiscard]] bool empty() const noexcept { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }

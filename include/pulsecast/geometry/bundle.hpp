@@ -20,40 +20,40 @@ using PrimitiveIndex = std::uint32_t;
 
 /// Properties shared by the rays of a bundle.
 struct BundleOrigin {
-  Vec3 origin{};                                         ///< common origin of the rays [m]
-  double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
-  double near = 0;                                       ///< hits are farther than this range, at least 0 [m]
-  double far = std::numeric_limits<double>::infinity();  ///< hits are not beyond this range [m]
-  std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
+  Vec3 origin{};                  ///< common origin of the rays [m]
+  double direction_length = 1;    ///< 1 in the world, 1/scale in an instance
+  double near = 0;                ///< hits are farther, at least 0 [m]
+  double far = detail::infinity;  ///< hits are not beyond [m]
+  std::size_t size = 0;           ///< rays in use, at most `RayBundle::capacity`
 
   double wavelength = 1.064e-6;    ///< wavelength of the light [m]
   Tick tick{};                     ///< departure of the pulse
-  std::uint64_t seed = 0;          ///< key, with the next two, of every random number that tracing may draw
+  std::uint64_t seed = 0;          ///< key, with the next two, of random numbers in tracing
   PulseIndex pulse = 0;            ///< index of the pulse
   std::uint32_t first_subray = 0;  ///< number of ray 0 among the subrays of its pulse
 };
 
-/// Rays from one origin into a narrow cone: the subrays of a pulse, or some of them. A single ray is a bundle of one.
-/// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops. All directions have the same
-/// length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
+/// Rays from one origin into a narrow cone: the subrays of a pulse, or some of them. Structure of
+/// arrays, padded with idle lanes to a multiple of `lanes`. All directions have the same length: 1
+/// in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;             ///< greatest number of rays
   static constexpr std::size_t lanes = simd::lane_count;  ///< divisor of `padded_size()`
 
   using Column = std::array<double, capacity>;  ///< one number per ray
 
-  alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
-  Vec3 directions_min;  ///< minimum of each component of the directions, NaN left out; infinite if nothing is left
-  Vec3 directions_max;  ///< their maximum
+  alignas(64) Column x, y, z;  ///< components of the directions; `padded_size()` are set
+  Vec3 directions_min;         ///< minimum of each component of the directions but NaN, or infinity
+  Vec3 directions_max;         ///< their maximum
 
   RayBundle() noexcept {}  // leaves the directions unset
-  /// Takes the common properties, and leaves the directions unset.
+  /// Leaves the directions unset.
   explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
   /// Copies the directions in use only.
   RayBundle(const RayBundle& other) noexcept : RayBundle(static_cast<const BundleOrigin&>(other)) {
     copy_directions(other);
   }
-  /// Copies the directions in use only.
+  /// As above.
   RayBundle& operator=(const RayBundle& other) noexcept {
     static_cast<BundleOrigin&>(*this) = other;
     copy_directions(other);
@@ -66,13 +66,12 @@ struct RayBundle : BundleOrigin {
   [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
   /// Ray j.
   [[nodiscard]] Ray ray(std::size_t j) const noexcept {
-    return {origin, direction(j), near, far, tick, seed, pulse, first_subray + static_cast<std::uint32_t>(j)};
+    return {origin, direction(j), near, far, tick, seed, pulse, static_cast<std::uint32_t>(first_subray + j)};
   }
   /// Range that ray j has to be beyond to count [m].
   [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
-  /// Bounds of the k-th component of the directions.
   [[nodiscard]] double direction_min(int k) const noexcept { return directions_min[k]; }
-  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }  ///< as above
+  [[nodiscard]] double direction_max(int k) const noexcept { return directions_max[k]; }
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {
@@ -88,14 +87,14 @@ struct RayBundle : BundleOrigin {
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
     const Column* const columns[] = {&x, &y, &z};
     if (size == 1) {
-      const auto number = [](double d, double otherwise) noexcept { return std::isnan(d) ? otherwise : d; };
-      constexpr double infinity = std::numeric_limits<double>::infinity();
+      using detail::infinity;
+      const auto number = [](double d, double other) noexcept { return std::isnan(d) ? other : d; };
       directions_min = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
       directions_max = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
       return;
     }
     for (int k = 0; k < 3; ++k) {
-      simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high = -low;
+      simd::Doubles low = simd::Doubles{} + detail::infinity, high = -low;
       for (std::size_t j = 0; j < size; j += simd::lane_count) {
         const simd::Doubles d = simd::load<simd::Doubles>((*columns[k])[j]);
         low = simd::min(d, low);  // NaN fails every comparison
@@ -121,13 +120,12 @@ struct RayBundle : BundleOrigin {
 /// Bundle whose rays begin at different ranges, such as where they leave a mirror. `near` is at
 /// most their minimum. Triangles respect the ranges; other shapes may be hit before a ray begins.
 struct StaggeredBundle : RayBundle {
-  alignas(64) Column begin;  ///< ray j has no hits up to this range; set for `padded_size()` rays [m]
+  alignas(64) Column begin;  ///< ray j has no hits up to it; `padded_size()` are set [m]
 
   StaggeredBundle() noexcept {}
-  /// Takes the common properties, and leaves the directions and ranges unset.
-  explicit StaggeredBundle(const BundleOrigin& o) noexcept : RayBundle(o) {}
+  explicit StaggeredBundle(const BundleOrigin& o) noexcept : RayBundle(o) {}  ///< as `RayBundle`
   /// Ranges of the rays of a register from j on [m].
-  [[nodiscard]] simd::Doubles near_of(std::size_t j) const noexcept { return simd::load<simd::Doubles>(begin[j]); }
+  [[nodiscard]] auto near_of(std::size_t j) const noexcept { return simd::load<simd::Doubles>(begin[j]); }
 };
 
 /// Bundle of one ray.
@@ -148,17 +146,15 @@ struct StaggeredBundle : RayBundle {
 
 namespace detail {
 /// A range, or minus infinity for NaN.
-[[nodiscard]] inline double limit_of(double range) noexcept {
-  return range > -std::numeric_limits<double>::infinity() ? range : -std::numeric_limits<double>::infinity();
-}
+[[nodiscard]] inline double limit_of(double at) noexcept { return at > -infinity ? at : -infinity; }
 }  // namespace detail
 
-/// Closest hit so far of each ray of a bundle, or of a single ray. At exactly equal range the smallest id wins.
+/// Closest hit so far of each ray of a bundle, or of one ray. Of equal ranges the least id wins.
 template <std::size_t capacity>
 struct Closest {
-  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
+  static constexpr std::uint64_t none = ~std::uint64_t{0};  ///< id of no hit
 
-  alignas(capacity > 1 ? 64 : 8) std::array<double, capacity> range;  ///< range of the hit [m]; `far` without a hit
+  alignas(capacity > 1 ? 64 : 8) std::array<double, capacity> range;  ///< [m]; `far` without a hit
   /// Part in the upper half, primitive in the lower; `none` without a hit.
   alignas(capacity > 1 ? 64 : 8) std::array<std::uint64_t, capacity> id;
   std::uint64_t part = 0;  ///< part under test, in the upper half
@@ -170,7 +166,7 @@ struct Closest {
       std::fill_n(id.begin() + j, RayBundle::lanes, none);
     }
     for (std::size_t j = rays.size; j < rays.padded_size(); ++j)
-      range[j] = -std::numeric_limits<double>::infinity();  // an idle lane hits nothing
+      range[j] = -detail::infinity;  // an idle lane hits nothing
   }
   /// No hit so far of a single ray, up to a range [m].
   explicit Closest(double far) noexcept requires(capacity == 1) : range{far}, id{none} {}
@@ -186,7 +182,6 @@ struct Closest {
     return static_cast<PrimitiveIndex>(id[slot(j)]);
   }
 
-  /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.
   void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
     const std::uint64_t candidate = part | primitive;
     if (at < range[slot(j)] || (at == range[slot(j)] && candidate < id[slot(j)])) {
@@ -195,13 +190,11 @@ struct Closest {
     }
   }
 
-  /// Largest range at which ray j can still find a closer hit [m].
   [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[slot(j)]; }
-  /// Largest range at which any ray can still find a closer hit [m]; minus infinity for NaN.
   template <class Rays>
   [[nodiscard]] double limit(const Rays& rays) const noexcept {
     if constexpr (capacity > 1) {
-      simd::Doubles last = simd::Doubles{} - std::numeric_limits<double>::infinity();
+      simd::Doubles last = simd::Doubles{} - detail::infinity;
       for (std::size_t j = 0; j < rays.size; j += simd::lane_count)
         last = simd::max(simd::load<simd::Doubles>(range[j]), last);
       return simd::max(last);
@@ -217,13 +210,12 @@ struct Closest {
 using ClosestHits = Closest<RayBundle::capacity>;  ///< of a bundle
 using ClosestHit = Closest<1>;                     ///< of a single ray
 
-/// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still
-/// takes any [m], `limit(rays)` that of all rays; `part` is the part under test, in the upper half.
+/// Hits of a bundle or a single ray that a shape offers to. `limit_of(j)`: range up to which ray j
+/// takes any [m], `limit(rays)`: that of all; `part` is the part under test, in the upper half.
 template <class H, class Rays>
-concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, PrimitiveIndex primitive,
-                          std::uint64_t part) {
-  hits.part = part;
-  hits.offer(j, at, primitive);
+concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, PrimitiveIndex i) {
+  hits.part = std::uint64_t{};
+  hits.offer(j, at, i);
   { hits.limit_of(j) } -> std::same_as<double>;
   { hits.limit(rays) } -> std::same_as<double>;
 };

@@ -11,8 +11,8 @@
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
-/// A single ray in flight, and what it may look for: its closest hit, any hit, all hits. Accelerators and shapes take
-/// them through the same templates as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
+/// A single ray, and what it looks for: its closest hit, any, or all. Accelerators and shapes take
+/// them as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
 namespace PULSECAST_NAMESPACE {
 
 /// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the
@@ -23,7 +23,7 @@ struct SingleRayPacket {
   Vec3 origin{};                   ///< origin [m]
   Vec3 toward = axis::forward;     ///< direction, of length `direction_length`
   double direction_length = 1;     ///< 1 in the world, 1/scale in an instance
-  double near = 0;                 ///< hits are farther than this range, at least 0 [m]
+  double near = 0;                 ///< hits are farther, at least 0 [m]
   Tick tick{};                     ///< time
   std::uint64_t seed = 0;          ///< as in `BundleOrigin`
   PulseIndex pulse = 0;            ///< as in `BundleOrigin`
@@ -42,47 +42,43 @@ struct SingleRayPacket {
     PULSECAST_ASSERT(!(near < 0));
   }
 
-  [[nodiscard]] const Vec3& direction(std::size_t) const noexcept { return toward; }  ///< direction of the ray
-  /// Component k of the direction; infinite for NaN, as in `RayBundle`.
-  [[nodiscard]] double direction_min(int k) const noexcept { return std::isnan(toward[k]) ? infinity : toward[k]; }
-  /// Component k of the direction; minus infinity for NaN, as in `RayBundle`.
-  [[nodiscard]] double direction_max(int k) const noexcept { return std::isnan(toward[k]) ? -infinity : toward[k]; }
-
- private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  [[nodiscard]] const Vec3& direction(std::size_t) const noexcept { return toward; }  ///< `toward`
+  [[nodiscard]] double direction_min(int k) const noexcept {
+    return std::isnan(toward[k]) ? detail::infinity : toward[k];
+  }
+  [[nodiscard]] double direction_max(int k) const noexcept {
+    return std::isnan(toward[k]) ? -detail::infinity : toward[k];
+  }
 };
 
 /// Bundle of a single ray up to a range [m], for shapes that take nothing else.
-[[nodiscard]] inline RayBundle bundle_of(const SingleRayPacket& ray, double far) noexcept {
-  RayBundle rays =
-      bundle_of(Ray{ray.origin, ray.toward, ray.near, far, ray.tick, ray.seed, ray.pulse, ray.first_subray});
-  rays.direction_length = ray.direction_length;
+[[nodiscard]] inline RayBundle bundle_of(const SingleRayPacket& r, double far) noexcept {
+  const Ray ray{r.origin, r.toward, r.near, far, r.tick, r.seed, r.pulse, r.first_subray};
+  RayBundle rays = bundle_of(ray);
+  rays.direction_length = r.direction_length;
   return rays;
 }
 
-/// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
+/// Search for any hit of a single ray: ends at the first found, by a limit before every box.
 struct AnyHit {
   double far;              ///< greatest range that counts [m]; minus infinity after the first hit
   bool found = false;      ///< true after the first hit
   std::uint64_t part = 0;  ///< part under test, in the upper half
 
-  /// Nothing found so far, up to a range [m].
-  explicit AnyHit(double range) noexcept : far(range) {}
+  explicit AnyHit(double range) noexcept : far(range) {}  ///< up to a range [m]
 
   [[nodiscard]] bool done() const noexcept { return found; }  ///< true if no further test is of use
-  /// Ends the search, if the hit is in range.
   void offer(std::size_t, double at, PrimitiveIndex) noexcept {
     if (!(at <= far)) return;
     found = true;
-    far = -std::numeric_limits<double>::infinity();
+    far = -detail::infinity;
   }
-  [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }  ///< as in `ClosestHits`
-  /// Largest range at which a hit still counts [m]; minus infinity for NaN.
+  [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }
   [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(far); }
 };
 
-/// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts
-/// once. Once it is full, `continue_after` makes room for those that come next. In 600 bytes; allocates nothing.
+/// The closest hits of a single ray, up to `capacity` of them, by range and then by id, each once.
+/// When full, `continue_after` makes room for the next. In 600 bytes; allocates nothing.
 class AllHits {
  public:
   static constexpr std::size_t capacity = 32;  ///< greatest number of hits held
@@ -109,15 +105,15 @@ class AllHits {
   /// True if there may be more hits than are held.
   [[nodiscard]] bool full() const noexcept { return size_ == capacity; }
 
-  /// Empties the buffer for the hits after those that it held. Returns the range to search from [m].
+  /// Empties the buffer for the hits after those held. Returns the range to search from [m].
   double continue_after() noexcept {
     last_ = hits_[size_ - 1];
     size_ = 0;
     limit_ = far_;
-    return std::nextafter(last_.range, -std::numeric_limits<double>::infinity());  // others may be at the same range
+    return std::nextafter(last_.range, -detail::infinity);  // or at the same range
   }
 
-  /// Adds a hit with a primitive of the current part, if it is among the closest that are requested.
+  /// Adds a hit with a primitive of the current part, if it is among the closest requested.
   void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
     const Entry hit{at, part | primitive};
     if (!(at <= limit_) || !(last_ < hit)) return;
@@ -125,14 +121,12 @@ class AllHits {
     while (place > 0 && hit < hits_[place - 1]) --place;
     if ((place > 0 && hits_[place - 1] == hit) || place == capacity) return;
     if (size_ < capacity) ++size_;
-    std::copy_backward(hits_.begin() + static_cast<std::ptrdiff_t>(place),
-                       hits_.begin() + static_cast<std::ptrdiff_t>(size_ - 1),
-                       hits_.begin() + static_cast<std::ptrdiff_t>(size_));
+    std::copy_backward(&hits_[place], &hits_[size_ - 1], hits_.data() + size_);
     hits_[place] = hit;
     if (full()) limit_ = hits_[capacity - 1].range;
   }
 
-  /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
+  /// Offers the hits of a shape that has the closest only: `closest(ray, hit)` from each hit on.
   void offer_chain(SingleRayPacket ray, const auto& closest) noexcept {
     for (;;) {
       ClosestHit next(limit_);
@@ -144,7 +138,7 @@ class AllHits {
     }
   }
 
-  /// Offers the closest hit alone, of a shape whose hits are drawn at random from the ray's beginning on.
+  /// Offers the closest hit alone, of a shape whose hits are drawn from the ray's beginning on.
   void offer_first(SingleRayPacket ray, const auto& closest) noexcept {
     ray.near = near_;
     ClosestHit first(limit_);
@@ -153,8 +147,7 @@ class AllHits {
     if (first.met(0)) offer(0, first.range[0], first.primitive_of(0));
   }
 
-  [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
-  /// Largest range at which a hit is still held [m]; minus infinity for NaN.
+  [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }
   [[nodiscard]] double limit(const SingleRayPacket&) const noexcept { return detail::limit_of(limit_); }
 
  private:

@@ -38,10 +38,9 @@ struct Triangle {
     const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),
                        dot(direction, cross(b - a, to_b + to_a))};
     const double whole = volumes.x + volumes.y + volumes.z;
-    const auto share = [&](double volume) noexcept { return volume / whole > 0 ? volume / whole : 0.0; };
-    const Vec3 shares{share(volumes.x), share(volumes.y), share(volumes.z)};
+    const Vec3 shares = max(volumes / whole, Vec3{});  // 0 for NaN
     const double sum = shares.x + shares.y + shares.z;
-    return sum > 0 && sum < std::numeric_limits<double>::infinity() ? shares / sum : Vec3(1.0 / 3);
+    return sum > 0 && sum < detail::infinity ? shares / sum : Vec3(1.0 / 3);
   }
 };
 
@@ -59,7 +58,7 @@ struct SolidEverywhere {
   bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
 };
 
-/// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate to where it is used.
+/// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate where it is used.
 struct TriangleRef {
   const Vec3& a;  ///< first corner [m]
   const Vec3& b;  ///< second corner [m]
@@ -76,7 +75,7 @@ struct TrianglePacket {
   };
   Corner a, b, c;  ///< corners of the triangles
 
-  /// Takes at least one triangle; `triangle_of(n)` returns the `Triangle` or `TriangleRef` of the n-th.
+  /// At least one triangle; `triangle_of(n)` returns a `Triangle` or `TriangleRef`.
   // always inlined, so that a test reads its operands from registers
   [[gnu::always_inline]] TrianglePacket(std::size_t size, const auto& triangle_of) noexcept {
     const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
@@ -95,19 +94,19 @@ struct TrianglePacket {
   }
 };
 
-/// Intersects the triangles of these primitives with every ray of a bundle, or with a `SingleRayPacket`: the deciding
-/// test, always in double precision.
-///
-/// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on
-/// the bundle alone, so a ray costs three dot products, and none where the whole bundle passes a plane on one side. If
-/// rounding leaves it in doubt, a ray counts as inside, so none slips between two triangles that share an edge or a
-/// corner. A hit lies in the triangle's own box, widened by a few roundings, so that no box of an accelerator hides it.
-/// Beside an edge it lies by at most 32 roundings of the distance, divided by the sine of the angle between ray and
-/// plane. Its range errs by that much, times one more than the triangle's aspect. A ray within 1e-12 rad of the
-/// triangle's plane misses. So does every ray if two edges are parallel to within 8 roundings (no area). Of the hits it
-/// takes those with `solid(j, primitive)`, of ray j, as outside the holes of a mask. Never inlined, so that every
-/// accelerator gets the same bits. Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of
-/// Shevtsov, Soupikov & Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
+/// Intersects the triangles of primitives with every ray of a bundle, or with a `SingleRayPacket`:
+/// the deciding test, always in double precision. A ray is inside if it is on the same side of the
+/// three planes through the origin and an edge. The planes depend on the bundle alone, so a ray
+/// costs three dot products, and none where the whole bundle passes a plane on one side. If
+/// rounding leaves it in doubt, a ray counts as inside, so none slips between two triangles that
+/// share an edge or a corner. A hit lies in the triangle's own box, widened by a few roundings, so
+/// that no box of an accelerator hides it. Beside an edge it lies by at most 32 roundings of the
+/// distance by the sine of the angle between ray and plane; its range errs by that times one more
+/// than the aspect. A ray within 1e-12 rad of the plane misses, as does every ray if two edges are
+/// parallel to within 8 roundings (no area). Hits of ray j count with `solid(j, primitive)`,
+/// outside the holes of a mask. Never inlined: every accelerator gets the same bits.
+/// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov &
+/// Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 [[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives,
                                  const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
@@ -124,8 +123,8 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in
-  // the 1-norm bounds each sum of products, which is at most seven roundings from the true one.
+  // planes through the origin and an edge, and the bound below which a side is in doubt: |e||s| in
+  // the 1-norm bounds each sum of products, which is at most seven roundings off
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -139,8 +138,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   };
   const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
-  // no ray is inside where all of them pass one plane on its right and one on its left; rounding
-  // may come in here once more
+  // no ray is inside where all pass one plane on its right and one on its left; once more rounding
   simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
     return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
@@ -179,9 +177,9 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
                to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
   const Corner normals = cross_of(from_a, to_a);
   const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
-  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // zero angle up to rounding
-  const simd::Doubles grazing = flat ? simd::Doubles{} + std::numeric_limits<double>::infinity()
-                                     : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
+  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // zero angle
+  const simd::Doubles grazing =
+      flat ? simd::Doubles{} + detail::infinity : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
   const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)),
                       simd::min(a.z, simd::min(b.z, c.z))};
   const Corner highest{simd::max(a.x, simd::max(b.x, c.x)), simd::max(a.y, simd::max(b.y, c.y)),
@@ -191,8 +189,8 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
                                          simd::max(magnitude(lowest.z), magnitude(highest.z)));
   const simd::Doubles margin = 8 * unit * extent;
 
-  // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
-  const simd::Doubles outside = simd::Doubles{} - std::numeric_limits<double>::infinity();
+  // interval inside the box; a zero direction is made so small that its walls lie at infinity
+  const simd::Doubles outside = simd::Doubles{} - detail::infinity;
   const auto per_metre = [](const auto& direction) noexcept {
     const auto tiny = std::remove_cvref_t<decltype(direction)>{} + 1e-300;
     return 1 / (direction * direction > 0 ? direction : tiny);
@@ -270,17 +268,17 @@ void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& tri
                Hits& nearest, const Solid& solid = {}) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
-    const TrianglePacket triangles(count, [&](std::size_t n) noexcept { return triangle_of(first + n); });
-    intersect(triangles, primitives.subspan(first, count), rays, nearest, solid);
+    const auto of_packet = [&](std::size_t n) noexcept { return triangle_of(first + n); };
+    intersect(TrianglePacket(count, of_packet), primitives.subspan(first, count), rays, nearest, solid);
     if constexpr (detail::EndsEarly<Hits>)
       if (nearest.done()) return;
   }
 }
 
 /// Intersects one triangle.
-void intersect(const Triangle& triangle, PrimitiveIndex primitive, const auto& rays, auto& nearest) noexcept {
-  intersect(
-      std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
+void intersect(const Triangle& triangle, PrimitiveIndex i, const auto& rays, auto& nearest) noexcept {
+  const auto triangle_of = [&](std::size_t) noexcept { return triangle; };
+  intersect(std::span(&i, 1), triangle_of, rays, nearest);
 }
 
 }  // namespace PULSECAST_NAMESPACE

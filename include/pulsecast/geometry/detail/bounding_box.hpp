@@ -38,17 +38,17 @@ template <std::floating_point Real>
   return -round_up<Real>(-value);
 }
 
-/// Box of type Real, relative to the centre of an accelerator; rounded outwards, so never smaller than the original.
+/// Box of type Real, relative to the centre of an accelerator; rounded outwards, so never smaller.
 template <std::floating_point Real>
 struct BoundingBox {
   Real min[3], max[3];  ///< lower and upper walls by axis [m]
 
   /// Box around `box` [m], relative to `centre` [m].
   static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
-    constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
+    constexpr double growing = 1 + 0x1p-51, shrinking = 1 - 0x1p-51;
     BoundingBox b;
     for (int k = 0; k < 3; ++k) {
-      // the subtraction rounds by at most half an ulp of its result; a factor leaves an empty box empty
+      // the subtraction rounds by half an ulp; a factor leaves an empty box empty
       const double low = box.min[k] - centre[k], high = box.max[k] - centre[k];
       b.min[k] = round_down<Real>(low * (low > 0 ? shrinking : growing));
       b.max[k] = round_up<Real>(high * (high > 0 ? growing : shrinking));
@@ -57,7 +57,7 @@ struct BoundingBox {
   }
 };
 
-/// Eight boxes as structure of arrays. A free slot holds an inverted box, which nothing is inside of.
+/// Eight boxes as structure of arrays. A free slot holds an inverted box: nothing is inside.
 template <std::floating_point Real>
 struct Box8 {
   alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< lower and upper walls by axis [m]
@@ -92,11 +92,10 @@ struct QuantizedBox8 {
   void begin(const BoundingBox<Real>& around) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
-      // exponent of a power of two above the ratio, as `std::frexp` returns it, but without a call;
-      // that of a subnormal ratio is below the minimum
-      const int e = static_cast<int>(std::bit_cast<std::uint64_t>(extent / (steps - 1)) >> 52U) - 1022;
+      // exponent of a power of two above the ratio, as of `std::frexp`; of a subnormal one, too low
+      const auto e = static_cast<int>(std::bit_cast<std::uint64_t>(extent / (steps - 1)) >> 52U) - 1022;
       origin[k] = around.min[k];
-      exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
+      exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 ? std::max(e, min_exponent) : min_exponent));
       for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
     }
     count = 0;

@@ -9,8 +9,8 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Limit of the search of an accelerator by a bundle, which reads it after each leaf. A bundle
-/// tests all primitives between its rays. Where they are many, such as the leaves in a broad beam,
-/// single rays are faster: the bundle gives up, as its limit then excludes all boxes.
+/// tests all primitives between its rays. Where they are many, as leaves in a broad beam, it gives
+/// up, as its limit then excludes all boxes: single rays are faster.
 template <class Hits>
 struct BudgetedLimit {
   static constexpr int most = 128;  ///< leaves that cost about as much as single rays
@@ -20,11 +20,11 @@ struct BudgetedLimit {
 
   /// As in `ClosestHits`.
   [[nodiscard]] double limit(const auto& rays) const noexcept {
-    return ++asked > most ? -std::numeric_limits<double>::infinity() : nearest.limit(rays);
+    return ++asked > most ? -infinity : nearest.limit(rays);
   }
-  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return nearest.limit_of(j); }  ///< as in `ClosestHits`
+  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return nearest.limit_of(j); }
 
-  [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
+  [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true after giving up
 };
 
 /// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers

@@ -16,21 +16,23 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray
-/// hits a primitive in double precision, the bundle hits every box around that primitive, and the
-/// range is inside the box's span. NaN rays are left out; if none is left, every span is empty.
+/// hits a primitive in double precision, the bundle hits every box around it, and the range is
+/// inside the box's span. NaN rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
+  using Entries = std::array<Real, 8>;  ///< entry ranges of boxes [m]
+
   /// Interval of range.
   struct Span {
-    Real entry, exit;                                                       ///< ends of the interval [m]
-    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }  ///< true if no range is inside
+    Real entry, exit;  ///< ends of the interval [m]
+    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
   BundleInterval(const auto& rays, const Box& bounds, const Vec3& centre) noexcept
       : near_(round_down<Real>(rays.near)) {
-    // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
+    // primitive tests round by the largest coordinates: a hit may lie this far outside its box
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
     if (!finite(rays.origin)) near_ = infinity;
@@ -38,17 +40,16 @@ class BundleInterval {
       const double low = rays.direction_min(k), high = rays.direction_max(k);
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
-      // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`
+      // rounding to Real; a wall is at most three half extents from the origin of a grid
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
-      const double margin =
-          slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
-      const Real origin_low = static_cast<Real>(o - margin), origin_high = static_cast<Real>(o + margin);
+      const double margin = slack + (4 * std::fabs(o) + 8 * extent) * epsilon;
+      const Real from = static_cast<Real>(o - margin), to = static_cast<Real>(o + margin);
       if (low > 0)
-        axes_[k] = {origin_low, origin_high, slowness(high, 1 - tolerance), slowness(low, 1 + tolerance), 1};
+        axes_[k] = {from, to, slowness(high, 1 - tolerance), slowness(low, 1 + tolerance), 1};
       else if (high < 0)
-        axes_[k] = {origin_low, origin_high, -slowness(-high, 1 + tolerance), -slowness(-low, 1 - tolerance), -1};
+        axes_[k] = {from, to, -slowness(-high, 1 + tolerance), -slowness(-low, 1 - tolerance), -1};
       else
-        axes_[k] = {origin_low, origin_high, high > 0 ? slowness(high, 1 - tolerance) : infinity,
+        axes_[k] = {from, to, high > 0 ? slowness(high, 1 - tolerance) : infinity,
                     low < 0 ? -slowness(-low, 1 - tolerance) : -infinity, 0};
     }
   }
@@ -60,7 +61,7 @@ class BundleInterval {
 
   /// Interval of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
-    Span span{near_, std::numeric_limits<Real>::max()};
+    Span span{near_, most};
     for (int k = 0; k < 3; ++k) {
       keep_above(span, axes_[k], box.min[k]);
       keep_below(span, axes_[k], box.max[k]);
@@ -68,8 +69,8 @@ class BundleInterval {
     return span;
   }
 
-  /// Bit mask of the boxes that any ray may be inside of at a range up to `limit`, and their entry ranges.
-  [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+  /// Bit mask of the boxes that any ray may be inside of up to `limit`, and their entry ranges.
+  [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, Entries& entries) const noexcept {
     return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
       const Axis& axis = axes_[k];
       return {(simd::load<simd::Packet<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min,
@@ -77,39 +78,40 @@ class BundleInterval {
     });
   }
   /// Bit mask and entry ranges, as above.
-  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit,
-                                std::array<Real, 8>& entries) const noexcept {
-    // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
+  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, Entries& entries) const noexcept {
+    // two roundings of a wall's distance, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
     for (std::size_t k = 0; k < 3; ++k) {
       to_low[k] = boxes.origin[k] - axes_[k].origin_high;
       to_high[k] = boxes.origin[k] - axes_[k].origin_low;
       steps[k] = boxes.step(k);
     }
-    const unsigned met = inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
-      return {(simd::packet_from<Real>(boxes.walls[k][0][first]) * steps[k] + to_low[k]) * axes_[k].per_min,
-              (simd::packet_from<Real>(boxes.walls[k][1][first]) * steps[k] + to_high[k]) * axes_[k].per_max};
-    });
-    return met & ((1U << boxes.count) - 1);
+    const auto walls_of = [&](std::size_t k, std::size_t first) noexcept -> Walls {
+      const auto& walls = boxes.walls[k];
+      const Axis& axis = axes_[k];
+      return {(simd::packet_from<Real>(walls[0][first]) * steps[k] + to_low[k]) * axis.per_min,
+              (simd::packet_from<Real>(walls[1][first]) * steps[k] + to_high[k]) * axis.per_max};
+    };
+    return inside(limit, entries, walls_of) & ((1U << boxes.count) - 1);
   }
 
-  /// Part of an interval over which any ray may be at or above the plane at `position` along axis k.
+  /// Part of an interval in which any ray may be at or above the plane at `position` on axis k.
   [[nodiscard]] Span above(Span span, int k, Real position) const noexcept {
     keep_above(span, axes_[k], position);
     return span;
   }
 
-  /// Part of an interval over which any ray may be at or below the plane at `position` along axis k.
+  /// Part of an interval in which any ray may be at or below the plane at `position` on axis k.
   [[nodiscard]] Span below(Span span, int k, Real position) const noexcept {
     keep_below(span, axes_[k], position);
     return span;
   }
 
  private:
-  /// Direction of the bundle along an axis: `sense` is +1 or -1 if all rays go that way, else 0. The factors turn the
-  /// distance from the origin to a plane into range: `per_min` for an inside above the plane, `per_max` for one below
-  /// it. If all rays go one way, one factor is the fastest ray's to enter, the other the slowest ray's to leave.
-  /// Otherwise both bound the entry, by the fastest ray each way; the exit is unbounded, as a ray may stay inside.
+  /// Direction of the bundle along an axis: `sense` is +1 or -1 if all rays go that way, else 0.
+  /// The factors turn the distance from the origin to a plane into range: `per_min` for an inside
+  /// above the plane, `per_max` below it. If all rays go one way, one is the fastest's to enter,
+  /// the other the slowest's to leave. Otherwise both bound the entry; no exit.
   struct Axis {
     Real origin_low, origin_high, per_min, per_max;
     int sense;
@@ -120,11 +122,11 @@ class BundleInterval {
     simd::Packet<Real> low, high;
   };
 
-  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const auto& walls_of) const noexcept {
+  [[nodiscard]] unsigned inside(Real limit, Entries& entries, const auto& walls_of) const noexcept {
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
-      simd::Packet<Real> entry = simd::Packet<Real>{} + near_,
-                         exit = simd::Packet<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
+      simd::Packet<Real> entry = simd::Packet<Real>{} + near_;
+      simd::Packet<Real> exit = simd::Packet<Real>{} + std::min(limit, most);
       for (std::size_t k = 0; k < 3; ++k) {
         const Walls walls = walls_of(k, first);
         if (axes_[k].sense > 0) {  // NaN fails every comparison
@@ -142,12 +144,11 @@ class BundleInterval {
     return met;
   }
 
-  static constexpr Real infinity = std::numeric_limits<Real>::infinity();
-  static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-
+  static constexpr Real infinity = std::numeric_limits<Real>::infinity(), most = std::numeric_limits<Real>::max();
+  static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon()), tolerance = 8 * epsilon;
   /// Range per metre along an axis, finite.
   static Real slowness(double speed, double factor) noexcept {
-    return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
+    return static_cast<Real>(std::min(factor / speed, static_cast<double>(most)));
   }
 
   // A plane behind the origin has a negative range: as entry it has no effect, as exit it puts the
@@ -172,13 +173,13 @@ class BundleInterval {
   Axis axes_[3];
 };
 
-/// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`: the entry wall on
-/// each axis is known, and the ranges to the walls of an axis share one factor. A hit box has a `Key`: its entry range
-/// as an integer, which orders as the range does, with three zero bits for a tag.
+/// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`:
+/// the entry wall on each axis is known, and the walls of an axis share one factor. A hit box has a
+/// `Key`: its entry range as an integer, in the same order, with three zero bits for a tag.
 template <std::floating_point Real>
 class RayInterval {
  public:
-  using Key = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;  ///< entry range of a hit box
+  using Key = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;  ///< of a hit box
   using Keys = std::array<Key, 8>;                                                ///< keys by slot
 
   /// Greatest tagged key of a box that is entered at a range up to `limit` [m].
@@ -188,24 +189,22 @@ class RayInterval {
   RayInterval(const auto& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
-    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min),
-               high = axes(bounds.max);
-    const Axes o = origin - axes(centre);
+    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin);
+    const Axes low = axes(bounds.min), high = axes(bounds.max), o = origin - axes(centre);
     // margin as for a bundle, for the same reasons
     const Axes farthest = simd::max(simd::max(magnitude(low), magnitude(high)), magnitude(origin));
-    const double slack =
-        64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
-    const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) *
-                                          Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
-    const Axes outwards = margin * sense(direction);
-    const Axes slowness = sense(direction) / simd::max(magnitude(direction), Axes(min_speed * ray.direction_length));
+    const double scale = std::max(std::max(farthest[0], farthest[1]), farthest[2]);
+    const Axes slack(64 * std::numeric_limits<double>::epsilon() * scale);
+    const Axes margin = slack + (magnitude(o) + (high - low)) * Axes(tolerance / 2);
+    const Axes outwards = margin * sense(direction), least(min_speed * ray.direction_length);
+    const Axes slowness = sense(direction) / simd::max(magnitude(direction), least);
     per_ = (slowness * Axes(1 - tolerance)).template as<Real>();
     start_[0] = (Axes(0) - (o + outwards)).template as<Real>() * per_;
     start_[1] = (outwards - o).template as<Real>() * per_;
     for (std::size_t k = 0; k < 3; ++k)
-      entry_wall_[k] = k * sizeof(boxes_type::walls[0]) + (std::signbit(direction[k]) ? wall_bytes : 0);
+      entry_wall_[k] = 2 * k * wall_bytes + (std::signbit(direction[k]) ? wall_bytes : 0);
     const Axes both = o + direction;
-    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // sums keep infinity and NaN, which miss
+    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN miss
     near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
                      : std::numeric_limits<Real>::infinity();  // no -0
   }
@@ -241,7 +240,7 @@ class RayInterval {
 
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not hit.
-  static constexpr double max_limit = static_cast<double>(std::numeric_limits<Real>::max()) * (1 - 4 * tolerance);
+  static constexpr double max_limit = (1 - 4 * tolerance) * std::numeric_limits<Real>::max();
   /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast:
   /// from the margin on, they leave a box so late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
@@ -252,8 +251,8 @@ class RayInterval {
     alignas(4 * sizeof(Real)) Real scale[4], start[2][4];
   };
 
-  /// The wall's position errs by two roundings of the distance to the origin, plus four and a half of half the bounds;
-  /// the range, by two of its own. `per_` is too small, so that the entry is not late.
+  /// The wall's position errs by two roundings of the distance to the origin, plus four and a half
+  /// of half the bounds; the range, by two. `per_` is too small, so that the entry is not late.
   [[nodiscard, gnu::always_inline]] Maps wall_maps(const QuantizedBox8<Real>& boxes) const noexcept {
     using Axes = simd::Vec4<Real>;
     Maps maps;
@@ -261,25 +260,26 @@ class RayInterval {
     const Axes to_grid = Axes::from(boxes.origin[0]) * per_;
     simd::store(to_grid + start_[0], maps.start[0][0]);
     simd::store(to_grid + start_[1], maps.start[1][0]);
-    asm("" : "+m"(maps));  // a lane is loaded into all lanes by one instruction from memory, by two from a register
+    asm("" : "+m"(maps));  // from memory, a lane is loaded into all by one instruction
     return maps;
   }
 
   /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k.
-  [[gnu::always_inline]] void clip(std::size_t k, const QuantizedBox8<Real>& boxes, std::size_t first, const Maps& maps,
+  [[gnu::always_inline]] void clip(std::size_t k, const boxes_type& boxes, std::size_t first, const Maps& maps,
                                    Packet& entry, Packet& exit) const noexcept {
     const char* const walls = reinterpret_cast<const char*>(&boxes.walls[0][0][first]);
     const auto numbers = [&](std::size_t byte) noexcept {
       return simd::packet_from<Real>(*reinterpret_cast<const std::uint16_t*>(walls + byte));
     };
-    entry = simd::max(numbers(entry_wall_[k]) * maps.scale[k] + maps.start[0][k], entry);  // NaN fails every comparison
+    // NaN fails every comparison
+    entry = simd::max(numbers(entry_wall_[k]) * maps.scale[k] + maps.start[0][k], entry);
     exit = simd::min(numbers(entry_wall_[k] ^ wall_bytes) * maps.scale[k] + maps.start[1][k], exit);
   }
 
-  /// Linear map from a wall's coordinate along each axis to range; the margin makes two of it, for entry and for exit.
+  /// Linear maps from a wall's coordinate on each axis to range, with margins: entry, exit.
   simd::Vec4<Real> per_, start_[2];
   Real near_;
-  std::size_t entry_wall_[3];  ///< byte of the walls where boxes are entered; the opposite ones: `wall_bytes` apart
+  std::size_t entry_wall_[3];  ///< byte of the walls where boxes are entered
 };
 
 }  // namespace PULSECAST_NAMESPACE
