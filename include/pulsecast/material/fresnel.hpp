@@ -14,18 +14,18 @@ namespace PULSECAST_NAMESPACE {
 /// Light at the face between two media.
 struct FresnelSplit {
   double reflected = 0;      ///< share reflected; the rest is refracted
-  double perpendicular = 0;  ///< share reflected of the light polarised across the plane of incidence
-  double parallel = 0;       ///< share reflected of the light polarised in the plane of incidence
-  double cos_refracted = 0;  ///< cosine between the refracted ray and the normal; 0 if all is reflected
+  double perpendicular = 0;  ///< reflected of the light polarised across the plane of incidence
+  double parallel = 0;       ///< reflected of the light polarised in the plane of incidence
+  double cos_refracted = 0;  ///< of the refracted ray to the normal; 0 if all is reflected
   [[nodiscard]] double refracted() const noexcept { return 1 - reflected; }  ///< share refracted
 };
 
-/// Splits light that hits a face at a cosine of incidence, by the index beyond the face over that before it. At angles
-/// beyond the critical one, all is reflected. Source: Fresnel's equations, Born & Wolf 1999, 1.5.2.
-[[nodiscard]] inline FresnelSplit fresnel_split(double cos_incidence, double relative_index) noexcept {
-  const double sine2 = (1 - cos_incidence * cos_incidence) / (relative_index * relative_index);
+/// Splits light at a cosine of incidence on a face, by the index beyond over that before. Beyond
+/// the critical angle all is reflected. Source: Fresnel's equations, Born & Wolf 1999, 1.5.2.
+[[nodiscard]] inline FresnelSplit fresnel_split(double cos_incidence, double n) noexcept {
+  const double sine2 = (1 - cos_incidence * cos_incidence) / (n * n);
   if (!(sine2 < 1)) return {1, 1, 1, 0};
-  const double inside = std::sqrt(1 - sine2), n = relative_index;
+  const double inside = std::sqrt(1 - sine2);
   const double s = (cos_incidence - n * inside) / (cos_incidence + n * inside),
                p = (n * cos_incidence - inside) / (n * cos_incidence + inside);
   if (!(cos_incidence > 0)) return {1, 1, 1, inside};
@@ -37,20 +37,20 @@ struct FresnelSplit {
   return direction - 2 * dot(direction, normal) * normal;
 }
 
-/// Direction of a ray refracted at a plane whose normal is towards the side it comes from; unit
-/// vectors. `split` is that of the same ray and index. Source: Snell's law.
+/// Direction of a ray refracted at a plane with a normal towards it; unit vectors. `split` is that
+/// of the ray and the relative index. Source: Snell's law.
 [[nodiscard]] inline Vec3 refracted(const Vec3& direction, const Vec3& normal, double relative_index,
                                     const FresnelSplit& split) noexcept {
   const double per = 1 / relative_index;
   return per * direction + (-per * dot(direction, normal) - split.cos_refracted) * normal;
 }
 
-/// Light at a pane. All orders of reflection between its faces are counted, each as if it left where the first does.
+/// Light at a pane, with all orders of reflection inside, each as if it left where the first does.
 struct PaneSplit {
   double reflected = 0;    ///< share reflected
   double transmitted = 0;  ///< transmitted share
-  double shift = 0;        ///< distance along the normal by which the ray seems to begin nearer to the pane [m]
-  double delay = 0;        ///< optical path from face to face, less the path of the shifted ray between them [m]
+  double shift = 0;        ///< by which the ray seems to begin nearer, along the normal [m]
+  double delay = 0;        ///< optical path between the faces, less that of the shifted ray [m]
   double cos_inside = 1;   ///< cosine between the ray inside and the normal
 };
 

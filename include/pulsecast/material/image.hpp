@@ -27,7 +27,7 @@ namespace detail {
 [[nodiscard]] inline double linear_share(std::uint8_t sample) noexcept {
   static const auto table = [] {
     std::array<double, 256> shares{};
-    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = srgb_decoded(static_cast<double>(i) / 255);
+    for (std::size_t i = 0; i < 256; ++i) shares[i] = srgb_decoded(static_cast<double>(i) / 255);
     return shares;
   }();
   return table[sample];
@@ -35,11 +35,11 @@ namespace detail {
 
 }  // namespace detail
 
-/// Number of the pixel, row by row from the top left, at texture coordinates. (0, 0) is the lower left corner of the
-/// picture, (1, 1) the upper right one; beyond them the picture repeats. Source: Wavefront OBJ specification, `vt`.
+/// Number of the pixel, row by row from the top left, at texture coordinates: (0, 0) is the lower
+/// left corner, (1, 1) the upper right; beyond, the picture repeats. Source: Wavefront OBJ, `vt`.
 [[nodiscard]] inline std::size_t texel_at(std::uint32_t width, std::uint32_t height, const Vec2& at) noexcept {
   const auto place = [](double coordinate, std::uint32_t count) noexcept {
-    const double turn = coordinate - std::floor(coordinate);  // 1 for a coordinate just below a whole number
+    const double turn = coordinate - std::floor(coordinate);  // perhaps 1 below a whole number
     return std::min(static_cast<std::size_t>(turn * count), std::size_t{count} - 1);
   };
   return (std::size_t{height} - 1 - place(at.y, height)) * width + place(at.x, width);
@@ -48,8 +48,8 @@ namespace detail {
 /// Picture of a surface, eight bits a channel.
 struct Image {
   std::uint32_t width = 0, height = 0;     ///< size [pixel]
-  std::uint32_t channels = 0;              ///< 1: grey; 2: grey and opacity; 3: red, green and blue; 4: and opacity
-  SharedArray<std::uint8_t> samples = {};  ///< channels of each pixel, row by row from the top left; shared by copies
+  std::uint32_t channels = 0;              ///< 1: grey; 3: red, green, blue; 2 and 4: with opacity
+  SharedArray<std::uint8_t> samples = {};  ///< by pixel, row by row from the top left; shared
 
   /// @throws SettingError for a size of zero, or another number of samples
   void validate() const {
@@ -70,7 +70,7 @@ struct Image {
   /// Red, green and blue at texture coordinates, from 0 to 1, as displays take them (sRGB).
   [[nodiscard]] Vec3 colour(const Vec2& texture) const noexcept {
     const auto pixel = at(texture);
-    const auto share = [&](std::size_t channel) noexcept { return pixel[channels < 3 ? 0 : channel] / 255.0; };
+    const auto share = [&](std::size_t k) noexcept { return pixel[channels < 3 ? 0 : k] / 255.0; };
     return {share(0), share(1), share(2)};
   }
 };

@@ -27,17 +27,16 @@ struct ReflectanceByTexture {
 
 /// Surface material.
 struct Material {
-  std::string name = "default";  ///< name in its file or program
-  double reflectance = 0.5;      ///< reflectance at the laser's wavelength, in [0, 1]; ignored with a spectrum
-  SurfaceLaw law{};  ///< law of the scattered light; one that takes the wavelength alone ignores the reflectance
-  std::uint16_t classification = 0;  ///< ASPRS class of its points
-  bool ground = false;               ///< true if it may carry set-ups and vehicles
-  std::shared_ptr<const Spectrum>
-      spectrum{};            ///< reflectance by wavelength, shareable; empty for a constant reflectance
-  SmoothInterface smooth{};  ///< light that goes on from it, for a transport that follows it
-  Vec3 colour{1, 1, 1};      ///< red, green and blue of its points, as displays take them (sRGB), each from 0 to 1
-  std::shared_ptr<const Image> picture{};  ///< what the colour is multiplied by, by texture coordinates; empty without
-  std::shared_ptr<const ReflectanceByTexture> reflectance_map{};  ///< reflectance by texture coordinates; empty without
+  std::string name = "default";                ///< name in its file or program
+  double reflectance = 0.5;                    ///< at the laser's wavelength, in [0, 1]; ignored with a spectrum
+  SurfaceLaw law{};                            ///< law of the scattered light; it may ignore the reflectance
+  std::uint16_t classification = 0;            ///< ASPRS class of its points
+  bool ground = false;                         ///< true if it may carry set-ups and vehicles
+  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength; empty: constant
+  SmoothInterface smooth{};                    ///< specular light, for a transport that follows it
+  Vec3 colour{1, 1, 1};                        ///< of its points: red, green, blue (sRGB), from 0 to 1
+  std::shared_ptr<const Image> picture{};      ///< factor of the colour by texture, if any
+  std::shared_ptr<const ReflectanceByTexture> reflectance_map{};  ///< reflectance by texture, if any
 
   /// @throws SettingError for values out of range
   void validate() const {
@@ -58,12 +57,13 @@ struct Material {
   [[nodiscard]] double reflectance_at(double wavelength) const noexcept {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
-  /// As above, at texture coordinates. A map tells no more than what the surface does not return or mirror otherwise.
+  /// As above, at texture coordinates; at most what the surface neither returns nor mirrors.
   [[nodiscard]] double reflectance_at(double wavelength, const std::optional<Vec2>& texture) const noexcept {
     const double even = reflectance_at(wavelength);
     if (!reflectance_map || !texture) [[likely]]
       return even;
-    const double taken = law.returned_share() + (smooth.kind == InterfaceKind::mirror ? smooth.reflectance : 0);
+    const double mirrored = smooth.kind == InterfaceKind::mirror ? smooth.reflectance : 0;
+    const double taken = law.returned_share() + mirrored;
     return std::min(reflectance_map->reflectance(wavelength, *texture, even), 1 - taken);
   }
 
@@ -74,8 +74,7 @@ struct Material {
     return {wavelength, reflectance_at(wavelength, texture), index()};
   }
 
-  /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters,
-  /// as an energy ledger counts it.
+  /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters.
   [[nodiscard]] double scattered_share(double wavelength, double cos_incidence,
                                        const std::optional<Vec2>& texture = {}) const noexcept {
     return scattered_share(light(wavelength, texture), cos_incidence);
@@ -86,7 +85,7 @@ struct Material {
   }
 
   /// Light scattered from one direction towards another, as of a law that `ScattersBetween`; 0 to
-  /// and from behind. A normal of zero is that of leaves, which scatter into all directions alike.
+  /// and from behind. A normal of zero is that of leaves: they scatter into all directions alike.
   [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal, double wavelength,
                                  const std::optional<Vec2>& texture = {}) const noexcept {
     const SurfaceLight in = light(wavelength, texture);

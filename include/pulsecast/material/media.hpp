@@ -18,25 +18,19 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Box of all places.
-[[nodiscard]] inline Box everywhere() noexcept {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  return {{-far, -far, -far}, {far, far, far}};
-}
+[[nodiscard]] inline Box everywhere() noexcept { return {Vec3(-detail::infinity), Vec3(detail::infinity)}; }
 
 /// Medium in a part of the air: fog, rain, smoke, dust.
 struct MediumRegion {
-  Medium medium{};            ///< medium, of index 1
-  Box bounds = everywhere();  ///< place [m]
-  /// Numbers of equal cells of the box along x, y and z, with `densities`.
-  std::array<std::size_t, 3> cells{1, 1, 1};
-  /// Factors of the medium's coefficients by cell, x fastest and z slowest; all 1 if empty.
-  SharedArray<float> densities{};
-  /// Particles whose mean is the medium: a beam hits them one by one, as long as they are few. None by default.
-  Precipitation particles{};
+  Medium medium{};                            ///< medium, of index 1
+  Box bounds = everywhere();                  ///< place [m]
+  std::array<std::size_t, 3> cells{1, 1, 1};  ///< numbers of equal cells along x, y and z
+  SharedArray<float> densities{};             ///< factors of the coefficients by cell, x fastest; empty: 1
+  Precipitation particles{};                  ///< particles of mean `medium`, hit one by one while few
 
   /// Rain or snow in a box.
-  [[nodiscard]] static MediumRegion of(const Precipitation& particles, const Box& bounds = everywhere()) noexcept {
-    return {.medium = particles.medium(), .bounds = bounds, .particles = particles};
+  [[nodiscard]] static MediumRegion of(const Precipitation& drops, const Box& bounds = everywhere()) noexcept {
+    return {.medium = drops.medium(), .bounds = bounds, .particles = drops};
   }
 
   void validate() const {
@@ -47,7 +41,8 @@ struct MediumRegion {
     if (densities.empty()) return;
     const Vec3 size = bounds.size();
     require_finite("MediumRegion::bounds (size, with densities)", size.x + size.y + size.z, "m");
-    const auto count = static_cast<double>(cells[0]) * static_cast<double>(cells[1]) * static_cast<double>(cells[2]);
+    double count = 1;
+    for (const std::size_t along : cells) count *= static_cast<double>(along);
     require_within("MediumRegion::densities (number)", static_cast<double>(densities.size()), count, count, "");
     for (const float density : densities) require_not_negative("MediumRegion::densities", density, "");
   }
@@ -59,7 +54,7 @@ class Media {
  public:
   /// Clear air.
   Media() = default;
-  /// @throws SettingError for values out of range, or boxes that overlap without one inside the other
+  /// @throws SettingError for values out of range, or boxes that overlap, none inside the other
   explicit Media(std::vector<MediumRegion> regions) {
     for (std::size_t i = 0; i < regions.size(); ++i) {
       regions[i].validate();
@@ -113,7 +108,7 @@ class Media {
  private:
   /// Ranges at which a ray enters a box and leaves it [m].
   struct Passage {
-    double in = -std::numeric_limits<double>::infinity(), out = std::numeric_limits<double>::infinity();
+    double in = -detail::infinity, out = detail::infinity;
   };
 
   static Passage passage(const Vec3& origin, const Vec3& direction, const Box& box) noexcept {
@@ -123,9 +118,10 @@ class Media {
         if (!(origin[k] >= box.min[k] && origin[k] < box.max[k])) return {0, 0};
         continue;
       }
-      const double low = (box.min[k] - origin[k]) / direction[k], high = (box.max[k] - origin[k]) / direction[k];
-      p.in = std::max(p.in, std::min(low, high));
-      p.out = std::min(p.out, std::max(low, high));
+      const double a = (box.min[k] - origin[k]) / direction[k];
+      const double b = (box.max[k] - origin[k]) / direction[k];
+      p.in = std::max(p.in, std::min(a, b));
+      p.out = std::min(p.out, std::max(a, b));
     }
     return p;
   }
@@ -139,22 +135,24 @@ class Media {
     const std::size_t* const cells = region.cells.data();
     for (int k = 0; k < 3; ++k) {
       edge[k] = (region.bounds.max[k] - region.bounds.min[k]) / static_cast<double>(cells[k]);
-      const double at = std::floor((start[k] - region.bounds.min[k]) / edge[k]);
-      cell[k] = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(cells[k] - 1)));
+      const double place = std::floor((start[k] - region.bounds.min[k]) / edge[k]);
+      cell[k] = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(cells[k] - 1)));
     }
     while (from < to) {
       double end = to;
       int through = 3;  // axis of the face
       for (int k = 0; k < 3; ++k) {
         if (direction[k] == 0) continue;
-        const double plane = region.bounds.min[k] + edge[k] * static_cast<double>(cell[k] + (direction[k] > 0 ? 1 : 0));
+        const auto face = static_cast<double>(cell[k] + (direction[k] > 0 ? 1 : 0));
+        const double plane = region.bounds.min[k] + edge[k] * face;
         const double range = std::max(from, (plane - origin[k]) / direction[k]);
         if (range < end) {
           end = range;
           through = k;
         }
       }
-      const double density = static_cast<double>(region.densities[cell[0] + cells[0] * (cell[1] + cells[1] * cell[2])]);
+      const std::size_t at = cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]);
+      const auto density = static_cast<double>(region.densities[at]);
       if (end > from && density > 0) visit(from, end, region, density);
       from = end;
       if (through == 3) return;

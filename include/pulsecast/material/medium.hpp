@@ -10,10 +10,10 @@ namespace PULSECAST_NAMESPACE {
 /// Medium that light passes through: glass, water, fog.
 struct Medium {
   double index = 1;        ///< refractive index, from 1 to 4
-  double group_index = 0;  ///< vacuum speed of light by that of a pulse, from 1 to 4; 0 for that of `index`
-  double absorption = 0;   ///< share of the light that is absorbed per metre, for short ways [1/m]
-  double scattering = 0;   ///< share of the light that is scattered out of its way per metre, for short ways [1/m]
-  double backscatter = 0;  ///< light scattered straight back per metre and solid angle, at most `scattering` [1/(m sr)]
+  double group_index = 0;  ///< vacuum speed by that of a pulse, from 1 to 4; 0: that of `index`
+  double absorption = 0;   ///< share absorbed per metre, for short ways [1/m]
+  double scattering = 0;   ///< share scattered per metre, for short ways [1/m]
+  double backscatter = 0;  ///< share scattered straight back, at most `scattering` [1/(m sr)]
 
   void validate() const {
     require_within("Medium::index", index, 1, 4, "");

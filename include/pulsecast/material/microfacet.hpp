@@ -11,12 +11,12 @@
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/lambert.hpp>
 
-/// Contract: closed forms of light at a rough surface of small smooth facets, whose slopes are Gaussian.
+/// Contract: closed forms of light at a rough surface of small smooth facets with Gaussian slopes.
 namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Rough surface: facets whose slope has a root mean square of `slope` in all, of a refractive index.
+/// Rough surface: facets of a root mean square slope and a refractive index.
 struct Microfacets {
   double slope = 0.3;  ///< root mean square of the slope, both axes together, greater than 0
   double index = 1.5;  ///< refractive index of the facets
@@ -29,7 +29,7 @@ struct Microfacets {
     return std::exp((c2 - 1) / (c2 * m2)) / (pi * m2 * c2 * c2);
   }
 
-  /// Ratio of the facets' area that hides others to that which is seen, from a direction. Source: Smith 1967.
+  /// Ratio of the facets' area that hides others to that seen from a direction. Source: Smith 1967.
   [[nodiscard]] double hidden(double cosine) const noexcept {
     const double sine2 = 1 - cosine * cosine;
     if (!(sine2 > 0)) return 0;
@@ -42,33 +42,35 @@ struct Microfacets {
     return fresnel_split(cos_incidence, index).reflected;
   }
 
-  /// Light that returns to its source, as in `Hit::backscatter`: only facets that face it count, and masking is the
-  /// same on both ways. Of a water surface, this is its glint. Source: Bufton, Hoge & Swift 1983.
+  /// Light that returns to its source, as in `Hit::backscatter`, from facets that face it; masking
+  /// is the same on both ways. Of a water surface, its glint. Source: Bufton, Hoge & Swift 1983.
   [[nodiscard]] double backscatter(double cos_incidence) const noexcept {
     if (!(cos_incidence > 0)) return 0;
-    return pi * reflected(1) * density(cos_incidence) / (4 * cos_incidence * (1 + hidden(cos_incidence)));
+    const double seen = 4 * cos_incidence * (1 + hidden(cos_incidence));
+    return pi * reflected(1) * density(cos_incidence) / seen;
   }
 
-  /// Radiance towards a direction by the irradiance from another, times the cosine of the first; unit vectors away from
-  /// the surface [1/sr]. Its integral over the directions is at most the share that facets reflect. Source: Torrance &
-  /// Sparrow 1967; height-correlated masking and shadowing, Ross, Dion & Potvin 2005.
+  /// Radiance towards a direction by the irradiance from another, times the cosine of the first;
+  /// unit vectors away from the surface [1/sr]. Its integral is at most the share that facets
+  /// reflect. Source: Torrance & Sparrow 1967; height-correlated masking, Ross, Dion & Potvin 2005.
   [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal) const noexcept {
     const double in = dot(from, normal), out = dot(to, normal);
     if (!(in > 0 && out > 0)) return 0;
     const Vec3 facet = normalize(from + to);
-    return reflected(dot(facet, from)) * density(dot(facet, normal)) / (4 * in * (1 + hidden(in) + hidden(out)));
+    const double seen = 4 * in * (1 + hidden(in) + hidden(out));
+    return reflected(dot(facet, from)) * density(dot(facet, normal)) / seen;
   }
 };
 
 }  // namespace detail
 
-/// Light reflected by rough facets, and Lambert's law for the rest: varnish, wet ground, rippled water. The facets have
-/// the refractive index of the material's body, or 1.5. They weaken the light of the rest on its way in only, so that
-/// light towards other directions is not quite reciprocal.
+/// Light reflected by rough facets, of the index of the material's body or 1.5, and Lambert's law
+/// for the rest: varnish, wet ground, rippled water. Facets weaken the rest on its way in only, so
+/// that light towards other directions is not quite reciprocal.
 struct Microfacet {
   static constexpr bool reflects_interface = true;  ///< as the concept ReflectsInterface describes
 
-  double slope = 0.3;  ///< root mean square of the slope of the facets, both axes together, from 1e-3 to 2
+  double slope = 0.3;  ///< root mean square of the facets' slope, both axes together, from 1e-3 to 2
 
   /// @throws SettingError for values out of range
   void validate() const { require_within("Microfacet::slope", slope, 1e-3, 2, ""); }

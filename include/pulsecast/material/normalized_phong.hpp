@@ -9,8 +9,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Lambert's law and a specular lobe that holds its share of the energy. Light into other
-/// directions than back is that of Lambert's law. Source: Lafortune & Willems 1994.
+/// Lambert's law and a specular lobe that holds its share of the energy. Light into directions
+/// other than back is that of Lambert's law. Source: Lafortune & Willems 1994.
 struct NormalizedPhong {
   double share = 0;      ///< share of the reflectance in the lobe, in [0, 1]
   double exponent = 10;  ///< exponent of the lobe, at least 0

@@ -13,7 +13,7 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Lobe about the mirror direction, twice the incidence away, where it is 1; 0 from 90 degrees on. Error at most 1e-14.
+/// Lobe about the mirror direction, where it is 1; 0 from 90 degrees on. Error at most 1e-14.
 [[nodiscard, gnu::always_inline]] inline simd::Doubles mirror_lobe(const simd::Doubles& cosine,
                                                                    double exponent) noexcept {
   const simd::Doubles base = 2 * cosine * cosine - 1;
@@ -25,8 +25,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Lambert's law and a specular lobe that is as high as a white Lambertian surface, whatever its exponent. Light into
-/// other directions than back is that of Lambert's law. Source: Jutzi & Gross 2009.
+/// Lambert's law and a specular lobe as high as a white Lambertian surface, whatever its exponent.
+/// Light into directions other than back is that of Lambert's law. Source: Jutzi & Gross 2009.
 struct Phong {
   double share = 0;      ///< share of the reflectance in the lobe, in [0, 1]
   double exponent = 10;  ///< exponent of the lobe, at least 0

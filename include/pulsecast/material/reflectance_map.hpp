@@ -12,15 +12,14 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Reflectance of a surface by its picture. Red, green and blue are linear shares of light (sRGB)
-/// at wavelengths of their own; between these the reflectance is linear, beyond them constant. A
-/// grey picture is the same at all wavelengths.
+/// at wavelengths of their own; in between it is linear, beyond them constant.
 struct ReflectanceMap final : ReflectanceByTexture {
   Image image{};  ///< picture
-  std::array<double, 3> wavelengths{612e-9, 549e-9,
-                                    465e-9};  ///< of red, green and blue, descending: IEC 61966-2-1 primaries [m]
+  /// Wavelengths of red, green and blue, descending [m]. Source: IEC 61966-2-1 primaries.
+  std::array<double, 3> wavelengths{612e-9, 549e-9, 465e-9};
   /// If not zero, the mean of red, green and blue: the picture is a pattern, and the reflectance is
-  /// that of the material times the ratio of a pixel to the mean, at most 1. For wavelengths that
-  /// the picture does not show, such as 1064 nm.
+  /// that of the material times the ratio of a pixel to the mean, at most 1. For other wavelengths,
+  /// such as 1064 nm.
   Vec3 mean{};
 
   ReflectanceMap() = default;
@@ -45,10 +44,12 @@ struct ReflectanceMap final : ReflectanceByTexture {
     image.validate();
     for (const double wavelength : wavelengths)
       require_within("ReflectanceMap::wavelengths", wavelength, 1e-8, 1e-3, "m");
-    require_positive("ReflectanceMap::wavelengths (from green to red)", wavelengths[0] - wavelengths[1], "m");
-    require_positive("ReflectanceMap::wavelengths (from blue to green)", wavelengths[1] - wavelengths[2], "m");
+    const auto& [red, green, blue] = wavelengths;
+    require_positive("ReflectanceMap::wavelengths (from green to red)", red - green, "m");
+    require_positive("ReflectanceMap::wavelengths (from blue to green)", green - blue, "m");
     for (int k = 0; k < 3; ++k) require_within("ReflectanceMap::mean", mean[k], 0, 1, "");
-    if (mean != Vec3{}) require_positive("ReflectanceMap::mean (least)", std::min({mean.x, mean.y, mean.z}), "");
+    const double least = std::min({mean.x, mean.y, mean.z});
+    if (mean != Vec3{}) require_positive("ReflectanceMap::mean (least)", least, "");
   }
 
   [[nodiscard]] const Image* picture() const noexcept override { return &image; }

@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Glass beads: what they return falls as a power of the cosine of the entrance angle.
 struct Beads {
-  double half_angle = pi / 6;  ///< entrance angle at which it has fallen to half, from 0.01 to 1.5 [rad]
+  double half_angle = pi / 6;  ///< entrance angle of half of it, from 0.01 to 1.5 [rad]
 
   void validate() const { require_within("Beads::half_angle", half_angle, 0.01, 1.5, "rad"); }
   /// Light returned at a cosine greater than 0, by that along the normal.
@@ -26,7 +26,7 @@ struct Beads {
 /// Cube corners: what they return falls with their open area, inside glass by Snell's law. Source:
 /// open area of a round cube corner, Chang, Currie, Alley & Pittman 1971, as in Degnan 1993.
 struct CubeCorners {
-  double index = 1;  ///< refractive index: 1 of three mirrors, 1.5 of prisms of glass or plastic; from 1 to 4
+  double index = 1;  ///< refractive index, from 1 to 4: 1 of mirrors, 1.5 of prisms
 
   void validate() const { require_within("CubeCorners::index", index, 1, 4, ""); }
   /// As of `Beads`; none beyond 35.3 degrees of an index of 1.
@@ -38,15 +38,15 @@ struct CubeCorners {
   }
 };
 
-/// Lambert's law and light that returns to its source, as of sheeting and road marks: `Beads` or `CubeCorners`.
+/// Lambert's law, and light that returns to its source, as of sheeting and road marks.
 template <class Optics = Beads>
 struct Retroreflector {
   /// Coefficient of retroreflection R_A, for light along the normal, at most 1e6 [cd/(lx m^2)].
   /// That of a white Lambertian surface is 1/pi; beaded sheeting has some 70, prismatic 300 to
   /// 1,000. The budget holds from a few apertures' diameters on. Source: ASTM E808, CIE 54.2.
   double coefficient = 0;
-  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide against the aperture, of
-  /// unknown energy [rad].
+  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide, of unknown energy
+  /// [rad].
   double half_angle = 0;
   Optics optics{};  ///< law by entrance angle
 
@@ -57,7 +57,8 @@ struct Retroreflector {
     optics.validate();
   }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {
-    return light.reflectance * cosine + (cosine > 0 ? pi * coefficient * optics.returned(cosine) : 0);
+    const double returned = cosine > 0 ? pi * coefficient * optics.returned(cosine) : 0;
+    return light.reflectance * cosine + returned;
   }
   double scattered_share(double, const SurfaceLight& light) const noexcept {
     return std::min(std::min(light.reflectance, 1.0) + returned_share(), 1.0);

@@ -12,24 +12,24 @@ namespace PULSECAST_NAMESPACE {
 enum class InterfaceKind : std::uint8_t {
   none,        ///< not at all
   mirror,      ///< reflects a share of it, at any incidence
-  pane,        ///< plate with two parallel faces, drawn as one surface: reflects light, and lets it through, shifted
-  dielectric,  ///< face of a body of glass or another clear medium: reflects and refracts
+  pane,        ///< parallel faces, drawn as one surface: reflects, and transmits shifted
+  dielectric,  ///< face of a body of a clear medium: reflects and refracts
   water,       ///< the same, of water
 };
 
-/// Surface that reflects or transmits light specularly, for a transport that follows it, such as `LightPaths`. What the
-/// surface scatters itself, by `Material::reflectance`, such as dirt on a window, is neither reflected nor transmitted.
+/// Surface that reflects or transmits light specularly, for a transport that follows it, such as
+/// `LightPaths`; but not what it scatters by `Material::reflectance`, such as dirt on a window.
 struct SmoothInterface {
   InterfaceKind kind = InterfaceKind::none;  ///< kind of reflection and transmission
-  double reflectance = 0;                    ///< of a mirror: share of the light that it reflects, in [0, 1]
+  double reflectance = 0;                    ///< of a mirror: share that it reflects, in [0, 1]
   double thickness = 0;                      ///< of a pane: distance of its faces [m]
-  Medium inside{};                           ///< of panes and bodies: medium beyond the surface, against its normal
+  Medium inside{};                           ///< of panes and bodies: medium against the normal
 
   /// Mirror that reflects a share of the light.
   [[nodiscard]] static SmoothInterface mirror(double reflectance = 0.95) noexcept {
     return {.kind = InterfaceKind::mirror, .reflectance = reflectance};
   }
-  /// Pane of clear soda-lime glass of a thickness [m]. Source: dispersion formula of Rubin 1985, at 1.064 um.
+  /// Pane of clear soda-lime glass of a thickness [m]. Source: Rubin 1985, dispersion, at 1.064 um.
   [[nodiscard]] static SmoothInterface pane(double thickness = 4e-3) noexcept {
     return {.kind = InterfaceKind::pane, .thickness = thickness, .inside = soda_lime};
   }
@@ -38,8 +38,8 @@ struct SmoothInterface {
     return {.kind = InterfaceKind::dielectric, .inside = soda_lime};
   }
 
-  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. For foam and the glint of
-  /// waves that are not modelled, see `Microfacet` and `Material::reflectance`.
+  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. Foam and glint: see
+  /// `Microfacet`.
   [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
     return {.kind = InterfaceKind::water, .inside = inside};
   }

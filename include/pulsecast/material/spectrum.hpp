@@ -19,16 +19,17 @@ struct SpectralSample {
 /// Copies share the samples.
 class Spectrum {
  public:
-  /// Takes at least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise
+  /// At least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise
   explicit Spectrum(const std::vector<SpectralSample>& samples) {
     if (samples.empty()) throw SettingError("Spectrum::samples (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string field = "Spectrum::samples[" + std::to_string(i) + "]";
-      require_positive(field + ".wavelength", samples[i].wavelength, "m");
+      const double wavelength = samples[i].wavelength, last = i > 0 ? samples[i - 1].wavelength : 0;
+      require_positive(field + ".wavelength", wavelength, "m");
       require_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
-      if (i > 0 && !(samples[i].wavelength > samples[i - 1].wavelength))
-        throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
-                           "greater than that of the previous sample, " + text::to_text(samples[i - 1].wavelength));
+      if (!(wavelength > last))
+        throw SettingError(field + ".wavelength", wavelength, "m",
+                           "greater than that of the previous sample, " + text::to_text(last));
     }
     samples_ = samples;
   }
@@ -39,14 +40,14 @@ class Spectrum {
 
   /// Samples in ascending order of wavelength.
   [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
-  [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
-  [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
-  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }  ///< memory of the samples [byte]
+  [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }        ///< [m]
+  [[nodiscard]] double longest() const noexcept { return samples_.end()[-1].wavelength; }  ///< [m]
+  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }
 
   /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {
-    const auto [i, k] = detail::neighbours(samples_.size(),
-                                           [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
+    const auto before = [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; };
+    const auto [i, k] = detail::neighbours(samples_.size(), before);
     if (i == k) return samples_[i].reflectance;
     const SpectralSample &below = samples_[i], &above = samples_[k];
     const double share = (wavelength - below.wavelength) / (above.wavelength - below.wavelength);

@@ -17,11 +17,11 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Any law of scattered light as a value; copies share it. A program holds the code of those laws alone that it makes.
-/// The default is Lambert's; that and `DirectionIndependent` are linear in the cosine, and cost no call.
+/// Any law of scattered light as a value; copies share it. A program has the code of the laws that
+/// it makes. The default, Lambert's, and `DirectionIndependent` are linear, and cost no call.
 class SurfaceLaw {
  public:
-  /// Law behind a table of functions. Members are those of the concepts; what a law has not has their defaults.
+  /// Law behind a table of functions: members of the concepts, with defaults for what a law lacks.
   class Model {
    public:
     virtual ~Model() = default;
@@ -36,18 +36,17 @@ class SurfaceLaw {
     }
 
     double returned_share = 0, returned_half_angle = 0;         ///< of a law that `Retroreflects`
-    bool reflects_interface = false, scatters_between = false;  ///< true for a law that models the concept
+    bool reflects_interface = false, scatters_between = false;  ///< as of the concepts
   };
 
   SurfaceLaw() = default;
   /// Takes a law, as all constructors.
-  SurfaceLaw(Lambert) noexcept {}  // NOLINT(google-explicit-constructor): implicit by purpose, as the next two
+  SurfaceLaw(Lambert) noexcept {}  // NOLINT: implicit by purpose, as the next two
   /// As above.
-  SurfaceLaw(DirectionIndependent) noexcept : cosine_(0), even_(1) {}  // NOLINT(google-explicit-constructor)
+  SurfaceLaw(DirectionIndependent) noexcept : cosine_(0), even_(1) {}  // NOLINT
   /// As above; one that is not a `ScatteringLaw` is an error that names the member.
   template <class Law>
-  requires(!std::same_as<Law, SurfaceLaw> && detail::MeantAsLaw<Law>)
-      SurfaceLaw(Law law)  // NOLINT(google-explicit-constructor)
+  requires(!std::same_as<Law, SurfaceLaw> && detail::MeantAsLaw<Law>) SurfaceLaw(Law law)  // NOLINT
       : model_(std::make_shared<const ModelOf<Law>>(std::move(law))) {}
 
   /// @throws SettingError as `validate()` of the law, or if it breaks its laws at a white surface
@@ -72,10 +71,10 @@ class SurfaceLaw {
       return of ? &of->law : nullptr;
     }
   }
-  /// Law of the backscatter: `reflectance * (cosine_share * cosine + even_share)` if there is no model.
+  /// Law of the backscatter; null for `reflectance * (cosine_share * cosine + even_share)`.
   [[nodiscard]] const Model* model() const noexcept { return model_.get(); }
-  [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1 for Lambert's law, or 0
-  [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 1 for `DirectionIndependent`, or 0
+  [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1, or 0
+  [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 0, or 1
   /// True of a law that `ScattersBetween`.
   [[nodiscard]] bool scatters_between() const noexcept { return !model_ || model_->scatters_between; }
   /// True of a law that `ReflectsInterface`.
@@ -126,9 +125,9 @@ class SurfaceLaw {
         }
       } else if constexpr (lanes > 1) {
         for (std::size_t j = 0; j < hits.size(); j += lanes) {
-          Hit* const block = &hits[std::min(j, hits.size() - lanes)];  // the last may overlap the one before
-          const simd::Doubles values =
-              law.backscatter(simd::generate([&](std::size_t k) { return block[k].cos_incidence; }), in);
+          Hit* const block = &hits[std::min(j, hits.size() - lanes)];  // the last may overlap
+          const auto cosine = [&](std::size_t k) { return block[k].cos_incidence; };
+          const simd::Doubles values = law.backscatter(simd::generate(cosine), in);
 #pragma GCC unroll 8
           for (std::size_t k = 0; k < lanes; ++k) {
             block[k].backscatter = values[k];

@@ -17,7 +17,7 @@ namespace PULSECAST_NAMESPACE {
 /// Row of a table of backscatter.
 struct BackscatterAtIncidence {
   double incidence = 0;    ///< angle between light and normal, from 0 to pi/2 [rad]
-  double backscatter = 0;  ///< by that of a white Lambertian surface at normal incidence, per unit of the reflectance
+  double backscatter = 0;  ///< by a white Lambertian surface's at normal incidence, per reflectance
 };
 
 /// Measured backscatter. Light into other directions is that of Lambert's law.
@@ -29,11 +29,11 @@ struct Tabulated {
   void validate() const {
     require_within("Tabulated::rows (number)", static_cast<double>(rows.size()), 1, 1e6, "");
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      require_within("Tabulated::rows (incidence)", rows[i].incidence, 0, pi / 2 * (1 + 1e-6), "rad");
+      const double at = rows[i].incidence;
+      require_within("Tabulated::rows (incidence)", at, 0, pi / 2 * (1 + 1e-6), "rad");
       require_not_negative("Tabulated::rows (backscatter)", rows[i].backscatter, "");
-      if (i > 0)
-        require_positive("Tabulated::rows (from incidence to incidence)", rows[i].incidence - rows[i - 1].incidence,
-                         "rad");
+      if (i == 0) continue;
+      require_positive("Tabulated::rows (from incidence to incidence)", at - rows[i - 1].incidence, "rad");
     }
   }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {

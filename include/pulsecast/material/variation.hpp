@@ -9,34 +9,34 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/material/material.hpp>
 
-/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its
-/// copies with a table of materials each.
+/// Variants of a material, for the primitives of one shape, or for copies of it with a table each.
 namespace PULSECAST_NAMESPACE {
 
 /// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or
-/// its whole spectrum, by a uniform random amount between minus and plus `range`, and clips it to
-/// [0, 1]. The same seed gives the same variants; `variants` only sets their number.
-/// @throws SettingError for a bad material or a `range` outside [0, 1]
+/// its whole spectrum, by a uniform random amount from minus to plus `range`, and clips it to [0,
+/// 1]. A variant depends on the seed and its number. @throws SettingError for a bad material or a
+/// `range` outside [0, 1]
 [[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants,
                                                             double range, std::uint64_t seed) {
   material.validate();
   require_within("vary_reflectance (range)", range, 0, 1, "");
   std::vector<Material> all(variants, material);
   for (std::size_t i = 0; i < variants; ++i) {
-    const double shift = range * (2 * uniform({.seed = seed, .pulse = i, .purpose = Purpose::scene}) - 1);
-    const auto shifted = [shift](double reflectance) { return std::clamp(reflectance + shift, 0.0, 1.0); };
+    const double shift = range * (2 * uniform({.seed = seed, .pulse = i}) - 1);
+    const auto shifted = [shift](double share) { return std::clamp(share + shift, 0.0, 1.0); };
     all[i].name += " " + std::to_string(i + 1);
     all[i].reflectance = shifted(material.reflectance);
     if (!material.spectrum) continue;
-    std::vector<SpectralSample> samples(material.spectrum->samples().begin(), material.spectrum->samples().end());
+    const auto even = material.spectrum->samples();
+    std::vector<SpectralSample> samples(even.begin(), even.end());
     for (SpectralSample& sample : samples) sample.reflectance = shifted(sample.reflectance);
     all[i].spectrum = std::make_shared<const Spectrum>(std::move(samples));
   }
   return all;
 }
 
-/// Material indices of primitives in turn: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like.
-/// @throws SettingError for no materials
+/// Material indices in turn: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its
+/// like. @throws SettingError for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_round_robin(std::size_t primitives, std::uint32_t materials) {
   require_within("assign_round_robin (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
@@ -44,16 +44,13 @@ namespace PULSECAST_NAMESPACE {
   return all;
 }
 
-/// Uniform random material indices of primitives. The same seed gives the same draws. @throws
-/// SettingError for no materials
+/// Uniform random material indices, the same for a seed. @throws SettingError for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials,
                                                                 std::uint64_t seed) {
   require_within("assign_randomly (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
-  for (std::size_t i = 0; i < primitives; ++i) {
-    const double drawn = uniform({.seed = seed, .pulse = i, .subray = 1, .purpose = Purpose::scene});
-    all[i] = static_cast<std::uint32_t>(drawn * materials);
-  }
+  for (std::size_t i = 0; i < primitives; ++i)
+    all[i] = static_cast<std::uint32_t>(uniform({.seed = seed, .pulse = i, .subray = 1}) * materials);
   return all;
 }
 

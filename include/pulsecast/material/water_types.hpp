@@ -31,22 +31,22 @@ enum class JerlovType : std::uint8_t {
 
 /// Type by its name, as Jerlov writes it: "IB" or "3C"; empty for another text.
 [[nodiscard]] inline std::optional<JerlovType> jerlov_type(std::string_view name) noexcept {
-  constexpr std::array<std::string_view, 10> names{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<JerlovType>(found - names.begin());
+  constexpr std::string_view names[]{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
+  const auto found = std::find(std::begin(names), std::end(names), name);
+  if (found == std::end(names)) return std::nullopt;
+  return static_cast<JerlovType>(found - std::begin(names));
 }
 
 namespace detail {
 
 inline constexpr std::size_t jerlov_type_count = 10;
-inline constexpr double jerlov_shortest = 0.35e-6;  ///< wavelength of the first row of `jerlov_attenuation` [m]
+inline constexpr double jerlov_shortest = 0.35e-6;  ///< wavelength of the first row [m]
 inline constexpr double jerlov_longest = 0.7e-6;    ///< wavelength of the last row [m]
 inline constexpr double jerlov_step = 25e-9;        ///< wavelength from row to row [m]
 
 /// Diffuse attenuation of downward irradiance [1/m] by wavelength (row) and type (column). Source:
-/// I to 1C by Austin & Petzold 1986, table VI, which replaces Jerlov's: in places his were below
-/// pure water; their type I is pure sea water. 3C to 9C: Jerlov 1976, table XXVII.
+/// I to 1C by Austin & Petzold 1986, table VI, which replaces Jerlov's, in places below pure water;
+/// type I is pure sea water. 3C to 9C: Jerlov 1976, table XXVII.
 // clang-format off
 inline constexpr std::array<std::array<double, jerlov_type_count>, 15> jerlov_attenuation{{
     {0.0510, 0.0632, 0.0782, 0.1325, 0.2335, 0.3345, 1.70, 2.30, 3.00, 3.90},
@@ -68,17 +68,17 @@ inline constexpr std::array<std::array<double, jerlov_type_count>, 15> jerlov_at
 
 /// Attenuation of a type [1/m] at a wavelength of the table, linear between its rows.
 [[nodiscard]] inline double tabulated_attenuation(std::size_t type, double wavelength) noexcept {
-  const double row =
-      std::clamp((wavelength - jerlov_shortest) / jerlov_step, 0.0, static_cast<double>(jerlov_attenuation.size() - 1));
-  const std::size_t i = std::min(static_cast<std::size_t>(row), jerlov_attenuation.size() - 2);
-  const double share = row - static_cast<double>(i);
-  return jerlov_attenuation[i][type] + share * (jerlov_attenuation[i + 1][type] - jerlov_attenuation[i][type]);
+  constexpr std::size_t last = jerlov_attenuation.size() - 1;
+  const double row = std::clamp((wavelength - jerlov_shortest) / jerlov_step, 0.0, double{last});
+  const std::size_t i = std::min(static_cast<std::size_t>(row), last - 1);
+  const double here = jerlov_attenuation[i][type], next = jerlov_attenuation[i + 1][type];
+  return here + (row - static_cast<double>(i)) * (next - here);
 }
 
 inline constexpr double green = 0.532e-6;  ///< wavelength of `particle_scattering` [m]
 
-/// Scattering by the molecules of water [1/(m sr)]: `sideways` at 90 degrees, straight back, and to the backward half
-/// space [1/m]. Source: Morel 1974 in the form of Boss & Pegau 2001, eqs. 4 and 5, with a depolarization of 0.09.
+/// Scattering by water molecules [1/(m sr)]: at 90 degrees, straight back; to the backward half
+/// space [1/m]. Source: Morel 1974 as in Boss & Pegau 2001, eqs. 4, 5; depolarization 0.09.
 struct MolecularScattering {
   double sideways;
   static constexpr double anisotropy = (1 - 0.09) / (1 + 0.09);
@@ -91,27 +91,23 @@ struct MolecularScattering {
 };
 
 /// Shares of the light scattered by particles: straight back [1/sr], and to the backward half
-/// space. Means of the three stations in San Diego Harbor at 0.53 um, without the water itself.
-/// Source: Petzold 1972, who measured to 170 degrees and extrapolated to 180.
+/// space. Means of three stations in San Diego Harbor at 0.53 um, without the water. Source:
+/// Petzold 1972, measured to 170 degrees and extrapolated to 180.
 inline constexpr double particles_straight_back = 3.17e-3;
 inline constexpr double particles_backward = 0.018;
 
-/// Scattering coefficient of the particles at 0.532 um [1/m] for an attenuation at that wavelength
-/// [1/m]. Linear between the types of which scattering was measured, none in pure sea water, and
-/// beyond 5C in proportion to the attenuation above that of pure sea water. Source: Williamson &
-/// Hollins 2022 for IB, II, III, 1C, 3C and 5C; the other types lie on these lines.
+/// Scattering coefficient of the particles at 0.532 um [1/m] for an attenuation there [1/m]: linear
+/// between the types with measured scattering, none in pure sea water, beyond 5C in proportion to
+/// the attenuation above that. Source: Williamson & Hollins 2022 for IB, II, III, 1C, 3C and 5C;
+/// the other types lie on these lines.
 [[nodiscard]] inline double particle_scattering(double attenuation) noexcept {
   struct Measured {
     JerlovType type;
     double scattering;  ///< of water and particles [1/m]
   };
   using enum JerlovType;
-  constexpr std::array<Measured, 6> table{{{oceanic_ib, 0.124},
-                                           {oceanic_ii, 0.179},
-                                           {oceanic_iii, 0.290},
-                                           {coastal_1, 0.432},
-                                           {coastal_3, 0.651},
-                                           {coastal_5, 1.21}}};
+  constexpr Measured table[]{{oceanic_ib, 0.124}, {oceanic_ii, 0.179}, {oceanic_iii, 0.290},
+                             {coastal_1, 0.432},  {coastal_3, 0.651},  {coastal_5, 1.21}};
   const double water = MolecularScattering(green, 35).total();
   const double pure = tabulated_attenuation(0, green);
   if (!(attenuation > pure)) return 0;
@@ -127,7 +123,7 @@ inline constexpr double particles_backward = 0.018;
   return below * (attenuation - pure) / (before - pure);
 }
 
-/// Water of an attenuation at a wavelength, and of an attenuation at 0.532 um that says how much the particles scatter.
+/// Water of an attenuation, and of one at 0.532 um that says how much particles scatter.
 [[nodiscard]] inline Medium natural_water(double attenuation, double attenuation_at_green, double wavelength,
                                           const WaterState& state) {
   const MolecularScattering water(wavelength, state.salinity_permille);
@@ -142,10 +138,10 @@ inline constexpr double particles_backward = 0.018;
 
 }  // namespace detail
 
-/// Diffuse attenuation coefficient of a type of water [1/m] for a wavelength from 0.35 to 1.1 um [m]. To 0.7 um linear
-/// between the rows of Austin & Petzold 1986 and Jerlov 1976. Beyond, where nothing was tabulated, the absorption of
-/// pure water and what the type has above it at 0.7 um: from 0.05 1/m for I to 0.5 1/m for 9C, where water absorbs 7
-/// 1/m at 0.905 um and 15 1/m at 1.064 um.
+/// Diffuse attenuation coefficient of a type of water [1/m] for a wavelength from 0.35 to 1.1 um
+/// [m]. To 0.7 um linear between the rows of Austin & Petzold 1986 and Jerlov 1976. Beyond, where
+/// nothing was tabulated, the absorption of pure water and what the type has above it at 0.7 um:
+/// 0.05 1/m for I to 0.5 1/m for 9C, where water absorbs 7 1/m at 0.905 um and 15 1/m at 1.064 um.
 /// @throws SettingError out of range
 [[nodiscard]] inline double water_attenuation(JerlovType type, double wavelength) {
   using namespace detail;
@@ -157,22 +153,22 @@ inline constexpr double particles_backward = 0.018;
          pure_water_absorption(jerlov_longest);
 }
 
-/// Water of a type, for a laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Absorption and scattering sum to the
-/// diffuse attenuation: light that is scattered forwards stays in view, and `scattering` is that to the backward half
-/// space. Holds for receivers that see on the surface a spot some 5 mean free paths of light in water wide (Gordon
-/// 1982); narrower ones lose more, up to the beam attenuation. Backscatter is that of the molecules and of as many
-/// particles as scatter like the type at 0.532 um, with the power -0.3 of the wavelength (Haltrin 1999, large
-/// particles) and the phase function of Petzold 1972. The type does not determine it: its figure is good to a factor of
-/// some 2, less so for IA, 7C and 9C, of which no scattering is known. @throws SettingError out of range
+/// Water of a type, for a laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Absorption and
+/// scattering, to the backward half space, sum to the diffuse attenuation: light scattered forwards
+/// stays in view. Holds for receivers that see a spot some 5 mean free paths in water wide (Gordon
+/// 1982); narrower ones lose more, up to the beam attenuation. Backscatter is that of the molecules
+/// and of as many particles as scatter like the type at 0.532 um, with the power -0.3 of the
+/// wavelength (Haltrin 1999, large particles) and the phase function of Petzold 1972: good to a
+/// factor of some 2, less so for IA, 7C and 9C, without known scattering. @throws SettingError
 [[nodiscard]] inline Medium water(JerlovType type, double wavelength, const WaterState& state = {}) {
-  return detail::natural_water(water_attenuation(type, wavelength), water_attenuation(type, detail::green), wavelength,
-                               state);
+  const double at_green = water_attenuation(type, detail::green);
+  return detail::natural_water(water_attenuation(type, wavelength), at_green, wavelength, state);
 }
 
 /// Water of a measured diffuse attenuation coefficient [1/m] and backscatter coefficient [1/(m sr)]
 /// at a laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles
-/// by Petzold 1972 with this backscatter, which must not exceed the attenuation.
-/// @throws SettingError out of range
+/// by Petzold 1972 with this backscatter. @throws SettingError out of range, or if it exceeds the
+/// attenuation
 [[nodiscard]] inline Medium measured_water(double attenuation, double backscatter, double wavelength,
                                            const WaterState& state = {}) {
   require_positive("measured_water (attenuation)", attenuation, "1/m");
@@ -186,9 +182,9 @@ inline constexpr double particles_backward = 0.018;
 }
 
 /// Water of a Secchi depth, from 0.1 to 80 m [m], for a green laser, from 0.49 to 0.57 um [m],
-/// which is about what the eye sees of the disk. Attenuation: 1.7 / depth (Poole & Atkins 1929), at
-/// least that of type I. Factors from 1.4 in turbid water to 1.7 are in use. Scattering and
-/// backscatter as in `water`, for a type of this attenuation. @throws SettingError out of range
+/// about what the eye sees of the disk. Attenuation: 1.7 / depth (Poole & Atkins 1929; in turbid
+/// water down to 1.4), at least that of type I. Scattering and backscatter as in `water`, for a
+/// type of this attenuation. @throws SettingError out of range
 [[nodiscard]] inline Medium secchi_water(double depth, double wavelength, const WaterState& state = {}) {
   require_within("secchi_water (depth)", depth, 0.1, 80, "m");
   require_within("secchi_water (wavelength)", wavelength, 0.49e-6, 0.57e-6, "m");

@@ -17,18 +17,17 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Air with particles of an extinction coefficient [1/m], a share of it that is scattered, and a
-/// ratio of it to the backscatter [sr].
+/// Air with particles of an extinction coefficient [1/m], a share of it that is scattered, and its
+/// ratio to the backscatter [sr].
 [[nodiscard]] inline Medium hazy_air(double extinction, double albedo, double lidar_ratio) noexcept {
-  return {.index = 1,
-          .group_index = 1,
+  return {.group_index = 1,
           .absorption = (1 - albedo) * extinction,
           .scattering = albedo * extinction,
           .backscatter = extinction / lidar_ratio};
 }
 
-/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: the series of positive
-/// terms for small y, else its closed form.
+/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: a series of positive terms
+/// for small y, else its closed form.
 template <int order>
 [[nodiscard]] double lower_gamma(double y) noexcept {
   if constexpr (order == 1) return -std::expm1(-y);
@@ -42,21 +41,21 @@ template <int order>
   return sum;
 }
 
-/// Integral of D^2 exp(-slope D) over diameters D from `least` to `most` [m^3]; `slope` is positive [1/m].
+/// Integral of D^2 exp(-slope D) from `least` to `most` [m^3]; `slope` is positive [1/m].
 [[nodiscard]] inline double second_moment(double slope, double least, double most) noexcept {
   const double y = slope * (most - least);
-  const double shifted =
-      least * least * lower_gamma<1>(y) + 2 * least / slope * lower_gamma<2>(y) + lower_gamma<3>(y) / (slope * slope);
+  const double first = least * least * lower_gamma<1>(y), second = 2 * least / slope * lower_gamma<2>(y);
+  const double shifted = first + second + lower_gamma<3>(y) / (slope * slope);
   return std::exp(-slope * least) / slope * shifted;
 }
 
 }  // namespace detail
 
-/// Fog of a visibility, from 1 m to 1 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: `extinction` by Kim
-/// 2001, the same at all wavelengths below 500 m. Lidar ratio: 18.8 sr (O'Connor, Illingworth & Hogan 2004, droplets of
-/// stratocumulus at 0.905 um); droplets of radii from 2 to 20 um have from 18 to 21 sr from 0.53 to 1.55 um by Mie's
-/// series. All is scattered: they absorb less than 1 %.
-/// @throws SettingError out of range
+/// Fog of a visibility, from 1 m to 1 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
+/// `extinction` by Kim 2001, even below 500 m. Lidar ratio: 18.8 sr (O'Connor, Illingworth & Hogan
+/// 2004, stratocumulus at 0.905 um); by Mie's series droplets of radii from 2 to 20 um have 18 to
+/// 21 sr from 0.53 to 1.55 um. All is scattered: they absorb less than 1 %. @throws SettingError
+/// out of range
 [[nodiscard]] inline Medium fog(double visibility, double wavelength) {
   require_within("fog (visibility)", visibility, 1, 1e3, "m");
   require_within("fog (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -65,19 +64,19 @@ template <int order>
 
 /// Haze of a visibility, from 1 to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
 /// `extinction` by Kim 2001. Lidar ratio: 50 sr, of polluted continental air at 0.532 um (Li et al.
-/// 2022, 20 sr and more below the 70 sr of CALIPSO's version 4); unverified at other wavelengths.
-/// Scattered: 0.94 (Narasimhan & Satheesh 2013, mean over India). @throws SettingError out of range
+/// 2022; 70 sr in CALIPSO's version 4); unverified elsewhere. Scattered: 0.94 (Narasimhan &
+/// Satheesh 2013, mean over India). @throws SettingError out of range
 [[nodiscard]] inline Medium haze(double visibility, double wavelength) {
   require_within("haze (visibility)", visibility, 1e3, 1e5, "m");
   require_within("haze (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
   return detail::hazy_air(extinction(wavelength, visibility), 0.94, 50);
 }
 
-/// Mineral dust of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction: that at
-/// 0.55 um, 3.91 by the visibility, at every wavelength, as pure dust falls with less than the power 0.4 of it (Shin et
-/// al. 2018). Lidar ratio: 50 sr to 0.532 um, 69 sr from 1.064 um, linear between them (Haarig et al. 2022, Saharan
-/// dust); from 35 sr for other deserts (Shin et al. 2018). Absorption is left out: all is scattered. @throws
-/// SettingError out of range
+/// Mineral dust of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m].
+/// Extinction: at every wavelength that at 0.55 um, as pure dust falls with less than its power 0.4
+/// (Shin et al. 2018). Lidar ratio: 50 sr to 0.532 um, 69 sr from 1.064 um, linear between (Haarig
+/// et al. 2022, Saharan dust); from 35 sr for other deserts (Shin et al. 2018). Absorption is left
+/// out: all is scattered. @throws SettingError out of range
 [[nodiscard]] inline Medium dust(double visibility, double wavelength) {
   require_within("dust (visibility)", visibility, 1, 1e5, "m");
   require_within("dust (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -85,28 +84,28 @@ template <int order>
   return detail::hazy_air(extinction(0.55e-6, visibility), 1, 50 + share * (69 - 50));
 }
 
-/// Smoke of fires of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
-/// `extinction` by Kim 2001, measured in haze and fog, not smoke. Lidar ratio: 70 sr at 0.532 um (Li et al. 2022, from
-/// 65 to 75 sr over the Atlantic); unverified at other wavelengths. Scattered: 0.92 at 0.55 um, from 0.88 for grass to
-/// 0.97 for boreal forest (Sayer et al. 2014). @throws SettingError out of range
+/// Smoke of fires of a visibility, from 1 m to 100 km [m], for a wavelength from 0.4 to 1.6 um [m].
+/// Extinction: `extinction` by Kim 2001, of haze and fog. Lidar ratio: 70 sr at 0.532 um (Li et al.
+/// 2022, 65 to 75 sr over the Atlantic); unverified elsewhere. Scattered: 0.92 at 0.55 um, 0.88 for
+/// grass to 0.97 for boreal forest (Sayer et al. 2014). @throws SettingError
 [[nodiscard]] inline Medium smoke(double visibility, double wavelength) {
   require_within("smoke (visibility)", visibility, 1, 1e5, "m");
   require_within("smoke (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
   return detail::hazy_air(extinction(wavelength, visibility), 0.92, 70);
 }
 
-/// Falling particles, in number per volume and diameter D: N(D) = density exp(-slope D) between two diameters, none
-/// beyond. Much larger than the wavelength: each takes twice its shadow pi/4 D^2 out of the beam, half of it by
-/// diffraction into a cone of about wavelength / D, which wide receivers take for light that was not lost (van de Hulst
-/// 1957). All that is lost counts as scattered.
+/// Falling particles, in number per volume and diameter D: N(D) = density exp(-slope D) between two
+/// diameters. Much larger than the wavelength: each takes twice its shadow pi/4 D^2 out of the
+/// beam, half of it by diffraction into a cone of about wavelength / D, which wide receivers do not
+/// take for lost (van de Hulst 1957). All that is lost counts as scattered.
 struct Precipitation {
-  double density = 0;            ///< N(D) extrapolated to D = 0: number per volume and diameter [1/m^4]
-  double slope = 1;              ///< decline of the distribution with diameter, from 1e-3 to 1e9 [1/m]
+  double density = 0;            ///< N(0), extrapolated: per volume and diameter [1/m^4]
+  double slope = 1;              ///< decline with the diameter, from 1e-3 to 1e9 [1/m]
   double diameter_min = 0.1e-3;  ///< minimum diameter [m]
   double diameter_max = 6e-3;    ///< maximum diameter [m]
-  double lidar_ratio = 20;       ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
-  double absorption = 0;   ///< decline of the light from inside a particle with its diameter: exp(-absorption D) [1/m]
-  double reflectance = 0;  ///< share reflected by a particle's front at normal incidence, at most 8 pi / lidar_ratio
+  double lidar_ratio = 20;       ///< extinction by backscatter without absorption, at least 1 [sr]
+  double absorption = 0;         ///< light from inside a particle declines by exp(-absorption D) [1/m]
+  double reflectance = 0;        ///< of a particle's front at normal incidence, at most 8 pi / lidar_ratio
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
@@ -115,59 +114,57 @@ struct Precipitation {
     require_positive("Precipitation::diameter_max (above diameter_min)", diameter_max - diameter_min, "m");
     require_within("Precipitation::lidar_ratio", lidar_ratio, 1, std::numeric_limits<double>::max(), "sr");
     require_not_negative("Precipitation::absorption", absorption, "1/m");
-    require_within("Precipitation::reflectance", reflectance, 0, std::min(1.0, 8 * std::numbers::pi / lidar_ratio), "");
+    const double most = std::min(1.0, 8 * std::numbers::pi / lidar_ratio);
+    require_within("Precipitation::reflectance", reflectance, 0, most, "");
   }
 
   /// Particles per volume [1/m^3].
-  [[nodiscard]] double number() const noexcept {
-    return density / slope * std::exp(-slope * diameter_min) *
-           detail::lower_gamma<1>(slope * (diameter_max - diameter_min));
-  }
-  /// Diameter of a particle [m] for a uniform number in [0, 1]: inverse of the cumulative distribution.
+  [[nodiscard]] double number() const noexcept { return density / slope * std::exp(-slope * diameter_min) * within(); }
+  /// Diameter of a particle [m] for a uniform number in [0, 1], by the inverse of the distribution.
   [[nodiscard]] double diameter(double uniform) const noexcept {
-    return std::clamp(
-        diameter_min - std::log1p(-uniform * detail::lower_gamma<1>(slope * (diameter_max - diameter_min))) / slope,
-        diameter_min, diameter_max);
+    return std::clamp(diameter_min - std::log1p(-uniform * within()) / slope, diameter_min, diameter_max);
   }
 
-  /// Differential cross section for scattering straight back of a particle of a diameter [m]
-  /// [m^2/sr]: by the shadow, of its front, reflectance / (4 pi), that of a mirror sphere; of its
-  /// inside, the rest to `lidar_ratio`, weakened by absorption.
+  /// Differential cross section of a particle of a diameter [m] for scattering straight back
+  /// [m^2/sr]. By the shadow: of its front, that of a mirror sphere; of its inside, the rest to
+  /// `lidar_ratio`, weakened by absorption.
   [[nodiscard]] double backscatter_cross_section(double diameter) const noexcept {
-    return std::numbers::pi / 4 * diameter * diameter * (front() + inside() * std::exp(-absorption * diameter));
+    const double shadow = std::numbers::pi / 4 * diameter * diameter;
+    return shadow * (front() + inside() * std::exp(-absorption * diameter));
   }
 
   /// Extinction coefficient [1/m].
-  [[nodiscard]] double extinction() const noexcept {
-    return std::numbers::pi / 2 * density * detail::second_moment(slope, diameter_min, diameter_max);
-  }
+  [[nodiscard]] double extinction() const noexcept { return std::numbers::pi / 2 * density * squares(slope); }
   /// Backscatter coefficient [1/(m sr)].
   [[nodiscard]] double backscatter() const noexcept {
-    return std::numbers::pi / 4 * density *
-           (front() * detail::second_moment(slope, diameter_min, diameter_max) +
-            inside() * detail::second_moment(slope + absorption, diameter_min, diameter_max));
+    return std::numbers::pi / 4 * density * (front() * squares(slope) + inside() * squares(slope + absorption));
   }
 
   /// Air with the mean of the particles, without their grain.
   [[nodiscard]] Medium medium() const noexcept {
-    return {.index = 1, .group_index = 1, .absorption = 0, .scattering = extinction(), .backscatter = backscatter()};
+    return {.group_index = 1, .scattering = extinction(), .backscatter = backscatter()};
   }
 
  private:
+  [[nodiscard]] double squares(double decline) const noexcept {
+    return detail::second_moment(decline, diameter_min, diameter_max);
+  }
+  /// Share of the distribution from the minimum diameter on that is below the maximum.
+  [[nodiscard]] double within() const noexcept { return detail::lower_gamma<1>(slope * (diameter_max - diameter_min)); }
   /// By the shadow [1/sr].
   [[nodiscard]] double front() const noexcept { return reflectance / (4 * std::numbers::pi); }
   /// By the shadow, if nothing is absorbed [1/sr].
   [[nodiscard]] double inside() const noexcept { return 2 / lidar_ratio - front(); }
 };
 
-/// Rain of a rate from 0.1 to 300 mm/h, for a wavelength from 0.4 to 1.6 um [m]: drops from 0.1 to 6 mm by Marshall &
-/// Palmer 1948, whose fit holds from 1 to 23 mm/h and has too many drops below 1 mm. Extinction by all of them, if not
-/// cut: 0.365 rate^0.63 per km. Lidar ratio: 20 sr where water is clear, as spheres by Mie's series have from 23 to 25
-/// sr at 0.532 um. From 0.9 to 1.1 um they have from 4 to 21 sr, by a glory that varies with the third decimal of the
-/// index. Flattened drops are not to be taken for spheres (Nousiainen & Muinonen 1999). There the figure is good to a
-/// factor of some 4. Absorption: of the light from inside along six diameters, fitted to Mie's series at 1.55 um to 30
-/// %. So much less light comes back from large drops at 1.55 um than at 0.9 um (Westbrook, Hogan, O'Connor &
-/// Illingworth 2010). @throws SettingError out of range
+/// Rain of a rate from 0.1 to 300 mm/h, for a wavelength from 0.4 to 1.6 um [m]: drops from 0.1 to
+/// 6 mm by Marshall & Palmer 1948, fitted from 1 to 23 mm/h, with too many drops below 1 mm.
+/// Extinction by all of them, if not cut: 0.365 rate^0.63 per km. Lidar ratio: 20 sr where water is
+/// clear; spheres by Mie's series have 23 to 25 sr at 0.532 um, and 4 to 21 sr from 0.9 to 1.1 um,
+/// by a glory that varies with the third decimal of the index. As drops are flattened (Nousiainen &
+/// Muinonen 1999), it is good there to a factor of some 4. Absorption: of the light from inside
+/// along six diameters, fitted to Mie's series at 1.55 um to 30 %: large drops return less there
+/// than at 0.9 um (Westbrook, Hogan, O'Connor & Illingworth 2010). @throws SettingError
 [[nodiscard]] inline Precipitation rain(double rate_mm_per_hour, double wavelength) {
   require_within("rain (rate)", rate_mm_per_hour, 0.1, 300, "mm/h");
   require_within("rain (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");
@@ -180,11 +177,11 @@ struct Precipitation {
           .reflectance = 0.02};
 }
 
-/// Snow of a rate from 0.1 to 10 mm of melted water per hour, for a wavelength from 0.4 to 1.1 um [m]. Melted diameters
-/// from 0.1 to 5 mm by Sekhon & Srivastava 1970. Diameters here are those of discs of the shadow of a flake, 3.97 times
-/// as large: area in mm^2 = (mass in mg / 0.012)^(2/3), the mean of flakes in Hokuriku (Papers in Meteorology and
-/// Geophysics 31, 1980). Lidar ratio: 33 sr, of thin cirrus at 0.532 um (Josset et al. 2012). Beyond 1.1 um ice absorbs
-/// and no figure is known. @throws SettingError out of range
+/// Snow of a rate from 0.1 to 10 mm of melted water per hour, for 0.4 to 1.1 um [m]. Melted
+/// diameters from 0.1 to 5 mm by Sekhon & Srivastava 1970; diameters here are of discs of a flake's
+/// shadow, 3.97 times as large: area in mm^2 = (mass in mg / 0.012)^(2/3), the mean in Hokuriku
+/// (Papers in Meteorology and Geophysics 31, 1980). Lidar ratio: 33 sr, thin cirrus at 0.532 um
+/// (Josset et al. 2012). Beyond 1.1 um ice absorbs; no figure is known. @throws SettingError
 [[nodiscard]] inline Precipitation snow(double rate_mm_per_hour, double wavelength) {
   require_within("snow (rate)", rate_mm_per_hour, 0.1, 10, "mm/h");
   require_within("snow (wavelength)", wavelength, 0.4e-6, 1.1e-6, "m");
