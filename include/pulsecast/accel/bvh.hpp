@@ -23,18 +23,18 @@ namespace PULSECAST_NAMESPACE {
 template <std::floating_point Real>
 class BvhRefit;
 
-/// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary
-/// SAH tree down to single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to
-/// `leaf_size` primitives. Every primitive is in exactly one leaf. A bundle traverses the tree as a whole, front to
-/// back. The build halves a range where an SAH split would exceed 64 levels of the binary tree. The tree is the same
-/// for any workers. Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic);
-/// Wald, Benthin & Boulos 2008 (collapsing).
+/// BVH with up to eight children per node, whose boxes are tested against a bundle together. The
+/// build splits a binary SAH tree down to single primitives, and collapses it at least SAH cost
+/// into nodes and leaves of up to `leaf_size` primitives, each in exactly one leaf. A bundle
+/// traverses it as a whole, front to back. A range is halved where a split would exceed 64 levels.
+/// The tree is the same for any workers. Source: Wald 2007 (binned build); Wald, Boulos & Shirley
+/// 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008 (collapsing).
 template <std::floating_point Real = float>
 class Bvh {
  public:
-  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. `leaf_size`, from 1 to
-  /// 7: several primitives for vectorized tests; 1 where a test is a search of its own, as for the parts of a scene.
-  /// @throws SettingError for a `leaf_size` out of range, coordinates beyond 1e18 m, or more than 4294967294 boxes
+  /// Builds the tree over `boxes` [m]: a span, or a sized range that yields a `Box` by index.
+  /// `leaf_size`, from 1 to 7: several for vectorized tests; 1 where a test is a search. @throws
+  /// SettingError for another, coordinates beyond 1e18 m, or over 4294967294 boxes
   explicit Bvh(const detail::BoxRangeRef& boxes, const Workers& workers = {}, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, workers);
@@ -117,7 +117,7 @@ class Bvh {
     QuantizedBox8<Real> boxes;
     std::uint32_t children = 0;       ///< index of the first child node; the others follow it
     std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
-    std::uint8_t kinds[places] = {};  ///< by child: leaf size in the lower three bits, 0 for a node; above, its offset
+    std::uint8_t kinds[places] = {};  ///< by child: leaf size in three bits, 0 for a node; offset
 
     [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
     [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {
@@ -128,7 +128,7 @@ class Bvh {
 
   struct StackEntry {
     Real entry;
-    std::uint32_t first, size;  ///< first primitive of a leaf and its size, or index of a node and 0
+    std::uint32_t first, size;  ///< of a leaf: primitive and size; of a node: index and 0
   };
   static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< sentinel in place of a size
 
@@ -179,7 +179,6 @@ class Bvh {
     std::uint32_t first;
   };
 
-  /// As `descend`, for a single ray.
   void descend_alone(const auto& rays, const auto& test, auto& nearest) const noexcept {
     using Interval = RayInterval<Real>;
     const auto size_of = [](typename Interval::Key key) noexcept { return static_cast<std::uint32_t>(key & 7); };
@@ -241,7 +240,7 @@ class Bvh {
     std::uint32_t node, depth;
   };
 
-  /// Makes the upper nodes serially and the subtrees in parallel, then copies the subtrees into place.
+  /// Makes the upper nodes serially, the subtrees in parallel, then copies these into place.
   void collapse(const BinaryTree& binary, const Workers& workers) {
     const std::size_t count = binary.primitives().size();
     const SharedBuffer<PrimitiveIndex> primitives(count);

@@ -19,8 +19,7 @@ namespace PULSECAST_NAMESPACE {
 template <std::floating_point Real = float>
 class KdTree {
  public:
-  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. It
-  /// is the same for any workers.
+  /// Builds the tree over `boxes` [m], of a span or a sized range; the same for any workers.
   /// @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit KdTree(const detail::BoxRangeRef& boxes, const Workers& workers = {}) {
     const detail::BuildInput<Real> input(boxes, workers);
@@ -48,8 +47,8 @@ class KdTree {
         if (first > order_.size() || node.count > order_.size() - first) return false;
         continue;
       }
-      if (first <= i || first >= nodes_.size() - 1 || depths[first] != 0 || depths[first + 1] != 0) return false;
-      if (depths[i] > detail::max_depth) return false;
+      if (first <= i || first >= nodes_.size() - 1 || depths[i] > detail::max_depth) return false;
+      if (depths[first] != 0 || depths[first + 1] != 0) return false;
       depths[first] = depths[first + 1] = static_cast<std::uint8_t>(depths[i] + 1);
     }
     return std::all_of(order_.begin(), order_.end(), [&](PrimitiveIndex i) { return i < primitives; });
@@ -58,7 +57,7 @@ class KdTree {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + order_.memory(); }
 
-  /// Primitives in the order of the leaves, repeated in every leaf that they reach.
+  /// Primitives in the order of the leaves, repeated in each that they reach.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {order_.data(), order_.size()}; }
 
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
@@ -77,9 +76,10 @@ class KdTree {
         const Node* const children = &nodes_[node->first()];
         const Span low = interval.below(span, node->axis(), node->split),
                    high = interval.above(span, node->axis(), node->split);
-        const bool into_low = !low.empty() && low.entry <= limit, into_high = !high.empty() && high.entry <= limit;
-        const bool earlier = low.entry < high.entry || (low.entry == high.entry && low.exit <= high.exit);
-        const bool low_first = into_low && (!into_high || earlier);
+        const bool into_low = !low.empty() && low.entry <= limit;
+        const bool into_high = !high.empty() && high.entry <= limit;
+        const bool same = low.entry == high.entry && low.exit <= high.exit;
+        const bool low_first = into_low && (!into_high || low.entry < high.entry || same);
         if (into_low && into_high) {
           PULSECAST_ASSERT(stack_size < stack.size());
           stack[stack_size++] = low_first ? StackEntry{children + 1, high} : StackEntry{children, low};
@@ -111,7 +111,7 @@ class KdTree {
       std::uint64_t all = 0;  ///< so that no byte is undefined
     };
     [[nodiscard]] int axis() const noexcept { return static_cast<int>(packed & 3); }
-    /// First leaf primitive in the order of the leaves, or index of the lower child; the upper child follows it.
+    /// First leaf primitive in that order, or index of the lower child; the upper child follows it.
     [[nodiscard]] std::size_t first() const noexcept { return packed >> 2; }
     [[nodiscard]] static Node inner(std::size_t first, int axis, Real split) noexcept {
       Node node;

@@ -11,12 +11,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Accelerator without a search structure: tests every primitive. Oracle for the other
-/// accelerators, and efficient for a handful of primitives.
+/// Accelerator without a search structure: tests every primitive. Oracle for the others, and
+/// efficient for a handful of primitives.
 template <std::floating_point Real = float>
 class Linear {
  public:
-  /// Takes boxes [m]. @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
+  /// Boxes [m]. @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit Linear(std::span<const Box> boxes) {
     const detail::BuildInput<Real> input(boxes);
     bounds_ = input.bounds;

@@ -10,16 +10,16 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and recomputes its boxes;
-/// `update` builds the tree anew where that would be too slow. Quality is the SAH cost of the boxes. Hits do not depend
-/// on it. Source: Lauterbach et al. 2006 (refit, with the cost watched).
+/// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and
+/// recomputes its boxes; `update` builds it anew where that is too slow, by the SAH cost of the
+/// boxes; hits are the same. Source: Lauterbach et al. 2006 (refit, with the cost watched).
 template <std::floating_point Real>
 class BvhRefit {
  public:
-  static constexpr double max_growth = 1.6;  ///< SAH cost at which a tree is made anew, in units of its cost when built
+  /// SAH cost at which a tree is made anew, by its cost when built.
+  static constexpr double max_growth = 1.6;
 
-  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for
-  /// a tree without surface.
+  /// SAH cost of a tree: sum of the surfaces of its boxes, by the root's; 0 without surface.
   [[nodiscard]] static double cost(const Bvh<Real>& tree) noexcept {
     double sum = 0, root = 0;
     for (const Node& node : tree.nodes_) {
@@ -27,8 +27,9 @@ class BvhRefit {
       for (std::size_t place = 0; place < node.boxes.count; ++place) {
         BoundingBox<Real> box;
         for (std::size_t k = 0; k < 3; ++k) {
-          box.min[k] = node.boxes.origin[k] + static_cast<Real>(node.boxes.walls[k][0][place]) * node.boxes.step(k);
-          box.max[k] = node.boxes.origin[k] + static_cast<Real>(node.boxes.walls[k][1][place]) * node.boxes.step(k);
+          const auto& [low, high] = node.boxes.walls[k];
+          box.min[k] = node.boxes.origin[k] + static_cast<Real>(low[place]) * node.boxes.step(k);
+          box.max[k] = node.boxes.origin[k] + static_cast<Real>(high[place]) * node.boxes.step(k);
         }
         sum += detail::half_area(box);
         around.extend(corner(box.min), corner(box.max));
@@ -38,10 +39,10 @@ class BvhRefit {
     return relative(sum, root);
   }
 
-  /// Sets `to` to the topology of `from` over boxes that have moved. `box_of(primitives)` returns the `Box` [m] around
-  /// some primitives of `from.order()`. `bounds` hold all of them [m]. `to`, last set by this object or empty, gives
-  /// its memory; without another owner nothing is allocated. Returns false if the cost exceeds `max_growth`: `to` is
-  /// then empty. @throws SettingError for boxes beyond 1e18 m
+  /// Sets `to` to the topology of `from` over boxes that have moved. `box_of(primitives)` returns
+  /// the `Box` [m] around some primitives of `from.order()`; `bounds` hold all [m]. `to`, last set
+  /// by this object or empty, gives its memory; without another owner nothing is allocated. False,
+  /// `to` empty: the cost exceeds `max_growth`. @throws SettingError for boxes beyond 1e18 m
   [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const auto& box_of,
                            Bvh<Real>& to) {
     if (from.nodes_.empty()) {
@@ -56,8 +57,8 @@ class BvhRefit {
     to.primitives_ = {};
     if (nodes_.size() != topology.size() || nodes_.memory().use_count() != 1)
       nodes_ = SharedBuffer<Node>(topology.size());
-    static_cast<void>(
-        SharedBuffer<Node>(nodes_));  // counting an owner down acquires what another thread did to the memory before
+    // counting an owner down acquires what another thread did to the memory before
+    static_cast<void>(SharedBuffer<Node>(nodes_));
     around_.resize(topology.size());
     return finish(topology.data(), order, depth, bounds, box_of, to);
   }
@@ -68,13 +69,12 @@ class BvhRefit {
               const Workers& workers = {}) {
     Box bounds;
     for (const Box& box : boxes) bounds.extend(box);  // an empty box changes nothing
-    const auto box_of = [&](std::span<const PrimitiveIndex> primitives) noexcept { return boxes[primitives[0]]; };
+    const auto box_of = [&](const auto& primitives) noexcept { return boxes[primitives[0]]; };
     if (refit(from, state, bounds, box_of, to)) return;
     to = Bvh<Real>(boxes, workers, 1);
     nodes_ = {};
   }
 
-  /// Memory held beside the tree [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return around_.capacity() * sizeof(GrowingBox); }
 
  private:
@@ -85,16 +85,17 @@ class BvhRefit {
   static simd::Vec4<Real> corner(const Real (&at)[3]) noexcept { return {at[0], at[1], at[2]}; }
   static double relative(double sum, double root) noexcept { return root > 0 ? sum / root : 0; }
 
-  /// Box relative to a centre, extended by the rounding of the greatest coordinate: without a branch.
+  /// Box relative to a centre, extended by the rounding of the greatest coordinate: no branch.
   static GrowingBox rounded(const Box& box, const Vec3& centre, const simd::Vec4<Real>& margin) noexcept {
-    const auto lanes = [](const Vec3& p) noexcept { return simd::Vec4<double>(p.x, p.y, p.z).template as<Real>(); };
+    using Lanes = simd::Vec4<double>;
+    const auto lanes = [](const Vec3& p) noexcept { return Lanes(p.x, p.y, p.z).template as<Real>(); };
     GrowingBox out;
     out.min = lanes(box.min - centre) - margin;
     out.max = lanes(box.max - centre) + margin;
     return out;
   }
 
-  /// Sets boxes on the grid of a node, rounded outwards by up to two steps: without conversion to double.
+  /// Sets boxes on the grid of a node, rounded outwards by up to two steps: no double.
   static void quantize(std::span<const GrowingBox> boxes, const GrowingBox& around, QuantizedBox8<Real>& to) noexcept {
     constexpr Real margin = Real(0.01);  // above the rounding of 65,535 steps in single precision
     to.begin(around.box());
@@ -110,15 +111,16 @@ class BvhRefit {
     to.count = static_cast<std::uint8_t>(boxes.size());
   }
 
-  /// Computes all boxes, children before their parents, and sets the tree unless its cost is too high.
+  /// Computes all boxes, children first, and sets the tree unless its cost is too high.
   [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth,
                             const Box& bounds, const auto& box_of, Bvh<Real>& to) {
     const double extent = std::max(max_norm(bounds.min), max_norm(bounds.max));
     if (!(extent <= detail::max_coordinate))
       throw_setting_error("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
     const Vec3 centre = bounds.centre();
-    const double reach = 0.5 * max_norm(bounds.size()) * 2 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    const simd::Vec4<Real> margin(static_cast<Real>(reach) + std::numeric_limits<Real>::min());
+    using Limits = std::numeric_limits<Real>;
+    const double reach = max_norm(bounds.size()) * static_cast<double>(Limits::epsilon());
+    const simd::Vec4<Real> margin(static_cast<Real>(reach) + Limits::min());
     double sum = 0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       Node& node = nodes_[i] = topology[i];
@@ -148,7 +150,7 @@ class BvhRefit {
   }
 
   SharedBuffer<Node> nodes_;        ///< memory of the last tree
-  double built_cost_ = 0;           ///< SAH cost of the topology when built; 0 for that of a tree not yet refitted
+  double built_cost_ = 0;           ///< SAH cost of the topology when built; 0 before a refit
   std::vector<GrowingBox> around_;  ///< box of each node
 };
 

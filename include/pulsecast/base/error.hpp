@@ -42,8 +42,7 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
-  /// `problem` follows `field` in the message: `tEnd` and ` is not after tStart`. No number is at
-  /// fault.
+  /// `problem` follows `field` in the message: `tEnd` and ` is not after tStart`, without a number.
   SettingError(std::string field, std::string problem)
       : std::invalid_argument(text::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
 

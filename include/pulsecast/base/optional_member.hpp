@@ -10,9 +10,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Promise of a type to model refinements, by a tag of the name of each concept: a public member
-/// `using refinements = pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. The absence of a
-/// promised member is an error.
+/// Promise of a type to model refinements: a public member `using refinements =
+/// pulsecast::refines<tag::Gated, tag::ForeseesOpening>;`. A missing one is an error.
 template <class... Tags>
 struct refines {
   /// True; refuses a type that breaks the promise.

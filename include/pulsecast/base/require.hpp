@@ -35,7 +35,7 @@ inline void require_positive(std::string_view field, double value, std::string_v
   if (!(value > 0) || !std::isfinite(value)) throw_setting_error(field, value, unit, "finite and greater than 0");
 }
 
-/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12], where a `Tick` resolves 1e-4 of a
+/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12], where a `Tick` has 1e-4 of a
 /// cycle.
 inline void require_rate(std::string_view field, double value) {
   if (!(value > 0 && value <= 1e12)) throw_setting_error(field, value, "Hz", "greater than 0 and at most 1e12");
@@ -62,6 +62,13 @@ namespace detail {
 inline void require_within(std::string_view field, double value, double low, double high, std::string_view unit) {
   if (!(value >= low && value <= high)) detail::refuse_outside(field, value, low, high, unit);
 }
+
+namespace detail {
+/// As above, of a number of elements.
+inline void require_count(std::string_view field, std::size_t value, std::size_t low, std::size_t high) {
+  require_within(field, static_cast<double>(value), static_cast<double>(low), static_cast<double>(high), "");
+}
+}  // namespace detail
 
 /// Throws a `SettingError` unless the angle is within a turn: in [-2 pi, 2 pi].
 inline void require_angle(std::string_view field, double value) {

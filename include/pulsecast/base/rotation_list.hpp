@@ -32,8 +32,7 @@ struct AxisAngle {
   return normalize(all);
 }
 
-/// Intrinsic rotations in sequence, each about an axis of the rotated frame: `extrinsic` of the
-/// turns in reverse order.
+/// Intrinsic rotations, each about an axis of the rotated frame: `extrinsic` in reverse order.
 [[nodiscard]] inline Rotation intrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) {

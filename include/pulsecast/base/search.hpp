@@ -29,15 +29,13 @@ struct Neighbours {
   friend bool operator==(const Neighbours&, const Neighbours&) = default;
 };
 
-/// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all
-/// elements before the place.
+/// Neighbours of a place in a table of `count` > 0 elements; `before(i)` is true before the place.
 [[nodiscard]] constexpr Neighbours neighbours(std::size_t count, const auto& before) noexcept {
   const std::size_t i = first_not(count, before);
   return {i == 0 ? 0 : i - 1, i == count ? count - 1 : i};
 }
 
-/// Value at `x` in a table of at least one entry, ascending in the member `key`: linear between
-/// entries, constant beyond the ends.
+/// Value at `x` in a table that ascends in the member `key`: linear between entries, else constant.
 template <class Table, class Entry>
 [[nodiscard]] constexpr double interpolated(const Table& table, double x, double Entry::*key,
                                             double Entry::*value) noexcept {

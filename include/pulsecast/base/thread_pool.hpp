@@ -20,8 +20,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Threads that are kept from call to call, with the memory of runs: the library's executor. The
 /// caller of `for_each` works, too, and waits for its own tasks only, so calls may be nested, and
-/// threads share a pool. It must outlive its calls. In a child of `fork`, calls run on their caller
-/// alone.
+/// threads share a pool. It must outlive its calls. In a child of `fork`, callers work alone.
 class ThreadPool {
  public:
   /// Starts `threads` - 1 threads, as the caller is one; 0 as in `thread_count`. Throws a

@@ -53,8 +53,7 @@ template <class V>
   return set != 0;
 }
 
-/// Greatest argument that `reduced` takes: its number of quarter turns has 20 bits, so that its
-/// products with 33 bits are exact.
+/// Greatest argument of `reduced`: 20 bits of quarter turns, so products with 33 bits are exact.
 inline constexpr double greatest_angle = 1e6;
 
 /// Angle less its nearest multiple of pi/2, as a sum of two numbers, and the quarter turns.
@@ -223,8 +222,7 @@ template <class V>
   return exponent == 0.0 ? zero + 1.0 : (base == 1.0 ? zero + 1.0 : value);
 }
 
-/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0.
-/// Error at most `exponent` ulp.
+/// base^exponent by squaring, with the same bits in lanes; 1 for exponent 0. Error: `exponent` ulp.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V whole_power(V base, unsigned exponent) noexcept {
   V power = V{} + 1.0;

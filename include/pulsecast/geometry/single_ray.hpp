@@ -15,8 +15,7 @@
 /// them as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
 namespace PULSECAST_NAMESPACE {
 
-/// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the
-/// far end; there is no wavelength.
+/// Bundle of one ray without columns: 104 bytes. The hits hold the far end; there is no wavelength.
 struct SingleRayPacket {
   static constexpr std::size_t capacity = 1, size = 1;  ///< as in `RayBundle`
 

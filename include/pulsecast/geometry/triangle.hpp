@@ -20,19 +20,13 @@ namespace PULSECAST_NAMESPACE {
 struct Triangle {
   Vec3 a{}, b{}, c{};  ///< corners [m]
 
-  [[nodiscard]] Box bounds() const noexcept {
-    Box box;
-    box.extend(a);
-    box.extend(b);
-    box.extend(c);
-    return box;
-  }
+  [[nodiscard]] Box bounds() const noexcept { return {min(min(a, b), c), max(max(a, b), c)}; }
 
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 
-  /// Barycentric weights of a, b and c at the point that a ray hits, none negative; they sum to
-  /// one. A third each without area.
+  /// Barycentric weights where a ray hits, none negative, of a sum of one; a third each without
+  /// area.
   [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
     const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
     const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),
@@ -53,7 +47,6 @@ concept EndsEarly = requires(const Hits& hits) {
   noexcept->std::same_as<bool>;
 };
 
-/// Triangles without holes.
 struct SolidEverywhere {
   bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
 };

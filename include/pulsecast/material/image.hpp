@@ -51,7 +51,6 @@ struct Image {
   std::uint32_t channels = 0;              ///< 1: grey; 3: red, green, blue; 2 and 4: with opacity
   SharedArray<std::uint8_t> samples = {};  ///< by pixel, row by row from the top left; shared
 
-  /// @throws SettingError for a size of zero, or another number of samples
   void validate() const {
     require_within("Image::width", width, 1, 65536, "pixel");
     require_within("Image::height", height, 1, 65536, "pixel");

@@ -38,7 +38,6 @@ struct Material {
   std::shared_ptr<const Image> picture{};      ///< factor of the colour by texture, if any
   std::shared_ptr<const ReflectanceByTexture> reflectance_map{};  ///< reflectance by texture, if any
 
-  /// @throws SettingError for values out of range
   void validate() const {
     require_within("Material::reflectance", reflectance, 0, 1, "");
     law.validate();

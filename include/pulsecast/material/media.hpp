@@ -48,8 +48,8 @@ struct MediumRegion {
   }
 };
 
-/// Media in the air, in boxes of which each is inside another or apart from it: the innermost
-/// counts. Copies share their memory.
+/// Media in the air, in boxes, each inside another or apart: the innermost counts. Copies share
+/// memory.
 class Media {
  public:
   /// Clear air.
@@ -106,7 +106,6 @@ class Media {
   }
 
  private:
-  /// Ranges at which a ray enters a box and leaves it [m].
   struct Passage {
     double in = -detail::infinity, out = detail::infinity;
   };

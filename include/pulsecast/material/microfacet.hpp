@@ -72,7 +72,6 @@ struct Microfacet {
 
   double slope = 0.3;  ///< root mean square of the facets' slope, both axes together, from 1e-3 to 2
 
-  /// @throws SettingError for values out of range
   void validate() const { require_within("Microfacet::slope", slope, 1e-3, 2, ""); }
   double backscatter(double cosine, const SurfaceLight& light) const noexcept {
     const detail::Microfacets facets{slope, light.relative_index};

@@ -15,7 +15,6 @@ struct NormalizedPhong {
   double share = 0;      ///< share of the reflectance in the lobe, in [0, 1]
   double exponent = 10;  ///< exponent of the lobe, at least 0
 
-  /// @throws SettingError for values out of range
   void validate() const {
     require_within("NormalizedPhong::share", share, 0, 1, "");
     require_not_negative("NormalizedPhong::exponent", exponent, "");

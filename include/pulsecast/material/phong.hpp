@@ -31,7 +31,6 @@ struct Phong {
   double share = 0;      ///< share of the reflectance in the lobe, in [0, 1]
   double exponent = 10;  ///< exponent of the lobe, at least 0
 
-  /// @throws SettingError for values out of range
   void validate() const {
     require_within("Phong::share", share, 0, 1, "");
     require_not_negative("Phong::exponent", exponent, "");

@@ -18,8 +18,7 @@ struct ReflectanceMap final : ReflectanceByTexture {
   /// Wavelengths of red, green and blue, descending [m]. Source: IEC 61966-2-1 primaries.
   std::array<double, 3> wavelengths{612e-9, 549e-9, 465e-9};
   /// If not zero, the mean of red, green and blue: the picture is a pattern, and the reflectance is
-  /// that of the material times the ratio of a pixel to the mean, at most 1. For other wavelengths,
-  /// such as 1064 nm.
+  /// the material's times a pixel by the mean, at most 1. For other wavelengths, such as 1064 nm.
   Vec3 mean{};
 
   ReflectanceMap() = default;

@@ -38,8 +38,7 @@ struct SmoothInterface {
     return {.kind = InterfaceKind::dielectric, .inside = soda_lime};
   }
 
-  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. Foam and glint: see
-  /// `Microfacet`.
+  /// Surface of water, such as `water(JerlovType::coastal_1, 532e-9)`. Glint: see `Microfacet`.
   [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
     return {.kind = InterfaceKind::water, .inside = inside};
   }

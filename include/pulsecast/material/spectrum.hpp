@@ -15,8 +15,7 @@ struct SpectralSample {
   double reflectance = 0;  ///< reflectance, in [0, 1]
 };
 
-/// Reflectance over wavelength: linear between the samples, constant beyond the first and last.
-/// Copies share the samples.
+/// Reflectance over wavelength: linear between samples, constant beyond. Copies share the samples.
 class Spectrum {
  public:
   /// At least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise

@@ -25,7 +25,6 @@ struct Tabulated {
   /// Backscatter by incidence: linear between rows, constant beyond them; angles ascend.
   SharedArray<BackscatterAtIncidence> rows{};
 
-  /// @throws SettingError for an empty table, or rows out of range
   void validate() const {
     require_within("Tabulated::rows (number)", static_cast<double>(rows.size()), 1, 1e6, "");
     for (std::size_t i = 0; i < rows.size(); ++i) {

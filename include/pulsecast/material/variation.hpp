@@ -13,9 +13,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or
-/// its whole spectrum, by a uniform random amount from minus to plus `range`, and clips it to [0,
-/// 1]. A variant depends on the seed and its number. @throws SettingError for a bad material or a
-/// `range` outside [0, 1]
+/// its spectrum, by a uniform random amount from minus to plus `range`, and clips it to [0, 1]; it
+/// depends on the seed and the number. @throws SettingError for a bad material or `range`
 [[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants,
                                                             double range, std::uint64_t seed) {
   material.validate();

@@ -139,10 +139,9 @@ inline constexpr double particles_backward = 0.018;
 }  // namespace detail
 
 /// Diffuse attenuation coefficient of a type of water [1/m] for a wavelength from 0.35 to 1.1 um
-/// [m]. To 0.7 um linear between the rows of Austin & Petzold 1986 and Jerlov 1976. Beyond, where
-/// nothing was tabulated, the absorption of pure water and what the type has above it at 0.7 um:
-/// 0.05 1/m for I to 0.5 1/m for 9C, where water absorbs 7 1/m at 0.905 um and 15 1/m at 1.064 um.
-/// @throws SettingError out of range
+/// [m]. To 0.7 um linear between the rows of Austin & Petzold 1986 and Jerlov 1976. Beyond, not
+/// tabulated: absorption of pure water (7 1/m at 0.905 um, 15 1/m at 1.064 um), and what the type
+/// has above it at 0.7 um: 0.05 1/m for I to 0.5 1/m for 9C. @throws SettingError out of range
 [[nodiscard]] inline double water_attenuation(JerlovType type, double wavelength) {
   using namespace detail;
   const auto column = static_cast<std::size_t>(type);
@@ -165,9 +164,9 @@ inline constexpr double particles_backward = 0.018;
   return detail::natural_water(water_attenuation(type, wavelength), at_green, wavelength, state);
 }
 
-/// Water of a measured diffuse attenuation coefficient [1/m] and backscatter coefficient [1/(m sr)]
-/// at a laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles
-/// by Petzold 1972 with this backscatter. @throws SettingError out of range, or if it exceeds the
+/// Water of a measured diffuse attenuation [1/m] and backscatter coefficient [1/(m sr)] at a
+/// laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles by
+/// Petzold 1972 with this backscatter. @throws SettingError out of range, or if it exceeds the
 /// attenuation
 [[nodiscard]] inline Medium measured_water(double attenuation, double backscatter, double wavelength,
                                            const WaterState& state = {}) {

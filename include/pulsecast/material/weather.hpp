@@ -17,8 +17,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Air with particles of an extinction coefficient [1/m], a share of it that is scattered, and its
-/// ratio to the backscatter [sr].
+/// Air with particles: extinction [1/m], share of it scattered, and its ratio to the backscatter
+/// [sr].
 [[nodiscard]] inline Medium hazy_air(double extinction, double albedo, double lidar_ratio) noexcept {
   return {.group_index = 1,
           .absorption = (1 - albedo) * extinction,
@@ -26,8 +26,8 @@ namespace detail {
           .backscatter = extinction / lidar_ratio};
 }
 
-/// Integral of x^(order-1) exp(-x) from 0 to y for an order from 1 to 3: a series of positive terms
-/// for small y, else its closed form.
+/// Integral of x^(order-1) exp(-x) from 0 to y, order 1 to 3: by a series for small y, or closed
+/// form.
 template <int order>
 [[nodiscard]] double lower_gamma(double y) noexcept {
   if constexpr (order == 1) return -std::expm1(-y);
@@ -53,9 +53,8 @@ template <int order>
 
 /// Fog of a visibility, from 1 m to 1 km [m], for a wavelength from 0.4 to 1.6 um [m]. Extinction:
 /// `extinction` by Kim 2001, even below 500 m. Lidar ratio: 18.8 sr (O'Connor, Illingworth & Hogan
-/// 2004, stratocumulus at 0.905 um); by Mie's series droplets of radii from 2 to 20 um have 18 to
-/// 21 sr from 0.53 to 1.55 um. All is scattered: they absorb less than 1 %. @throws SettingError
-/// out of range
+/// 2004, stratocumulus at 0.905 um); by Mie's series droplets of radii of 2 to 20 um have 18 to 21
+/// sr from 0.53 to 1.55 um. All is scattered: they absorb below 1 %. @throws SettingError
 [[nodiscard]] inline Medium fog(double visibility, double wavelength) {
   require_within("fog (visibility)", visibility, 1, 1e3, "m");
   require_within("fog (wavelength)", wavelength, 0.4e-6, 1.6e-6, "m");

@@ -11,7 +11,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Nearest hit in a target of each ray of a bundle. Sets one hit per ray, of infinite range for a miss.
+/// Nearest hit in a target of each ray of a bundle, one per ray; of infinite range for a miss.
 template <Target Target>
 void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits) noexcept {
   if constexpr (BundleTarget<Target>)
@@ -24,7 +24,7 @@ void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits)
         hit.scattered_share = hit.backscatter < hit.cos_incidence ? hit.backscatter / hit.cos_incidence : 1;
 }
 
-/// Asks the law of a material what it scatters of light of a wavelength [m], at hits whose cosine is set.
+/// Asks the law of a material for light of a wavelength [m], at hits whose cosine is set.
 [[gnu::always_inline]] inline void scatter_at(const Material& material, double wavelength,
                                               const std::optional<Vec2>& texture, std::span<Hit> hits) noexcept {
   const SurfaceLaw& law = material.law;
@@ -39,13 +39,20 @@ void find_hits(const Target& target, const RayBundle& rays, std::span<Hit> hits)
 }
 
 namespace detail {
-/// Visits the materials of a target that `VisitsMaterials`.
+template <class T>
+concept Bounded = requires(const T& map) {
+  map.bounds();
+};
+template <class T>
+concept FindsGround = requires(const T& map) {
+  map.ground_height(Vec2{}, 0.0);
+};
+
 template <class Target, class Visitor>
 void visit_materials(const Target& target, const Visitor& visit) {
   static_assert(members_checked<Target, tag::VisitsMaterials>);
   if constexpr (VisitsMaterials<Target>) target.visit_materials(visit);
 }
-/// True only if a target that `MissesCones` says so of a cone of rays.
 template <Target Target>
 [[nodiscard]] bool misses_cone(const Target& target, const RayCone& cone) noexcept {
   static_assert(members_checked<Target, tag::MissesCones>);

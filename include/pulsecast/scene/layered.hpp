@@ -13,12 +13,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties
-/// go to the first target. Refers to its targets, which must outlive it. A target assigned anew, as
-/// by `Scene::with_placements`, is met as it then is.
+/// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit; ties go to
+/// the first target. Refers to its targets, which must outlive it. A target assigned anew, as by
+/// `Scene::with_placements`, is met as it then is.
 template <Target First, Target... Others>
 class Layered {
-  static constexpr bool answers = SceneQueries<First> && (SceneQueries<Others> && ...);
+  static constexpr bool answers = (SceneQueries<First> && ... && SceneQueries<Others>);
 
  public:
   /// Refers to the targets.
@@ -37,7 +37,7 @@ class Layered {
         },
         targets_);
   }
-  /// As above, and visits the surfaces. This query and the next three exist if all targets have `SceneQueries`.
+  /// As above, and visits the surfaces. These four exist if all targets have `SceneQueries`.
   template <class Visitor>
   requires(answers) void closest(const StaggeredBundle& rays, std::span<Hit> hits,
                                  const Visitor& visit) const noexcept {
@@ -49,7 +49,6 @@ class Layered {
         targets_);
   }
 
-  /// Closest hit of a ray; empty for a miss.
   [[nodiscard]] std::optional<RayHit> closest_hit(Ray ray) const noexcept requires(answers) {
     std::optional<RayHit> nearest;
     each([&](std::uint32_t i, const auto& target) noexcept {
@@ -62,11 +61,10 @@ class Layered {
     return nearest;
   }
 
-  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
-  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept
-      requires(answers) {
-    return std::apply([&](const auto*... targets) noexcept { return (targets->occluded(ray, range) || ...); },
-                      targets_);
+  [[nodiscard]] bool occluded(const Ray& ray, double range = detail::infinity) const noexcept requires(answers) {
+    bool any = false;
+    each([&](std::uint32_t, const auto& target) noexcept { any = any || target.occluded(ray, range); });
+    return any;
   }
 
   /// Surface at a hit of the same ray, in the world. Its `part` is that of the target hit.
@@ -80,53 +78,42 @@ class Layered {
     return surface;
   }
 
-  /// True only if no ray of a cone meets anything in any target.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
-    return std::apply([&](const auto*... targets) noexcept { return (detail::misses_cone(*targets, cone) && ...); },
-                      targets_);
+    bool all = true;
+    each([&](std::uint32_t, const auto& target) noexcept { all = all && detail::misses_cone(target, cone); });
+    return all;
   }
 
-  /// As of a target that `VisitsMaterials`, for targets that do.
   template <class Visitor>
   void visit_materials(const Visitor& visit) const {
     each([&](std::uint32_t, const auto& target) { detail::visit_materials(target, visit); });
   }
 
-  /// Bounds of all targets [m].
-  [[nodiscard]] Box bounds() const noexcept requires(requires(const First& f, const Others&... o) {
-    f.bounds();
-    (o.bounds(), ...);
-  }) {
+  [[nodiscard]] Box bounds() const noexcept requires(detail::Bounded<First>&&...&& detail::Bounded<Others>) {
     Box all;
-    std::apply([&](const auto*... targets) noexcept { (all.extend(targets->bounds()), ...); }, targets_);
+    each([&](std::uint32_t, const auto& target) noexcept { all.extend(target.bounds()); });
     return all;
   }
 
-  /// Height of the ground of the targets at a place that is nearest to a height; by default of the
-  /// highest [m]. Empty if none has any.
-  [[nodiscard]] std::optional<double> ground_height(
-      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
-      requires(requires(const First& f, const Others&... o) {
-        f.ground_height(at, near);
-        (o.ground_height(at, near), ...);
-      }) {
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = detail::infinity) const noexcept
+      requires(detail::FindsGround<First>&&...&& detail::FindsGround<Others>) {
     std::optional<double> best;
     const auto is_better = [&](double a, double b) noexcept {
-      return near < std::numeric_limits<double>::infinity() ? std::fabs(a - near) < std::fabs(b - near) : a > b;
+      return near < detail::infinity ? std::fabs(a - near) < std::fabs(b - near) : a > b;
     };
-    const auto take = [&](const std::optional<double>& height) noexcept {
+    each([&](std::uint32_t, const auto& target) noexcept {
+      const std::optional<double> height = target.ground_height(at, near);
       if (height && (!best || is_better(*height, *best))) best = height;
-    };
-    std::apply([&](const auto*... targets) noexcept { (take(targets->ground_height(at, near)), ...); }, targets_);
+    });
     return best;
   }
 
  private:
-  /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
+  /// Replaces the hits beyond those of a target, which is traced to the farthest of them.
   template <class Target>
   static void add(const Target& target, const RayBundle& rays, std::span<Hit> hits) noexcept {
-    alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)>
-        memory;  // not initialised, as most bundles have one ray
+    // not initialised, as most bundles have one ray
+    alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)> memory;
     const std::span<Hit> others(reinterpret_cast<Hit*>(memory.data()), rays.size);
     find_hits(target, up_to(hits, rays), others);
     for (std::size_t j = 0; j < rays.size; ++j)
@@ -136,7 +123,7 @@ class Layered {
   static void add(const Target& target, const StaggeredBundle& rays, std::span<Hit> hits,
                   const Visitor& visit) noexcept {
     std::array<Hit, RayBundle::capacity> others;
-    const auto visit_nearer = [&](std::size_t first, std::size_t end, const SurfaceInteraction& surface) noexcept {
+    const auto visit_nearer = [&](std::size_t first, std::size_t end, const auto& surface) noexcept {
       for (std::size_t j = first; j < end; ++j) {
         if (!is_nearer(others[j], hits[j])) continue;
         hits[j] = others[j];
@@ -146,7 +133,6 @@ class Layered {
     target.closest(up_to(hits, rays), others, visit_nearer);
   }
 
-  /// Rays as far as the farthest of their hits.
   template <class Rays>
   static Rays up_to(std::span<const Hit> hits, Rays rays) noexcept {
     double farthest = 0;
@@ -159,7 +145,6 @@ class Layered {
     return !std::isnan(hit.range) && !(other.range >= hit.range);
   }
 
-  /// Calls `visit(i, target)` for each target, in order.
   template <class Visitor>
   void each(const Visitor& visit) const {
     std::uint32_t i = 0;

@@ -20,16 +20,14 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a
-/// centre that moves along. A helix if the velocity is along the axis; rest if both are zero.
+/// centre that moves along: a helix if the velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
-  Vec3 velocity{};          ///< [m/s]
-  Vec3 axis = axis::up;     ///< direction, of any non-zero length
-  double angular_rate = 0;  ///< right-handed about the axis [rad/s]
-  std::optional<Vec3>
-      centre{};  ///< point of the axis in the world at the motion's start [m]; empty for the body's own centre
-  std::optional<Vec3>
-      spin{};  ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
-  double duration = std::numeric_limits<double>::infinity();  ///< at least 1e-6 [s]
+  Vec3 velocity{};                     ///< [m/s]
+  Vec3 axis = axis::up;                ///< direction, of any non-zero length
+  double angular_rate = 0;             ///< right-handed about the axis [rad/s]
+  std::optional<Vec3> centre{};        ///< point of the axis at the start, in the world; empty: own centre [m]
+  std::optional<Vec3> spin{};          ///< angular velocity, if not the orbit's: 0 for a Ferris wheel's cabin [rad/s]
+  double duration = detail::infinity;  ///< at least 1e-6 [s]
 
   void validate() const {
     require_finite("SteadyMotion::velocity (length)", length(velocity), "m/s");
@@ -41,7 +39,7 @@ struct SteadyMotion {
   }
 };
 
-/// Motions in succession, all of them repeated `times` times. Each begins at the end of the one before.
+/// Motions in succession, repeated `times` times. Each begins at the end of the one before.
 struct MotionSequence {
   std::vector<SteadyMotion> motions{};  ///< motions in succession; at least one
   std::uint64_t times = 1;              ///< number of repetitions, from 1 to 1e15
@@ -53,8 +51,7 @@ enum class AfterLastPose : std::uint8_t {
   start_again,  ///< jumps to its pose at the start of the survey and repeats from there
 };
 
-/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so
-/// that no digits are lost far from the world's origin.
+/// Displacement of a body: rotation about a point near it, to lose no digits, then a shift.
 struct Displacement {
   Rotation rotation = no_rotation;  ///< unit quaternion
   Vec3 about{};                     ///< [m]
@@ -65,8 +62,8 @@ struct Displacement {
 };
 
 /// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds`
-/// [s]: a screw, the shorter way around. Source: Chasles 1830; the centre of a plane displacement,
-/// Bottema & Roth 1979, Theoretical Kinematics, ch. III.
+/// [s]: a screw, the shorter way around. Source: Chasles 1830; its centre: Bottema & Roth 1979,
+/// Theoretical Kinematics, ch. III.
 /// @throws SettingError unless `seconds` is positive, the position [m] finite and the rotation unit
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
   require_positive("steady_motion (seconds)", seconds, "s");
@@ -81,9 +78,8 @@ struct Displacement {
           .centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2))};
 }
 
-/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement.
-/// Times count from the start of the survey; before it, the part is as placed. "Its own centre" is
-/// the centre of its box as placed, and moves along.
+/// Motion of a part: rigid, in closed form over time, on top of its placement. Times count from the
+/// start of the survey; before, it is as placed. Its own centre, of its box, moves along.
 class PartMotion {
  public:
   /// Follows one motion, then rests at its end. @throws SettingError for values out of range
@@ -110,7 +106,7 @@ class PartMotion {
   }
 
   /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis,
-  /// the shorter way. Before the first pose the body rests there. A pose applies on top of the
+  /// the shorter way. Before the first the body rests there. A pose applies on top of the
   /// placement: rotation about the world's origin, then a shift by `position`.
   /// @throws SettingError for values out of range, or times that do not ascend
   explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest)
@@ -118,20 +114,22 @@ class PartMotion {
     if (poses.empty()) throw SettingError("PartMotion::poses (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::string field = "PartMotion::poses[" + std::to_string(i) + "]";
-      require_within(field + ".time", poses[i].time, 0, 1e15, "s");
-      if (i > 0 && !(poses[i].time > poses[i - 1].time))
-        throw SettingError(field + ".time", poses[i].time, "s",
+      const auto& [time, position, rotation] = poses[i];
+      require_within(field + ".time", time, 0, 1e15, "s");
+      if (i > 0 && !(time > poses[i - 1].time))
+        throw SettingError(field + ".time", time, "s",
                            "greater than that of the previous pose, " + text::to_text(poses[i - 1].time));
-      require_finite(field + ".position (length)", length(poses[i].position), "m");
-      require_rotation(field + ".rotation", poses[i].rotation);
+      require_finite(field + ".position (length)", length(position), "m");
+      require_rotation(field + ".rotation", rotation);
     }
     const bool again = after == AfterLastPose::start_again;
-    if (again) require_within("PartMotion::poses (time of the last)", poses.back().time, 1e-6, 1e15, "s");
-    if (poses.front().time > 0) add_way({0, poses.front().position, poses.front().rotation}, poses.front());
+    const TimedPose &first = poses.front(), &last = poses.back();
+    if (again) require_within("PartMotion::poses (time of the last)", last.time, 1e-6, 1e15, "s");
+    if (first.time > 0) add_way({0, first.position, first.rotation}, first);
     for (std::size_t i = 1; i < poses.size(); ++i) add_way(poses[i - 1], poses[i]);
-    const Tick time = Tick::of_seconds(poses.back().time);
-    const Change last{normalize(poses.back().rotation), {no_rotation, poses.back().position}};
-    again ? end_cycle(time, {}) : end({time, last});  // each cycle begins with no change
+    const Tick time = Tick::of_seconds(last.time);
+    const Change change{normalize(last.rotation), {no_rotation, last.position}};
+    again ? end_cycle(time, {}) : end({time, change});  // each cycle begins with no change
   }
 
   explicit PartMotion(DeserializeTag) {}
@@ -143,7 +141,6 @@ class PartMotion {
   }
   [[nodiscard]] bool is_consistent() const noexcept { return timeline_.is_consistent(); }
 
-  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return sizeof(*this) + timeline_.heap_bytes(); }
 
   /// Displacement at a time of a body with its own centre placed at `own_centre` [m].
@@ -153,20 +150,21 @@ class PartMotion {
     return {state.attitude, centre, state.centre - start};
   }
 
-  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that
-  /// time [m]. Zero before the start; at a change of motion that of the later one.
+  /// Velocity at a time of a point of the body [m/s], which is at `point` in the world at that time
+  /// [m]. Zero before the start; at a change of motion that of the later one.
   [[nodiscard]] Vec3 velocity(const Tick& tick, const Vec3& own_centre, const Vec3& point) const noexcept {
     if (tick < Tick{}) return {};
     const Vec3 start = (from_origin_ ? Vec3{} : own_centre) - reference_;
     const detail::MotionPlace place = timeline_.place_of(tick);
     const Vec3 centre = detail::state_at(place, start).centre;
-    return detail::velocity_at(place, centre) +
-           place.piece->attitude.angular_rate * cross(place.piece->attitude.axis, point - reference_ - centre);
+    const detail::Turning& turning = place.piece->attitude;
+    const Vec3 by_turning = turning.angular_rate * cross(turning.axis, point - reference_ - centre);
+    return detail::velocity_at(place, centre) + by_turning;
   }
 
   /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a
-  /// part, with its centre there as the body's own. Tight for small rotations and few changes of
-  /// motion in this time, loose otherwise. Empty for an empty box.
+  /// part, with its centre as the body's own. Tight for small rotations and few changes of motion,
+  /// loose otherwise. Empty for an empty box.
   [[nodiscard]] Box swept(const Box& box, const Placement& placement, const Tick& from, const Tick& to) const noexcept {
     if (box.empty()) return {};
     const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;
@@ -175,8 +173,8 @@ class PartMotion {
     Box swept = detail::swept_box(timeline_, body, from, to);
     swept.min = swept.min + reference_;
     swept.max = swept.max + reference_;
-    return detail::grown(swept,
-                         1e-12 * (max_norm(swept.min) + max_norm(swept.max)) + 1e-7 * body.radius());  // above rounding
+    const double reach = max_norm(swept.min) + max_norm(swept.max);
+    return detail::grown(swept, 1e-12 * reach + 1e-7 * body.radius());  // above rounding
   }
 
  private:
@@ -199,18 +197,17 @@ class PartMotion {
   void add(const MotionSequence& sequence, const std::string& field, bool last, SoFar& so_far) {
     if (sequence.motions.empty()) throw SettingError(field + ".motions (number)", 0, "", "at least 1");
     require_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
-    detail::MotionRun run{
-        so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), timeline_.pieces.size(), 0};
+    const auto times = static_cast<std::int64_t>(sequence.times);
+    detail::MotionRun run{so_far.change, so_far.time, {}, 0, times, timeline_.pieces.size(), 0};
     for (std::size_t k = 0; k < sequence.motions.size(); ++k) {
       const SteadyMotion& m = sequence.motions[k];
       m.validate();
       const bool may_be_infinite = last && k + 1 == sequence.motions.size() && sequence.times == 1;
-      if (!may_be_infinite)
-        require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
+      const std::string name = field + ".motions[" + std::to_string(k) + "].duration";
+      if (!may_be_infinite) require_within(name, m.duration, 1e-6, 1e15, "s");
       const detail::Turning orbit{normalize(m.axis), m.angular_rate};
-      detail::Turning attitude = orbit;
-      if (m.spin)
-        attitude = length(*m.spin) > 0 ? detail::Turning{normalize(*m.spin), length(*m.spin)} : detail::Turning{};
+      detail::Turning attitude = m.spin ? detail::Turning{} : orbit;
+      if (m.spin && length(*m.spin) > 0) attitude = {normalize(*m.spin), length(*m.spin)};
       timeline_.pieces.push_back({.before = run.pass,
                                   .velocity = m.velocity,
                                   .orbit = orbit,
@@ -221,8 +218,8 @@ class PartMotion {
                                   .start = run.pass_duration,
                                   .duration = m.duration});
       run.pass_duration += m.duration;
-      if (std::isfinite(m.duration))
-        run.pass = detail::then(run.pass, change(timeline_.pieces.back(), Tick::of_seconds(m.duration)));
+      if (!std::isfinite(m.duration)) continue;
+      run.pass = detail::then(run.pass, change(timeline_.pieces.back(), Tick::of_seconds(m.duration)));
     }
     run.pass = rounded(run.pass);
     run.end = timeline_.pieces.size();
@@ -260,25 +257,19 @@ class PartMotion {
     timeline_.shrink_to_fit();
   }
 
-  /// Appends a rest to a finite motion.
   void end(const SoFar& so_far) {
     if (!so_far.endless) {
+      const std::size_t rest = timeline_.pieces.size();
       timeline_.pieces.emplace_back();
-      timeline_.runs.push_back({so_far.change,
-                                so_far.time,
-                                {},
-                                timeline_.pieces.back().duration,
-                                1,
-                                timeline_.pieces.size() - 1,
-                                timeline_.pieces.size()});
+      timeline_.runs.push_back({so_far.change, so_far.time, {}, detail::infinity, 1, rest, rest + 1});
     }
     timeline_.cycle_first = timeline_.runs.size();
     timeline_.shrink_to_fit();
   }
 
   detail::MotionTimeline timeline_;
-  Vec3 reference_{};          ///< origin of the paths: near the motion, so that no digits are lost [m]
-  bool from_origin_ = false;  ///< true for timed poses: rotation about the world's origin, not the body's own centre
+  Vec3 reference_{};          ///< origin of the paths, near the motion [m]
+  bool from_origin_ = false;  ///< true for timed poses, about the world's origin
 };
 
 }  // namespace PULSECAST_NAMESPACE

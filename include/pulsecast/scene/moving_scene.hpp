@@ -12,9 +12,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part at its
-/// pose of the pulse's tick; a motion applies on top of the placement. Parts without a motion cost as much as in a
-/// `Scene`. Programs with `Scene` only contain none of this code.
+/// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. A pulse meets
+/// parts at their pose of its tick. Those without a motion cost as much as in a `Scene`.
 template <Geometry... Shapes>
 class MovingScene {
  public:
@@ -23,15 +22,15 @@ class MovingScene {
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
-  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other
-  /// times are the same, but all moving parts are tested. `workers` build the indices. @throws
+  /// `time` should span the survey and little more: a longer time has longer windows. At other
+  /// times all moving parts are tested, with the same hits. `workers` build the indices. @throws
   /// SettingError as `Scene` and `MovingIndexSettings`
   MovingScene(std::vector<Part> parts, const MovingIndexSettings& time, const Workers& workers = {})
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out, workers),
         movers_(movers(scene_.parts())),
         index_(
             movers_.size(), time,
-            [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); },
+            [this](auto i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); },
             [this](PrimitiveIndex i) { return size(movers_[i]); }, workers) {
     bounds_ = scene_.bounds();
     bounds_.extend(index_.bounds());
@@ -39,17 +38,13 @@ class MovingScene {
 
   /// Bounds of all parts over the time [m].
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
-  /// As of a target that `VisitsMaterials`.
   template <class Visitor>
   void visit_materials(const Visitor& visit) const {
     scene_.visit_materials(visit);
   }
-  /// As `Scene::deterministic`.
   [[nodiscard]] bool deterministic() const noexcept { return scene_.deterministic(); }
 
-  /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
     detail::SharedMemorySum<> motions;
     for (const Mover& mover : movers_) {
@@ -66,36 +61,30 @@ class MovingScene {
     return moved(mover_of(part), tick);
   }
 
-  /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
+  /// Nearest hit of each ray of the bundle at its tick. Of parts at one range the first counts.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     describe(rays, hits, typename Scene<Shapes...>::AskLaws{});
   }
-  /// As above, and visits the surfaces, as of a target with `SceneQueries`.
   template <class Visitor>
   void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     describe(rays, hits, visit);
   }
 
-  /// Offers the hits of the rays of a bundle at its tick, as of `Scene`.
   void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
 
-  /// True only if no ray of a cone meets anything at its tick, as of `Scene`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     return (movers_.size() == parts().size() || scene_.misses_cone(cone)) &&
            (movers_.empty() || index_.misses_cone(cone));
   }
 
-  /// Closest hit of a ray at its tick, as of `Scene`.
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
     return detail::closest_hit(ray, searcher());
   }
 
-  /// True if the ray meets anything at its tick, as of `Scene`.
-  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
+  [[nodiscard]] bool occluded(const Ray& ray, double range = detail::infinity) const noexcept {
     return detail::occluded(ray, range, searcher());
   }
 
-  /// All hits of a ray at its tick, as of `Scene`.
   template <class Visitor>
   std::size_t all_hits(const Ray& ray, Visitor&& visitor) const
       noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
@@ -113,28 +102,27 @@ class MovingScene {
   }
 
   /// Height of the ground at a place [m], as of `Scene`; moving parts are no ground.
-  [[nodiscard]] std::optional<double> ground_height(
-      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = detail::infinity) const noexcept {
     return scene_.ground_height(at, near);
   }
 
  private:
-  /// Moving part.
   struct Mover {
     std::size_t part;
     Vec3 centre;  ///< centre of its box as placed [m]
   };
 
   const Mover& mover_of(std::size_t part) const noexcept {
-    return movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })];
+    const auto before = [&](std::size_t i) noexcept { return movers_[i].part < part; };
+    return movers_[detail::first_not(movers_.size(), before)];
   }
 
   template <class Rays, class Visitor>
   void describe(const Rays& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
-    scene_.describe(
-        rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); }, visit);
+    const auto placement_of = [&](std::size_t part) noexcept { return placement(part, rays.tick); };
+    scene_.describe(rays, nearest, hits, placement_of, visit);
   }
 
   template <class Rays, class Hits>
@@ -156,7 +144,7 @@ class MovingScene {
   static std::vector<Mover> movers(std::span<const Part> parts) {
     std::vector<Mover> all;
     for (std::size_t i = 0; i < parts.size(); ++i)
-      if (parts[i].motion) all.push_back({i, parts[i].placement.point(bounds_of(parts[i]).centre())});
+      if (const Part& part = parts[i]; part.motion) all.push_back({i, part.placement.point(bounds_of(part).centre())});
     all.shrink_to_fit();
     return all;
   }
@@ -174,7 +162,8 @@ class MovingScene {
   Placement moved(const Mover& mover, const Tick& tick) const noexcept {
     const Part& part = parts()[mover.part];
     const Displacement now = part.motion->at(tick, mover.centre);
-    return {now.rotation * part.placement.rotation, part.placement.scale, now.point(part.placement.translation)};
+    const auto& [rotation, scale, translation] = part.placement;
+    return {now.rotation * rotation, scale, now.point(translation)};
   }
 
   Scene<Shapes...> scene_;     ///< all parts; its index holds the static ones

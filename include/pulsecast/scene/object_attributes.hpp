@@ -12,7 +12,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Named numbers of the objects of a scene: what a point is told by the id of its object.
+/// Named numbers of the objects of a scene, which points get by the id of their object.
 class ObjectAttributes {
  public:
   ObjectAttributes() = default;
@@ -28,8 +28,8 @@ class ObjectAttributes {
         if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
         const double known = all[part.object].emplace(name, value).first->second;
         if (!(known == value) && !(known != known && value != value))
-          throw_setting_error(("Part::attributes '" + name + "' of object " + std::to_string(part.object)).c_str(),
-                              value, "", "as of its other parts");
+          throw_setting_error("Part::attributes '" + name + "' of object " + std::to_string(part.object), value, "",
+                              "as of its other parts");
       }
     }
     for (const auto& [object, values] : all) {
@@ -42,16 +42,16 @@ class ObjectAttributes {
     unknown_.assign(names_.size(), unknown);
   }
 
-  [[nodiscard]] const std::vector<std::string>& names() const noexcept {
-    return names_;
-  }  ///< names, in order of the values
+  /// Names, in order of the values.
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
   [[nodiscard]] bool empty() const noexcept { return names_.empty(); }
 
   /// Values of an object, one a name; NaN where it has none.
   [[nodiscard]] std::span<const double> of(ObjectId object) const noexcept {
     const auto found = std::lower_bound(objects_.begin(), objects_.end(), object);
     if (found == objects_.end() || *found != object) return unknown_;
-    return {values_.data() + static_cast<std::size_t>(found - objects_.begin()) * names_.size(), names_.size()};
+    const auto i = static_cast<std::size_t>(found - objects_.begin());
+    return {values_.data() + i * names_.size(), names_.size()};
   }
 
  private:

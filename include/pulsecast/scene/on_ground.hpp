@@ -11,13 +11,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Point of a part placed at the height of the ground. Points of a part are the corners of its
-/// triangles, or of its box if it has none.
+/// Point of a part placed at the height of the ground, of its triangles' corners or else its box.
 enum class GroundPlacement : std::uint8_t {
   origin,        ///< its own origin: for models whose origin is their foot
   lowest_point,  ///< its lowest point, or the middle of several: for a tree
-  touching,      ///< its first point to meet the ground when lowered, so that none is below it: for a car or a crate
-  sunk,          ///< all bottom corners of its box are in or on the ground, so that none hovers: for a house on a slope
+  touching,      ///< its first point to meet the ground when lowered: for a car or a crate
+  sunk,          ///< no bottom corner of its box above the ground: for a house on a slope
 };
 
 namespace detail {
@@ -40,13 +39,12 @@ void visit_points(const Shape& shape, const Placement& placement, const Visit& v
   }
 }
 
-/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in
-/// question has ground above or below. Calls `ground(place)` once per point; suitable:
-/// `Scene::ground_height` of a scene of the carrying parts.
+/// Lift that places a shape on the ground, negative if lowered [m]; empty if no point asked has
+/// ground above or below. Calls `ground(place)`, as `Scene::ground_height`, once per point.
 template <Geometry Shape>
 [[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Placement& placement,
                                                      const Ground auto& ground,
-                                                     GroundPlacement ground_placement = GroundPlacement::lowest_point) {
+                                                     GroundPlacement placing = GroundPlacement::lowest_point) {
   std::optional<double> lift;
   // least or greatest lift of the points in question
   const auto ask = [&](const Vec3& p, bool most) {
@@ -55,26 +53,26 @@ template <Geometry Shape>
     const double asked = *height - p.z;
     lift = !lift ? asked : most ? std::max(*lift, asked) : std::min(*lift, asked);
   };
-  if (ground_placement == GroundPlacement::origin) {
+  if (placing == GroundPlacement::origin) {
     ask(placement.translation, true);
     return lift;
   }
   if (shape.bounds().empty()) return std::nullopt;
-  if (ground_placement == GroundPlacement::touching) {
-    detail::visit_points(shape, placement, [&](const Vec3& p) { ask(p, true); });
+  if (placing == GroundPlacement::touching) {
+    visit_points(shape, placement, [&](const Vec3& p) { ask(p, true); });
     return lift;
   }
   Box box;
-  detail::visit_points(shape, placement, [&](const Vec3& p) { box.extend(p); });
-  if (ground_placement == GroundPlacement::sunk) {
+  visit_points(shape, placement, [&](const Vec3& p) { box.extend(p); });
+  if (placing == GroundPlacement::sunk) {
     for (const double x : {box.min.x, box.max.x})
       for (const double y : {box.min.y, box.max.y}) ask({x, y, box.min.z}, false);
     return lift;
   }
   Box lowest;
-  const double rounding =
-      1e-9 * box.size().z + 4 * std::numeric_limits<double>::epsilon() * max_norm(max(box.max, -box.min));
-  detail::visit_points(shape, placement, [&](const Vec3& p) {
+  const double scale = max_norm(max(box.max, -box.min));
+  const double rounding = 1e-9 * box.size().z + 4 * std::numeric_limits<double>::epsilon() * scale;
+  visit_points(shape, placement, [&](const Vec3& p) {
     if (p.z <= box.min.z + rounding) lowest.extend(p);
   });
   const Vec3 middle = lowest.centre();
@@ -84,16 +82,15 @@ template <Geometry Shape>
 
 }  // namespace detail
 
-/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is
-/// ignored: it starts there.
-/// @throws SettingError for a placement out of range or a missing geometry
+/// Part lifted or lowered onto the ground of others; empty without ground. It starts there, if it
+/// moves. @throws SettingError for a placement out of range or a missing geometry
 template <Geometry... Shapes>
-[[nodiscard]] std::optional<Part<Shapes...>> on_ground(
-    Part<Shapes...> part, const Ground auto& ground, GroundPlacement ground_placement = GroundPlacement::lowest_point) {
+[[nodiscard]] std::optional<Part<Shapes...>> on_ground(Part<Shapes...> part, const Ground auto& ground,
+                                                       GroundPlacement placing = GroundPlacement::lowest_point) {
   part.placement = validated(part.placement);
   const auto lift_of = [&](const auto& shape) {
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
-    return detail::lift_onto_ground(*shape, part.placement, ground, ground_placement);
+    return detail::lift_onto_ground(*shape, part.placement, ground, placing);
   };
   const std::optional<double> lift = visit_shape(lift_of, part.geometry);
   if (!lift) return std::nullopt;

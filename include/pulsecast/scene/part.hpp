@@ -31,7 +31,7 @@ namespace detail {
   return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
 }
 
-/// Memory of objects, of which shared ones count once [byte]. A template, so that only who asks compiles it.
+/// Memory of objects, shared ones once [byte]. A template, so that only who asks compiles it.
 template <class Object = void>
 class SharedMemorySum {
  public:
@@ -58,9 +58,9 @@ struct Placement {
 
   void validate() const {
     require_rotation("Placement::rotation", rotation);
-    require_within("Placement::scale", scale, 1e-30, 1e30,
-                   "");  // keeps squared lengths finite in the part's own frame
-    if (!finite(translation)) throw SettingError("Placement::translation (length)", length(translation), "m", "finite");
+    require_within("Placement::scale", scale, 1e-30, 1e30, "");  // keeps squared lengths finite
+    if (!finite(translation))
+      throw_setting_error("Placement::translation (length)", length(translation), "m", "finite");
   }
   void normalize() noexcept { rotation = unit(rotation); }
 
@@ -79,7 +79,7 @@ struct Placement {
     return out;
   }
 
-  /// Rays of the world in the part's own frame. Directions change in length, so that ranges are kept.
+  /// Rays of the world in the part's own frame. Directions change in length, and ranges do not.
   [[nodiscard]] RayBundle to_local(const RayBundle& rays) const noexcept {
     RayBundle local(static_cast<const BundleOrigin&>(rays));
     set_local(rays, local);
@@ -99,9 +99,7 @@ struct Placement {
     const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
     local.origin = back * (ray.origin - translation);
     local.direction_length = ray.direction_length * per_metre;
-    const Vec3 x = back[0], y = back[1], z = back[2], &d = ray.toward;
-    local.toward = {x.x * d.x + y.x * d.y + z.x * d.z, x.y * d.x + y.y * d.y + z.y * d.z,
-                    x.z * d.x + y.z * d.y + z.z * d.z};
+    local.toward = back * ray.toward;
     return local;
   }
 
@@ -141,13 +139,13 @@ struct SharedShape<Shape> {
 /// Source: Arvo 1990, Transforming axis-aligned bounding boxes, Graphics Gems.
 [[nodiscard]] inline Vec3 reach_of(const Matrix3& turn, const Vec3& half) noexcept {
   const auto reach = [&](int k) noexcept {
-    return std::fabs(turn[0][k]) * half.x + std::fabs(turn[1][k]) * half.y + std::fabs(turn[2][k]) * half.z;
+    const auto size = [&](int column) noexcept { return std::fabs(turn[column][k]); };
+    return size(0) * half.x + size(1) * half.y + size(2) * half.z;
   };
   return {reach(0), reach(1), reach(2)};
 }
 
-/// Box around a placed box [m], from its centre and half sides; as `Placement::box` up to rounding.
-/// Empty for an empty box.
+/// Box around a placed box [m], as `Placement::box` up to rounding; empty for an empty box.
 [[nodiscard]] inline Box placed_box(const Placement& placement, const Box& box) noexcept {
   if (box.empty()) return {};
   const Matrix3 turn = matrix_of(placement.rotation);
@@ -176,19 +174,19 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 /// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
 [[gnu::always_inline]] constexpr decltype(auto) visit_shape(const Visitor& visitor,
-                                                            const std::shared_ptr<const Shape>& geometry) {
-  return visitor(geometry);
+                                                            const std::shared_ptr<const Shape>& of) {
+  return visitor(of);
 }
 /// Calls `visitor` with the shared pointer to a part's shape, of one of several kinds.
 template <class Visitor, class... Pointers>
-constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<Pointers...>& geometry) {
-  return std::visit(visitor, geometry);
+constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<Pointers...>& of) {
+  return std::visit(visitor, of);
 }
 
 /// Named number of a part, such as age, species or diameter.
 struct Attribute {
-  std::string name{};  ///< name, as of a column
-  double value = 0;    ///< value, in units of the user's
+  std::string name{};  ///< as of a column
+  double value = 0;    ///< in units of the user's
 
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
@@ -201,8 +199,8 @@ using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 [[nodiscard]] inline Attributes attributes(std::vector<Attribute> all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& name = all[i].name;
-    const auto before = all.begin() + static_cast<std::ptrdiff_t>(i);
-    if (name.empty() || std::any_of(all.begin(), before, [&](const Attribute& other) { return other.name == name; }))
+    const auto same = [&](const Attribute& other) { return other.name == name; };
+    if (name.empty() || std::any_of(all.data(), &all[i], same))
       throw_setting_error("Attribute::name (number of '" + name + "')", static_cast<double>(i), "",
                           "not empty, and each name once");
   }
@@ -212,14 +210,14 @@ using Attributes = std::shared_ptr<const std::vector<Attribute>>;
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  typename detail::SharedShape<Shapes...>::type
-      geometry;                                ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();  ///< materials by the shape's material index
+  /// Shared pointer to the shape; a variant of them for several kinds.
+  typename detail::SharedShape<Shapes...>::type geometry;
+  MaterialTable materials = material_table();  ///< by the shape's material index
   Placement placement{};                       ///< placement in the world
   ObjectId object = 0;                         ///< object id of its points
   std::string name{};                          ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
-  Attributes attributes{};                     ///< what its points are told besides, as by `ObjectAttributes`
+  std::shared_ptr<const PartMotion> motion{};  ///< on top of the placement; for a `MovingScene`
+  Attributes attributes{};                     ///< of its points, by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -31,20 +31,21 @@ inline constexpr double near_infrared_wavelength = 842e-9;
 /// Colour of a surface: that of its material, times its picture.
 [[nodiscard]] inline PointColour colour_of(const SurfaceInteraction& surface) noexcept {
   const Material& material = *surface.material;
-  const Vec3 picture = material.picture && surface.texture ? material.picture->colour(*surface.texture) : Vec3(1);
+  const bool textured = material.picture && surface.texture;
+  const Vec3 colour = material.colour * (textured ? material.picture->colour(*surface.texture) : Vec3(1));
   const auto sixteen_bits = [](double share) noexcept {
     return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0)));
   };
-  return {sixteen_bits(material.colour.x * picture.x), sixteen_bits(material.colour.y * picture.y),
-          sixteen_bits(material.colour.z * picture.z), sixteen_bits(material.reflectance_at(near_infrared_wavelength))};
+  return {sixteen_bits(colour.x), sixteen_bits(colour.y), sixteen_bits(colour.z),
+          sixteen_bits(material.reflectance_at(near_infrared_wavelength))};
 }
 
 /// Colours of the surfaces of a world, which must outlive them, by one more ray per echo as in
 /// `surfaces_of`. @throws SettingError
 template <SceneQueries World>
 [[nodiscard]] PointColours colours_of(const World& world, double tolerance = 0.2) {
-  return [surfaces = surfaces_of(world, tolerance)](const EchoBatch& batch, const Shot& shot, const Echo& echo) {
-    const std::optional<SurfaceInteraction> surface = surfaces(batch, shot, echo);
+  return [of = surfaces_of(world, tolerance)](const EchoBatch& batch, const Shot& shot, const Echo& echo) {
+    const std::optional<SurfaceInteraction> surface = of(batch, shot, echo);
     return surface ? std::optional(colour_of(*surface)) : std::nullopt;
   };
 }

@@ -15,7 +15,7 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along
-/// its direction, at its tick. A blocked slot has a ray whose `far` is 0, which meets nothing.
+/// its direction, at its tick. That of a blocked slot has a `far` of 0: it meets nothing.
 template <InstrumentSource Sensor>
 [[nodiscard]] std::vector<Ray> sensor_rays(const Sensor& sensor) {
   std::vector<Ray> rays(static_cast<std::size_t>(sensor.size()));
@@ -31,9 +31,9 @@ template <InstrumentSource Sensor>
 
 /// Ranges that equal sensors at many poses measure in one map [m], without echoes, noise or energy:
 /// for learning and planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in
-/// single precision (6e-8 relative); infinite without a hit. `rays` are in the sensor's frame. A
-/// ray's `pulse` is replaced by that index: together with its `seed`, it is the key of leaves that
-/// are met at random. The ranges do not depend on the number of threads. Allocates nothing.
+/// single precision (6e-8 relative); infinite without a hit. `rays` are in the sensor's frame;
+/// their `pulse` becomes that index, with `seed` the key of leaves met at random. The ranges do not
+/// depend on the number of threads. Allocates nothing.
 /// @throws SettingError if `ranges` has another size, or for a pose that is not rigid
 template <class Target>
 requires(RayTarget<Target> ||
@@ -41,8 +41,8 @@ requires(RayTarget<Target> ||
                                               std::span<const Pose<frame::Instrument, frame::World>> poses,
                                               std::span<const Ray> rays, std::span<float> ranges,
                                               const Workers& workers = {}) {
-  const double asked = static_cast<double>(poses.size()) * static_cast<double>(rays.size());
-  require_within("run_batch: ranges (number)", static_cast<double>(ranges.size()), asked, asked, "");
+  const std::size_t asked = poses.size() * rays.size();
+  detail::require_count("run_batch: ranges (number)", ranges.size(), asked, asked);
   for (std::size_t p = 0; p < poses.size(); ++p)
     if (!poses[p].rigid())
       throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)",
@@ -65,7 +65,7 @@ requires(RayTarget<Target> ||
     }
     closest_hits<Target>(target, std::span(asked_rays).first(count), hits);
     for (std::size_t j = 0; j < count; ++j)
-      ranges[first + j] = hits[j] ? static_cast<float>(hits[j]->range) : std::numeric_limits<float>::infinity();
+      ranges[first + j] = static_cast<float>(hits[j] ? hits[j]->range : detail::infinity);
   });
 }
 

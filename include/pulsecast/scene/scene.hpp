@@ -18,11 +18,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene`
-/// moves parts.
-///
-/// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes
-/// between repetitions of a survey (leaves fall, a car is gone), make one scene each from the same geometries.
+/// Static parts of the given kinds of geometry: `Scene<TriangleMesh<>>`, without code for others.
+/// Parts share geometries: a second scene of other parts or placements costs one box per part, as
+/// for changes between repetitions of a survey (leaves fall, a car is gone).
 template <Geometry... Shapes>
 class Scene {
   static_assert((detail::members_checked<Shapes, tag::UniformGeometry, tag::DeterministicGeometry,
@@ -30,29 +28,24 @@ class Scene {
                  ...));
 
  public:
-  static constexpr bool time_dependent =
-      (TimeDependentGeometry<Shapes> || ...);  ///< true if hits depend on the tick of a ray
+  /// True if hits depend on the tick of a ray.
+  static constexpr bool time_dependent = (TimeDependentGeometry<Shapes> || ...);
+  using Part = pulsecast::Part<Shapes...>;  ///< part of this scene
 
-  /// Part of this scene.
-  using Part = pulsecast::Part<Shapes...>;
-
-  /// `workers` build the index over the parts; the scene is the same for any.
-  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a
-  /// placement out of range
+  /// `workers` build the index over the parts; the scene is the same for any. @throws SettingError
+  /// for a moving part, a missing geometry, too few materials, or a placement out of range
   explicit Scene(std::vector<Part> parts, const Workers& workers = {});
 
-  /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is
-  /// refitted, and made anew where it would be too slow; hits are those of a scene made of these parts. @throws
-  /// SettingError for another number of placements, or one out of range
+  /// Scene of the same parts at other placements, one per part, that shares all geometry. The index
+  /// over the parts is refitted, or made anew where it would be too slow; hits are those of a new
+  /// scene. @throws SettingError for another number of placements, or one out of range
   [[nodiscard]] Scene with_placements(std::span<const Placement> placements, const Workers& workers = {}) const {
     return with_placements(placements, Scene(std::vector<Part>()), workers);
   }
-  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates
-  /// nothing after its second tick.
+  /// As above, in the memory of a scene no longer used: a loop over two soon allocates nothing.
   [[nodiscard]] Scene with_placements(std::span<const Placement> placements, Scene&& unused,
                                       const Workers& workers = {}) const {
-    const auto count = static_cast<double>(parts_.size());
-    require_within("Scene::with_placements (number)", static_cast<double>(placements.size()), count, count, "");
+    detail::require_count("Scene::with_placements (number)", placements.size(), parts_.size(), parts_.size());
     unused.parts_ = parts_;
     unused.boxes_.resize(placements.size());
     for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -66,7 +59,7 @@ class Scene {
     return std::move(unused);
   }
 
-  /// Scene with more parts, after those of this one. Shares all geometry. @throws SettingError as the constructor
+  /// Scene with more parts after those of this one. Shares all geometry. @throws SettingError
   [[nodiscard]] Scene with_parts(std::span<const Part> more, const Workers& workers = {}) const {
     std::vector<Part> all = parts_;
     all.insert(all.end(), more.begin(), more.end());
@@ -82,9 +75,7 @@ class Scene {
   }
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
-  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
-  /// As of a target that `VisitsMaterials`.
   template <class Visitor>
   void visit_materials(const Visitor& visit) const {
     const void* last = nullptr;  // neighbouring parts often share a table
@@ -95,10 +86,9 @@ class Scene {
   /// True if no hit depends on the key of a ray, as of parts that are a `DeterministicGeometry`.
   [[nodiscard]] bool deterministic() const noexcept { return deterministic_; }
 
-  /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes =
-        index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
+        index_.memory() + refit_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box);
     detail::SharedMemorySum<> shared;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
@@ -107,20 +97,20 @@ class Scene {
       for (const Material& material : *part.materials) {
         table += detail::heap_bytes(material.name);
         if (material.spectrum) shared.add(material.spectrum.get(), material.spectrum->memory());
-        if (material.picture) shared.add(material.picture->samples.data(), material.picture->samples.memory());
-        if (const Image* read = material.reflectance_map ? material.reflectance_map->picture() : nullptr)
-          shared.add(read->samples.data(), read->samples.memory());
+        const Image* const of_map = material.reflectance_map ? material.reflectance_map->picture() : nullptr;
+        for (const Image* image : {material.picture.get(), of_map})
+          if (image) shared.add(image->samples.data(), image->samples.memory());
       }
       shared.add(part.materials.get(), table);
     }
     return bytes + shared.sum();
   }
 
-  /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
+  /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     describe(rays, nearest(rays), hits, placements(), AskLaws{});
   }
-  /// As above, and visits the surfaces in place of asking their laws, as of a target with `SceneQueries`.
+  /// As above, and visits the surfaces in place of asking their laws, as with `SceneQueries`.
   template <class Visitor>
   void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     describe(rays, nearest(rays), hits, placements(), visit);
@@ -129,7 +119,6 @@ class Scene {
   /// Offers the hits of the rays of a bundle to `hits`, by part and primitive.
   void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
 
-  /// True only if no ray of a cone meets anything, as of a target that `MissesCones`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     if (!single_part_) return index_.misses_cone(cone);
     if (cone.passes(bounds())) return true;
@@ -140,39 +129,33 @@ class Scene {
     return visit_shape(upper_levels, parts_[0].geometry);
   }
 
-  /// Closest hit of a ray; empty for a miss. The same as of `closest`, for a ray alone.
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept {
     return detail::closest_hit(ray, searcher());
   }
 
-  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at
-  /// the first hit found.
-  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
+  [[nodiscard]] bool occluded(const Ray& ray, double range = detail::infinity) const noexcept {
     return detail::occluded(ray, range, searcher());
   }
 
-  /// Calls `visitor(hit)` with every `RayHit` of a ray, by range and then by part and primitive, until it returns
-  /// false; it may return nothing. Each triangle counts once, a solid voxel where the ray enters it or leaves for the
-  /// open, and of leaves those that the light of the ray's key meets first. Shapes of one's own count by `closest` from
-  /// each hit on. Allocates nothing. Returns the number of calls.
+  /// Calls `visitor(hit)` with every `RayHit` of a ray, by range and then by part and primitive,
+  /// until it returns false; it may return nothing. Each triangle counts once, a solid voxel where
+  /// the ray enters it or leaves for the open, of leaves those that light of its key meets first,
+  /// user-defined shapes by `closest` from each hit on. Allocates nothing. Returns the calls.
   template <class Visitor>
   std::size_t all_hits(const Ray& ray, Visitor&& visitor) const
       noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
     return detail::visit_hits(ray, searcher(), visitor);
   }
 
-  /// Surface at a hit of the same ray, in the world.
   [[nodiscard]] SurfaceInteraction surface(const RayHit& hit, const Ray& ray) const noexcept {
     return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
   }
 
-  /// Height of the surface of a ground material at a place that is nearest to a height; by default
-  /// of the highest [m]. Empty if there is none.
-  [[nodiscard]] std::optional<double> ground_height(
-      const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
+  /// Height of the ground material nearest to a height; by default the highest [m]; empty without.
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = detail::infinity) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const Ray down{.origin = {at.x, at.y, bounds().max.z + 1}, .direction = -axis::up};
-    std::optional<double> height;  // nearest so far; all hits are asked, as another part may lie on the ground
+    std::optional<double> height;  // of all hits: another part may lie on it
     all_hits(down, [&](const RayHit& hit) noexcept {
       if (!surface(hit, down).material->ground) return true;
       const double next = down.origin.z - hit.range;
@@ -187,7 +170,7 @@ class Scene {
   friend class MovingScene;
 
   enum class Motions : std::uint8_t { refused, left_out };
-  struct AskLaws {};  ///< in place of a visitor: hits tell what the laws of their materials say
+  struct AskLaws {};  ///< in place of a visitor
 
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
@@ -201,8 +184,8 @@ class Scene {
     const auto deterministic = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept {
       return DeterministicGeometry<Shape>;
     };
-    deterministic_ = std::all_of(parts_.begin(), parts_.end(),
-                                 [&](const Part& part) { return visit_shape(deterministic, part.geometry); });
+    deterministic_ = true;
+    for (const Part& part : parts_) deterministic_ = deterministic_ && visit_shape(deterministic, part.geometry);
   }
 
   /// Boxes of parts, whose placements are validated.
@@ -215,9 +198,8 @@ class Scene {
         throw_setting_error("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
       const auto box_of = [&](const auto& shape) {
         if (!shape) throw_setting_error("Part::geometry (number)", 0, "", "1");
-        const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
-        require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()),
-                       4294967295.0, "");
+        const std::size_t materials = part.materials ? part.materials->size() : 0;
+        detail::require_count("Part::materials (number)", materials, shape->material_count(), 4294967295);
         return part.motion ? Box{} : part.placement.box(shape->bounds());
       };
       boxes[i] = visit_shape(box_of, part.geometry);
@@ -225,7 +207,6 @@ class Scene {
     return boxes;
   }
 
-  /// Placement of a part by its index.
   auto placements() const noexcept {
     return [this](std::size_t part) noexcept -> const Placement& { return parts_[part].placement; };
   }
@@ -240,12 +221,10 @@ class Scene {
   auto searcher() const noexcept {
     return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
-  /// Offers the hits of a bundle, or of a single ray, to `hits`.
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
     if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...))
-      if (rays.size == 1)
-        return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
+      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());  // cheaper in frames of parts
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
@@ -265,11 +244,11 @@ class Scene {
   template <class Rays, class Hits>
   void closest_in(std::size_t part, const Rays& local, Hits& nearest) const noexcept {
     nearest.part = std::uint64_t{part} << 32;
-    visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
+    const auto offer = [&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); };
+    visit_shape(offer, parts_[part].geometry);
   }
 
-  /// Sets the geometry of the hits of rays, and visits their surfaces. `placement_of(i)` returns
-  /// the placement of part i.
+  /// Sets the geometry of the hits of rays, and visits their surfaces, by the placements of parts.
   template <class PlacementOf, class Visitor>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
                 const Visitor& visit) const noexcept {
@@ -288,10 +267,10 @@ class Scene {
         const Placement& placement = placement_of(at);
         local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      const detail::SurfaceSample surface = visit_shape(
-          detail::SurfaceSampler<Part>{parts_[at], nearest.primitive_of(first), *local, first}, parts_[at].geometry);
-      while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform)
-        ++end;  // neighbouring rays often hit the same primitive
+      const detail::SurfaceSampler<Part> sampler{parts_[at], nearest.primitive_of(first), *local, first};
+      const detail::SurfaceSample surface = visit_shape(sampler, parts_[at].geometry);
+      // neighbouring rays often hit the same primitive
+      while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform) ++end;
       const Vec3 n = surface.normal / local->direction_length;
       const ObjectId object = parts_[at].object;
       const std::uint16_t classification = surface.material->classification;
@@ -320,10 +299,10 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool single_part_ = false;                ///< true for a single part, static
-  bool single_untransformed_part_ = false;  ///< true for such a part without a placement
+  bool single_part_ = false;                ///< a single part, static
+  bool single_untransformed_part_ = false;  ///< and without a placement
   bool deterministic_ = false;
-  std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
+  std::vector<Box> boxes_;  ///< of each part, after `with_placements`
   BvhRefit<float> refit_;
 };
 

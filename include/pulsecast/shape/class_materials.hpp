@@ -16,18 +16,15 @@ namespace PULSECAST_NAMESPACE {
 
 /// Materials of the classes of a raster of codes, as for `set_materials`.
 struct ClassMaterials {
-  std::vector<Material> materials{1};  ///< table of a part; the first is that of pixels without a class
+  std::vector<Material> materials{1};  ///< of a part; the first is that of pixels without a class
   std::vector<CodeMaterial> listed{};  ///< code of each other material
 
-  void validate() const {
-    require_within("ClassMaterials::materials (number)", static_cast<double>(materials.size()), 1, 256, "");
-  }
+  void validate() const { detail::require_count("ClassMaterials::materials (number)", materials.size(), 1, 256); }
 };
 
-/// Gives each code that occurs in a raster the colour of a colour table (sRGB, each channel from 0
-/// to 1), whose entry n is that of code n. A code that is not listed gets a copy of the first
-/// material; one beyond the table or that is no whole number stays as it is.
-/// @throws SettingError for more than 256 materials, and as `Raster::validate`
+/// Gives each code that occurs in a raster its entry of a table of colours (sRGB, from 0 to 1), by
+/// number. An unlisted one gets a copy of the first material; one beyond the table, or no whole
+/// number, is left. @throws SettingError for more than 256 materials, and as `Raster::validate`
 inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::span<const Vec3> colours) {
   classes.validate();
   codes.validate();
@@ -39,18 +36,18 @@ inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::sp
         present.insert(static_cast<std::size_t>(value));
     }
   });
+  auto& [materials, listed] = classes;
   for (const std::size_t code : present) {
-    auto found = std::find_if(classes.listed.begin(), classes.listed.end(),
-                              [&](const CodeMaterial& one) { return one.code == static_cast<double>(code); });
-    if (found == classes.listed.end()) {
-      require_within("ClassMaterials::materials (number)", static_cast<double>(classes.materials.size() + 1), 1, 256,
-                     "");
-      classes.listed.push_back({static_cast<double>(code), static_cast<std::uint8_t>(classes.materials.size())});
-      classes.materials.push_back(classes.materials.front());
-      classes.materials.back().name += " " + std::to_string(code);
-      found = classes.listed.end() - 1;
+    const auto number = static_cast<double>(code);
+    std::size_t i = 0;
+    while (i < listed.size() && listed[i].code != number) ++i;
+    if (i == listed.size()) {
+      detail::require_count("ClassMaterials::materials (number)", materials.size() + 1, 1, 256);
+      listed.push_back({number, static_cast<std::uint8_t>(materials.size())});
+      materials.push_back(materials.front());
+      materials.back().name += " " + std::to_string(code);
     }
-    classes.materials.at(found->material).colour = colours[code];
+    materials.at(listed[i].material).colour = colours[code];
   }
 }
 

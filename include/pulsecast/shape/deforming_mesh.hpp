@@ -13,17 +13,17 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Mesh whose vertices move: a sail, a swaying tree, a water surface. `refit` makes a `TriangleMesh` of the same
-/// triangles with other vertices: it keeps the topology of the index, recomputes its boxes, and builds it anew where
-/// their SAH cost exceeds `BvhRefit::max_growth` times that of the last build. The meshes are immutable, and may be
-/// used as long as they are held. Takes 4 bytes a corner of a block beside the mesh, some 3 to 12 a triangle, and from
-/// the second refit on the vertices and nodes of a second mesh.
+/// Mesh whose vertices move: a sail, a swaying tree, a water surface. `refit` makes a
+/// `TriangleMesh` of the same triangles with other vertices: it keeps the topology of the index,
+/// recomputes its boxes, and builds it anew where their SAH cost exceeds `BvhRefit::max_growth`
+/// times that of the last build. The meshes are immutable. Takes 4 bytes a corner of a block beside
+/// the mesh, some 3 to 12 a triangle; after the second refit a second mesh's vertices and nodes.
 template <class MeshType = TriangleMesh<>>
 class DeformingMesh {
  public:
   using Mesh = MeshType;  ///< type of the meshes: a `TriangleMesh` or a `MaskedMesh`
 
-  /// `workers` build the index; the mesh is the same for any. @throws SettingError as `TriangleMesh`
+  /// `workers` build the index; the mesh is the same for any. @throws SettingError as the mesh
   explicit DeformingMesh(const MeshData& data, const Workers& workers = {})
       : materials_(data.materials), vertices_(data.vertices.size()) {
     build(data, workers);
@@ -32,13 +32,12 @@ class DeformingMesh {
   /// Mesh with the vertices last set.
   [[nodiscard]] std::shared_ptr<const Mesh> mesh() const noexcept { return frames_[now_].mesh; }
 
-  /// Moves the vertices to new positions [m], by number as in `MeshData`, and returns the mesh. Writes into the memory
-  /// of the mesh before the current one, if no one else holds it. `workers` build an index anew; a refit takes the
-  /// caller's thread. @throws SettingError for another number of vertices, or a vertex in use that is not within 1e18 m
-  /// of the origin; the current mesh then stays
+  /// Moves the vertices to new positions [m], by number as in `MeshData`, and returns the mesh, in
+  /// the memory of the mesh before the current one if no one else holds it. A refit takes the
+  /// caller's thread; `workers` build an index anew. @throws SettingError for another number of
+  /// vertices, or one in use beyond 1e18 m from the origin; the current mesh then stays
   std::shared_ptr<const Mesh> refit(std::span<const Vec3> vertices, const Workers& workers = {}) {
-    const auto count = static_cast<double>(vertices_);
-    require_within("DeformingMesh::vertices (number)", static_cast<double>(vertices.size()), count, count, "");
+    detail::require_count("DeformingMesh::vertices (number)", vertices.size(), vertices_, vertices_);
     const Frame& now = frames_[now_];
     Frame& next = frames_[1 - now_];
     if (next.mesh.use_count() != 1) next.mesh = std::make_shared<Mesh>(*now.mesh);
@@ -54,14 +53,14 @@ class DeformingMesh {
       bounds.extend(vertex);
       next.corners[i] = vertex;
     }
-    if (!finite(sum) || !(std::max(max_norm(bounds.min), max_norm(bounds.max)) <= detail::max_coordinate))
-      refuse(vertices);
+    const double reach = std::max(max_norm(bounds.min), max_norm(bounds.max));
+    if (!finite(sum) || !(reach <= detail::max_coordinate)) refuse(vertices);
     next.mesh->corners_ = next.corners;
     const Mesh& moved = *next.mesh;
-    const auto box_of = [&,
-                         first = now.mesh->index_.order().data()](std::span<const PrimitiveIndex> primitives) noexcept {
+    const PrimitiveIndex* const first = now.mesh->index_.order().data();
+    const auto box_of = [&](std::span<const PrimitiveIndex> primitives) noexcept {
       const auto place = static_cast<std::size_t>(primitives.data() - first);
-      const Vec3* const corners = moved.corners_.data() + moved.first_corners_[place / detail::chunk_size];
+      const Vec3* const corners = moved.block_corners(place);
       Box box;
       for (std::size_t n = 0; n < primitives.size(); ++n)
         for (const std::uint16_t corner : moved.triangles_[place + n]) box.extend(corners[corner]);
@@ -91,8 +90,8 @@ class DeformingMesh {
                               "finite and within 1e18 m of the origin; see vertex " + std::to_string(number));
   }
 
-  /// Builds the index over new data, and numbers the corners of each block by vertex. A
-  /// `TriangleMesh` merges vertices at the same place, which may part here.
+  /// Builds the index over new data, and numbers the corners of each block by vertex: vertices at
+  /// one place, which a `TriangleMesh` merges, may part.
   void build(const MeshData& data, const Workers& workers) {
     auto mesh = std::make_shared<Mesh>(data, workers);
     const auto order = mesh->index_.order();
@@ -133,12 +132,12 @@ class DeformingMesh {
 
   [[nodiscard]] MeshData data(std::span<const Vec3> vertices) const {
     const Mesh& mesh = *frames_[now_].mesh;
-    MeshData data{
-        {vertices.begin(), vertices.end()}, std::vector<std::array<std::uint32_t, 3>>(mesh.size()), materials_};
+    MeshData data{.vertices = {vertices.begin(), vertices.end()}, .materials = materials_};
+    data.triangles.resize(mesh.size());
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       const std::size_t place = mesh.places_[i];
-      for (std::size_t k = 0; k < 3; ++k)
-        data.triangles[i][k] = sources_[mesh.first_corners_[place / detail::chunk_size] + mesh.triangles_[place][k]];
+      const std::uint32_t* const block = &sources_[mesh.first_corners_[place / detail::chunk_size]];
+      for (std::size_t k = 0; k < 3; ++k) data.triangles[i][k] = block[mesh.triangles_[place][k]];
     }
     return data;
   }

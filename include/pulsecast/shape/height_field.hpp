@@ -21,12 +21,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, 3.2
-/// where the heights are packed, and of 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two
-/// triangles of cell i, row by row, are primitives 2 i and 2 i + 1. A min-max pyramid of heights, eight children per
-/// node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row by row and column by column
-/// in the order of passage. Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007
-/// (bundles by interval arithmetic).
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2
+/// bytes per cell, 3.2 where the heights are packed, and of 2, 4, 16 or 256 materials a further 1,
+/// 2, 4 or 8 bits. Two-sided. The triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
+/// A min-max pyramid of heights, eight children per node, bounds the ground. A bundle traverses it
+/// as a whole, front to back, row by row and column by column. Source: Tevs, Ihrke & Seidel 2008
+/// (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
   using refinements = refines<tag::UniformGeometry, tag::DeterministicGeometry, tag::SelfChecking>;
@@ -42,15 +42,15 @@ class HeightField {
     const detail::PyramidLayout layout(grid_);
     levels_ = layout.levels;
     top_ = layout.top;
-    auto built =
-        heights_.read([&](const auto& pixels) { return detail::HeightPyramid(grid_, pixels, layout, workers); });
+    const auto build = [&](const auto& pixels) { return detail::HeightPyramid(grid_, pixels, layout, workers); };
+    auto built = heights_.read(build);
     pyramid_ = std::move(built.heights);
     bounds_ = built.bounds;
-    per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
+    const auto& [columns, rows, first, pixel] = grid_;
+    per_metre_ = {1 / pixel.x, -1 / pixel.y};
     constexpr double single = std::numeric_limits<float>::epsilon();
-    pad_ = {16 * single * grid_.columns * grid_.pixel.x, 16 * single * grid_.rows * grid_.pixel.y};
-    centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y,
-               0};
+    pad_ = {16 * single * columns * pixel.x, 16 * single * rows * pixel.y};
+    centre_ = {first.x + 0.5 * columns * pixel.x, first.y - 0.5 * rows * pixel.y, 0};
   }
 
   explicit HeightField(DeserializeTag) {}
@@ -58,18 +58,16 @@ class HeightField {
 
   /// True if the array sizes match the grid.
   [[nodiscard]] bool is_consistent() const noexcept {
-    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels)
-      return false;
+    constexpr std::uint32_t limit = detail::max_pixels;
+    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > limit || grid_.rows > limit) return false;
     const detail::PyramidLayout layout(grid_);
     const std::size_t pixels = std::size_t{grid_.columns} * grid_.rows;
     return heights_.is_consistent(pixels) && pyramid_.size() == layout.size && top_ == layout.top &&
            levels_ == layout.levels && materials_.is_consistent(pixels);
   }
 
-  /// Pixels from west to east.
-  [[nodiscard]] std::uint32_t columns() const noexcept { return grid_.columns; }
-  /// Pixels from north to south.
-  [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }
+  [[nodiscard]] std::uint32_t columns() const noexcept { return grid_.columns; }  ///< from west to east
+  [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }        ///< from north to south
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept {
     return heights_.memory() + pyramid_.memory() + materials_.memory();
@@ -86,7 +84,8 @@ class HeightField {
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;
     Walk<Rays, Hits> walk(*this, rays, nearest);
-    auto span = walk.interval.inside(slab(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z)));
+    const float lowest = static_cast<float>(bounds_.min.z), highest = static_cast<float>(bounds_.max.z);
+    auto span = walk.interval.inside({{-most, -most, lowest}, {most, most, highest}});
     Cells cells{0, levels_[0].columns - 1, 0, levels_[0].rows - 1};
     if (span.empty() || !walk.narrow(span, cells)) return;
     // clips the span to the heights of the cells passed, and these to the span, while that helps
@@ -136,7 +135,7 @@ class HeightField {
     double from[2], slack[2];      ///< origin and its bound of rounding [pixels east and south]
     float pad[2];                  ///< error bound of cell walls [m]
     bool westward, northward;      ///< order of traversal of nodes
-    unsigned turns[2];             ///< child permutation of a node, by its `wide()` less one, for `turned`
+    unsigned turns[2];             ///< child permutations by `wide()` less one, for `turned`
     float limit;
     std::array<Triangle, simd::lane_count> triangles;  ///< batch to be tested, with its primitives
     std::array<PrimitiveIndex, simd::lane_count> primitives;
@@ -145,8 +144,8 @@ class HeightField {
 
     Walk(const HeightField& field, const Rays& r, Hits& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
-      const double scale =
-          std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
+      const double bound = std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max));
+      const double scale = std::max(max_norm(r.origin), bound);
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
       for (int k = 0; k < 2; ++k) {
         const double per_metre = field.per_metre_[k];
@@ -166,8 +165,8 @@ class HeightField {
 
     /// Adds the triangles of a cell to the batch; tests it when full.
     void take(const HeightField& field, const detail::RasterCell& cell) noexcept {
-      const auto first =
-          static_cast<PrimitiveIndex>(2 * (std::size_t{cell.row} * (field.grid_.columns - 1) + cell.column));
+      const std::size_t number = std::size_t{cell.row} * (field.grid_.columns - 1) + cell.column;
+      const auto first = static_cast<PrimitiveIndex>(2 * number);
       for (const int which : {0, 1})
         if (cell.has(which)) {
           triangles[taken] = cell.triangle(field.grid_, which);
@@ -179,12 +178,12 @@ class HeightField {
     void test() noexcept {
       if (taken == 0) return;
       const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
-      intersect(std::span<const PrimitiveIndex>(primitives.data(), taken), triangle_of, rays, nearest);
+      intersect(std::span(std::as_const(primitives)).first(taken), triangle_of, rays, nearest);
       taken = 0;
       limit = round_up<float>(nearest.limit(rays));
     }
 
-    /// Clips a rectangle to the cells that any ray passes in a range interval. False if none is left.
+    /// Clips a rectangle to the cells that any ray passes in an interval; false if none is left.
     [[nodiscard]] bool narrow(const Span& span, Cells& cells) const noexcept {
       return narrow(0, span, cells.west, cells.east) && narrow(1, span, cells.north, cells.south);
     }
@@ -205,10 +204,7 @@ class HeightField {
     return heights_.read([&](const auto& all) { return detail::RasterCell(grid_, all, column, row); });
   }
 
-  static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
-
-  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level
-  /// must do so, or be the top.
+  /// Lowest level, from `level` down, whose nodes hold the cells in at most 2 by 2; or the top.
   [[nodiscard]] unsigned level_of(const Cells& cells, unsigned level) const noexcept {
     for (; level > 0; --level) {
       const Cells nodes = cells.in_nodes(levels_[level - 1].shift[0], levels_[level - 1].shift[1]);
@@ -223,7 +219,7 @@ class HeightField {
     if (level == top_) {
       all.extend(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z));
     } else if (level == 0) {
-      return heights_.is_packed() ? heights(cells, heights_.packed()) : heights(cells, heights_.floats());
+      return heights_.read([&](const auto& pixels) noexcept { return heights(cells, pixels); });
     } else {
       const Level &own = levels_[level], &above = levels_[level + 1];
       const Cells nodes = cells.in_nodes(own.shift[0], own.shift[1]);
@@ -253,13 +249,13 @@ class HeightField {
     const unsigned taken =
         level == 1 ? walk.block.put(boxes, grid_, heights_, column, row) : put_nodes(boxes, level, column, row);
     std::array<float, 8> entries;
-    const unsigned wide = own.wide(), tall = 3 - wide;
-    const unsigned turn = walk.turns[wide - 1];
-    for (unsigned open = turned(walk.interval.inside(boxes, walk.limit, entries) & taken, turn); open != 0;
-         open &= open - 1) {
+    const unsigned wide = own.wide(), tall = 3 - wide, turn = walk.turns[wide - 1];
+    const unsigned met = walk.interval.inside(boxes, walk.limit, entries) & taken;
+    for (unsigned open = turned(met, turn); open != 0; open &= open - 1) {
       const unsigned place = static_cast<unsigned>(std::countr_zero(open)) ^ turn;
       if (entries[place] > walk.limit) continue;
-      const std::uint32_t c = (column << wide) + (place & ((1U << wide) - 1)), r = (row << tall) + (place >> wide);
+      const std::uint32_t c = (column << wide) + (place & ((1U << wide) - 1));
+      const std::uint32_t r = (row << tall) + (place >> wide);
       level == 1 ? walk.take(*this, walk.block.cell(place, c, r)) : visit(walk, level - 1, c, r);
     }
     if (level == 1) walk.test();
@@ -297,7 +293,7 @@ class HeightField {
     const std::uint32_t wide = own.wide(), tall = 3 - wide;
     const std::uint32_t columns = below.columns - (column << wide), rows = below.rows - (row << tall);
     unsigned taken = rows >= 1U << tall ? 0xFF : (1U << (rows << wide)) - 1;
-    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // masks each row of children
+    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // each row
     return taken;
   }
 

@@ -31,23 +31,23 @@ namespace detail {
                                std::int64_t row) noexcept {
   if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows)
     return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(heights[grid.index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))]);
+  return static_cast<double>(heights[static_cast<std::size_t>(row * grid.columns + column)]);
 }
 
-/// Height of the pixel `east` columns and `south` rows from one of a height `own` [m]. What is
-/// missing, or beyond the edge, is as on a plane through `own` and its opposite neighbour, or its
-/// neighbours to the sides; level without these.
+/// Height of the pixel `east` columns and `south` rows from one of a height `own` [m]. If missing,
+/// as on a plane through `own` and its opposite neighbour, or those to the sides; else level.
 [[nodiscard]] double height_beside(const auto& at, double own, int east, int south) noexcept {
   if (const double height = at(east, south); !std::isnan(height)) return height;
   if (const double opposite = at(-east, -south); !std::isnan(opposite)) return 2 * own - opposite;
-  return east == 0 || south == 0 ? own : height_beside(at, own, east, 0) + height_beside(at, own, 0, south) - own;
+  if (east == 0 || south == 0) return own;
+  return height_beside(at, own, east, 0) + height_beside(at, own, 0, south) - own;
 }
 }  // namespace detail
 
-/// Brightness of the pixels of a raster in the light of a sun, row by row: from 1 in its own shade to 255 where the sun
-/// is overhead, in proportion to the cosine of incidence; 0 where the height is missing. No pixel casts a shadow on
-/// another. Source: Horn 1981, Hill shading and the reflectance map (slopes by differences of three neighbours on each
-/// side, weighted 1, 2, 1); range of values: GDAL manual, gdaldem hillshade.
+/// Brightness of the pixels of a raster in the light of a sun, row by row: from 1 in its own shade
+/// to 255 where the sun is overhead, by the cosine of incidence; 0 where the height is missing. No
+/// pixel casts a shadow on another. Source: Horn 1981, Hill shading and the reflectance map (slopes
+/// of three neighbours on each side, weighted 1, 2, 1); values: GDAL manual, gdaldem hillshade.
 /// @throws SettingError for settings out of range, and as `Raster::validate`
 [[nodiscard]] inline std::vector<std::uint8_t> hillshade(const Raster& raster, const HillshadeSettings& settings = {}) {
   settings.validate();
@@ -64,13 +64,14 @@ namespace detail {
         };
         const double own = at(0, 0);
         if (std::isnan(own)) continue;
-        const auto z = [&](int east, int south) noexcept { return detail::height_beside(at, own, east, south); };
-        const double east = (z(1, -1) + 2 * z(1, 0) + z(1, 1)) - (z(-1, -1) + 2 * z(-1, 0) + z(-1, 1));
-        const double north = (z(-1, -1) + 2 * z(0, -1) + z(1, -1)) - (z(-1, 1) + 2 * z(0, 1) + z(1, 1));
+        const auto z = [&](int x, int y) noexcept { return detail::height_beside(at, own, x, y); };
+        const auto column_sum = [&](int x) noexcept { return z(x, -1) + 2 * z(x, 0) + z(x, 1); };
+        const auto row_sum = [&](int y) noexcept { return z(-1, y) + 2 * z(0, y) + z(1, y); };
+        const double east = column_sum(1) - column_sum(-1), north = row_sum(-1) - row_sum(1);
         const double per_pixel = settings.vertical_scale / 8;
-        const Vec3 normal = normalize(Vec3{-per_pixel * east / grid.pixel.x, -per_pixel * north / grid.pixel.y, 1});
-        shades[grid.index(column, row)] =
-            static_cast<std::uint8_t>(1 + std::lround(254 * std::max(0.0, dot(normal, sun))));
+        const Vec3 up{-per_pixel * east / grid.pixel.x, -per_pixel * north / grid.pixel.y, 1};
+        const double cosine = std::max(0.0, dot(normalize(up), sun));
+        shades[grid.index(column, row)] = static_cast<std::uint8_t>(1 + std::lround(254 * cosine));
       }
   });
   return shades;

@@ -17,12 +17,12 @@ namespace PULSECAST_NAMESPACE {
 /// Mean projection of leaves at one zenith angle.
 struct LeafProjection {
   double zenith = 0;  ///< angle between the direction and the vertical, in [0, pi/2] [rad]
-  double g = 0;       ///< mean projection of unit leaf area onto the plane across the direction, in [0, 1]
+  double g = 0;       ///< of unit leaf area onto the plane across the direction, in [0, 1]
 };
 
-/// Leaf inclination distribution of a plant, uniform in azimuth and equal for both sides. It gives G(direction), the
-/// mean projection of unit leaf area onto the plane across the direction (Ross 1981). The mean of G over all directions
-/// is 1/2 for any distribution. Spherical by default. Copies share their table.
+/// Leaf inclination distribution of a plant, uniform in azimuth and equal for both sides. It gives
+/// G, the mean projection of unit leaf area onto the plane across a direction (Ross 1981), whose
+/// mean over all directions is always 1/2. Spherical by default. Copies share their table.
 class LeafAngles {
  public:
   LeafAngles() = default;
@@ -30,8 +30,7 @@ class LeafAngles {
   /// Inclinations of a sphere's surface: G is 1/2 in all directions.
   [[nodiscard]] static LeafAngles spherical() { return {}; }
 
-  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965;
-  // closed forms: Goel & Strebel 1984.
+  // Densities of inclination, 0: horizontal. Source: de Wit 1965; closed: Goel & Strebel 1984.
 
   /// Mostly horizontal.
   [[nodiscard]] static LeafAngles planophile() { return of_density({.second = 1}); }
@@ -44,26 +43,22 @@ class LeafAngles {
   /// Uniform in inclination.
   [[nodiscard]] static LeafAngles uniform() { return of_density({}); }
 
-  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one: spherical at 1, more
-  /// vertical below, more horizontal above. Source: Campbell 1986, with the exact surface of the ellipsoid.
+  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one:
+  /// spherical at 1, more vertical below. Source: Campbell 1986, with the exact surface.
   /// @throws SettingError unless `chi` is from 1e-6 to 1e6
   [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
     require_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
     LeafAngles made;
     made.chi_ = chi;
-    const double eccentricity = std::sqrt(chi < 1 ? 1 - chi * chi : 1 - 1 / (chi * chi));
-    if (chi == 1)
-      made.half_surface_ = 2;
-    else
-      made.half_surface_ =
-          chi + (chi < 1 ? std::asin(eccentricity) / eccentricity : std::atanh(eccentricity) / (eccentricity * chi));
+    const double e = std::sqrt(chi < 1 ? 1 - chi * chi : 1 - 1 / (chi * chi));  // eccentricity
+    if (chi != 1) made.half_surface_ = chi + (chi < 1 ? std::asin(e) / e : std::atanh(e) / (e * chi));
     made.find_upright();
     return made;
   }
 
-  /// G by zenith angle, in any order without duplicates; linear in between, constant before the first and after the
-  /// last.
-  /// @throws SettingError for values out of range, duplicates, or gaps of more than 10 degrees, also at the ends
+  /// G by zenith angle, in any order without duplicates; linear in between, constant beyond the
+  /// ends.
+  /// @throws SettingError for values out of range, duplicates, or gaps of more than 10 degrees
   [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
     for (const LeafProjection& entry : entries) {
@@ -80,19 +75,21 @@ class LeafAngles {
     return of_entries(std::move(entries));
   }
 
-  /// G for light along a direction of any non-zero length, z being the vertical; within 1e-6 of the defining integral.
+  /// G for light along a direction of any length but 0, z being vertical; within 1e-6.
   [[nodiscard]] double projection(const Vec3& direction) const noexcept {
     const double level = std::hypot(direction.x, direction.y), steep = std::fabs(direction.z);
     if (table_.empty()) return std::hypot(chi_ * steep, level) / (std::hypot(steep, level) * half_surface_);
-    return detail::interpolated(table_, std::atan2(level, steep), &LeafProjection::zenith, &LeafProjection::g);
+    using Entry = LeafProjection;
+    return detail::interpolated(table_, std::atan2(level, steep), &Entry::zenith, &Entry::g);
   }
 
-  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per
-  /// leaf area that the light hits, as the leaves do: the mean squared cosine by the mean cosine,
-  /// between light along a direction and normals of leaves. 2/3 for spherical ones.
+  /// Cosine of incidence at which a Lambertian surface across the light sends back as much as the
+  /// leaves do, per leaf area hit: the mean squared cosine by the mean cosine, between light along
+  /// a direction and normals of leaves. 2/3 for spherical ones.
   [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
     const double up = direction.z * direction.z / dot(direction, direction);
-    const double mean = projection(direction), mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);
+    const double mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);
+    const double mean = projection(direction);
     return mean > 0 ? std::min(mean_square / mean, 1.0) : 1;
   }
 
@@ -134,21 +131,22 @@ class LeafAngles {
     return made;
   }
 
-  /// Finds the mean squared vertical component of the leaves' normals from G, by Simpson's rule: 1/3 and 16/3 of the
-  /// integral of G times Legendre's polynomial of degree 2 over the cosine of the zenith angle. Source: Funk-Hecke
-  /// theorem; the polynomial's integral with the magnitude of the cosine is 1/8.
+  /// Finds the mean squared vertical component of the leaves' normals from G, by Simpson's rule:
+  /// 1/3 and 16/3 of the integral of G times Legendre's polynomial of degree 2 over the zenith
+  /// angle's cosine. Source: Funk-Hecke theorem; with the cosine's magnitude, it is 1/8.
   void find_upright() noexcept {
     constexpr int steps = 4096;
     double sum = 0;
     for (int i = 0; i <= steps; ++i) {
-      const double u = static_cast<double>(i) / steps, weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+      const double u = static_cast<double>(i) / steps;
+      const double weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
       sum += weight * projection({std::sqrt(1 - u * u), 0, u}) * (1.5 * u * u - 0.5);
     }
     upright_ = std::clamp((1 + 16 * sum / (3 * steps)) / 3, 0.0, 1.0);
   }
 
-  /// Nodes and weights of a quadrature over [0, 1], exact for polynomials up to degree 47.
-  /// Source: Gauss-Legendre quadrature; the nodes by Newton's method (Press et al. 2007, section 4.6).
+  /// Nodes and weights of a quadrature over [0, 1], exact for polynomials up to degree 47. Source:
+  /// Gauss-Legendre; nodes by Newton's method (Press et al. 2007, section 4.6).
   struct Nodes {
     static constexpr std::size_t size = 24;
     std::array<double, size> at, weight;
@@ -171,8 +169,8 @@ class LeafAngles {
     }
   };
 
-  /// G at a zenith angle: integral over all inclinations of density times mean projection, at any azimuth.
-  /// Source: Ross 1981; Goel & Strebel 1984. Leaves less inclined than pi/2 - zenith show one side at any azimuth.
+  /// G at a zenith angle: integral over inclinations of density times mean projection, at any
+  /// azimuth. Source: Ross 1981; Goel & Strebel 1984. Leaves below pi/2 - zenith show one side.
   static double projection(const Density& density, double zenith, const Nodes& nodes) noexcept {
     const double c = std::cos(zenith), s = std::sin(zenith), one_sided = pi / 2 - zenith;
     double sum = 0;
@@ -181,9 +179,9 @@ class LeafAngles {
       const double lying = one_sided * u;
       sum += nodes.weight[i] * one_sided * density(lying) * c * std::cos(lying);
       if (s == 0) continue;
-      const double standing = one_sided + zenith * u * u;  // the integrand grows as the root of the rest
+      const double standing = one_sided + zenith * u * u;  // grows as the root of the rest
       const double cos_t = std::cos(standing), sin_t = std::sin(standing);
-      const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth of the leaf seen edge-on
+      const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth seen edge-on
       const double facing = c * cos_t * (1 - 2 / pi * turn) + 2 / pi * s * sin_t * std::sin(turn);
       sum += nodes.weight[i] * 2 * zenith * u * density(standing) * facing;
     }

@@ -12,22 +12,24 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Outline of a surface in a picture: a bit a pixel, 1 where there is a surface and 0 in a hole.
-/// Without pixels, there is no hole. Where the two triangles of a quad meet, a ray along the border
-/// of two pixels may find different ones in the two: a mask and its complement may both be hit.
+/// Outline of a surface in a picture: a bit a pixel, 0 in a hole; without pixels, there is none.
+/// Where the two triangles of a quad meet, a ray along the border of two pixels may find a
+/// different one in each: a mask and its complement may both be hit.
 struct Mask {
   std::uint32_t width = 0, height = 0;  ///< size [pixel]
-  std::vector<std::uint64_t> bits{};  ///< of the pixels, row by row from the top left, from the lowest bit of a word up
+  std::vector<std::uint64_t> bits{};    ///< row by row from the top left, from the lowest bit of a word up
 
-  /// Pixels of a picture whose channel, by number, is at least a share of its full value, in [0, 1].
+  /// Pixels whose channel, by number, is at least a share of its full value, in [0, 1].
   [[nodiscard]] static Mask of(const Image& image, std::uint32_t channel, double cutoff = 0.5) {
     image.validate();
     require_within("Mask::of (channel)", channel, 0, image.channels - 1.0, "");
     require_within("Mask::of (cutoff)", cutoff, 0, 1, "");
     const std::size_t pixels = std::size_t{image.width} * image.height;
     Mask mask{image.width, image.height, std::vector<std::uint64_t>((pixels + 63) / 64)};
-    for (std::size_t i = 0; i < pixels; ++i)
-      if (image.samples[i * image.channels + channel] >= cutoff * 255) mask.bits[i / 64] |= std::uint64_t{1} << i % 64;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const bool solid = image.samples[i * image.channels + channel] >= cutoff * 255;
+      mask.bits[i / 64] |= std::uint64_t{solid} << i % 64;
+    }
     return mask;
   }
 
@@ -39,12 +41,11 @@ struct Mask {
     return pixels == 0 ? 1 : static_cast<double>(solid) / static_cast<double>(pixels);
   }
 
-  /// @throws SettingError for another number of bits
   void validate() const {
     require_within("Mask::width", width, 0, 65536, "pixel");
     require_within("Mask::height", height, width == 0 ? 0 : 1, width == 0 ? 0 : 65536, "pixel");
-    const auto words = static_cast<double>((std::size_t{width} * height + 63) / 64);
-    require_within("Mask::bits (number of words)", static_cast<double>(bits.size()), words, words, "");
+    const std::size_t words = (std::size_t{width} * height + 63) / 64;
+    detail::require_count("Mask::bits (number of words)", bits.size(), words, words);
   }
 };
 
@@ -83,7 +84,7 @@ class MaskTable {
   }
   [[nodiscard]] std::size_t memory() const noexcept { return frames_.memory() + bits_.memory(); }
 
-  [[nodiscard]] bool empty() const noexcept { return frames_.empty(); }  ///< true if nothing has holes
+  [[nodiscard]] bool empty() const noexcept { return frames_.empty(); }
   /// True if a material has holes.
   [[nodiscard]] bool covers(std::uint32_t material) const noexcept {
     return material < frames_.size() && frames_[material].width > 0;
@@ -105,10 +106,8 @@ class MaskTable {
   SharedArray<std::uint64_t> bits_;  ///< of all masks
 };
 
-/// Masks of a mesh without any.
 struct NoMasks {
   NoMasks() = default;
-  /// @throws SettingError for any
   explicit NoMasks(std::span<const Mask> masks) {
     if (!masks.empty())
       throw_setting_error("MeshData::masks (number)", static_cast<double>(masks.size()), "",
@@ -116,7 +115,7 @@ struct NoMasks {
   }
   void archive(auto&) {}
   [[nodiscard]] static constexpr std::size_t memory() noexcept { return 0; }
-  [[nodiscard]] static constexpr bool empty() noexcept { return true; }  ///< nothing has holes
+  [[nodiscard]] static constexpr bool empty() noexcept { return true; }
 };
 
 }  // namespace detail

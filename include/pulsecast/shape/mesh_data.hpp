@@ -12,14 +12,13 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may
-/// jump at an edge, as in OBJ files.
+/// Vertices and triangles of a mesh. Texture coordinates, in single precision, may jump at an edge.
 struct MeshData {
   std::vector<Vec3> vertices{};                           ///< positions [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
-  std::vector<std::uint32_t> materials{};      ///< one per triangle: index into the part's table; empty if all are 0
-  std::vector<std::array<Vec2, 3>> texture{};  ///< one per triangle: texture coordinates of its corners; empty without
-  std::vector<Mask> masks{};  ///< by material: its holes, by texture coordinates; those beyond have none
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertices of the corners
+  std::vector<std::uint32_t> materials{};                 ///< by triangle: index into the part's table; empty if all 0
+  std::vector<std::array<Vec2, 3>> texture{};             ///< by triangle: coordinates of its corners, if any
+  std::vector<Mask> masks{};                              ///< by material: its holes, by texture; none beyond
 
   /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite,
   /// columns of different lengths, or masks without texture coordinates
@@ -41,11 +40,11 @@ struct MeshData {
     validate_texture();
   }
 
-  /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle.
-  /// @throws SettingError
+  /// Refuses counts beyond 32 bits, and `ClosestHits::none`, before allocation. @throws
+  /// SettingError
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
-    require_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
-    require_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
+    detail::require_count("MeshData::vertices (number)", vertices, 0, 4294967295);
+    detail::require_count("MeshData::triangles (number)", triangles, 1, 4294967294);
   }
 
   /// Triangle i [m].

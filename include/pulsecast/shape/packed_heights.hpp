@@ -13,19 +13,20 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Heights as whole numbers of 16 bits, which take half of the memory of `float`: the height of
-/// number n is `offset` + `scale` (n - `zero`), rounded to `float`.
+/// Heights as whole numbers of 16 bits, in half the memory of `float`: the height of number n is
+/// `offset` + `scale` (n - `zero`), rounded to `float`.
 struct PackedHeights {
-  std::vector<std::uint16_t> numbers{};    ///< one a pixel, row by row from the north; empty if heights are not packed
+  std::vector<std::uint16_t> numbers{};    ///< by pixel, row by row from the north, if packed
   double scale = 1;                        ///< height of one step [m]
   double offset = 0;                       ///< height of the number `zero` [m]
-  std::uint16_t zero = 0;                  ///< 32768 where the numbers are signed ones with 32768 added
+  std::uint16_t zero = 0;                  ///< 32768 for signed numbers with 32768 added
   std::optional<std::uint16_t> missing{};  ///< number of missing heights
 
   void validate() const {
     require_positive("PackedHeights::scale", scale, "m");
     require_within("PackedHeights::offset", offset, -1e15, 1e15, "m");
-    require_within("PackedHeights::scale (height of 65,535 steps)", std::fabs(offset) + 65535 * scale, 0, 1e15, "m");
+    const double most = std::fabs(offset) + 65535 * scale;
+    require_within("PackedHeights::scale (height of 65,535 steps)", most, 0, 1e15, "m");
   }
 
   /// True if `other` has the same height for each number.
@@ -36,10 +37,10 @@ struct PackedHeights {
 
 namespace detail {
 
-/// Heights of the numbers from 0 to the greatest of a raster [m], rounded in this place only; NaN
-/// for that of missing heights.
+/// Heights of the numbers from 0 to a raster's greatest [m], rounded here only; NaN if missing.
 [[nodiscard]] inline std::vector<float> height_table(const PackedHeights& packed) {
-  const std::size_t last = packed.numbers.empty() ? 0 : *std::max_element(packed.numbers.begin(), packed.numbers.end());
+  std::size_t last = 0;
+  for (const std::uint16_t number : packed.numbers) last = std::max<std::size_t>(last, number);
   std::vector<float> table;
   table.reserve(last + 1);
   for (std::size_t n = 0; n <= last; ++n) {
@@ -62,7 +63,6 @@ struct PackedPixels {
 class PixelHeights {
  public:
   PixelHeights() = default;
-  /// Takes over the one that is not empty.
   PixelHeights(std::vector<float> heights, PackedHeights packed) {
     if (packed.numbers.empty()) {
       heights_ = std::move(heights);
@@ -75,8 +75,8 @@ class PixelHeights {
       least = std::min(least, number);
       greatest = std::max(greatest, number);
     }
-    // places in the table count from the least number, so that it is short; that of missing heights
-    // is the last one, or between others
+    // the table is short, as places count from the least number; missing: the last, or between
+    // others
     std::vector<float> table;
     if (least <= greatest) table.assign(all.begin() + least, all.begin() + greatest + 1);
     std::size_t hole = table.size();
@@ -94,18 +94,17 @@ class PixelHeights {
   /// True if there are `size` pixels, each with a height or a place in the table.
   [[nodiscard]] bool is_consistent(std::size_t size) const noexcept {
     if (!is_packed()) return heights_.size() == size;
-    return numbers_.size() == size && *std::max_element(numbers_.begin(), numbers_.end()) < heights_.size();
+    const auto in_table = [&](std::uint16_t n) noexcept { return n < heights_.size(); };
+    return numbers_.size() == size && std::all_of(numbers_.begin(), numbers_.end(), in_table);
   }
 
   [[nodiscard]] bool is_packed() const noexcept { return !numbers_.empty(); }
-  [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + numbers_.memory(); }  ///< [byte]
+  [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + numbers_.memory(); }
 
-  /// Heights of the pixels, unless they are packed.
   [[nodiscard]] const float* floats() const noexcept { return heights_.data(); }
-  /// Heights of the pixels, if they are packed.
   [[nodiscard]] PackedPixels packed() const noexcept { return {numbers_.data(), heights_.data()}; }
 
-  /// Calls `work` with what gives the height of a pixel by its index: `const float*` or `PackedPixels`.
+  /// Calls `work` with the heights of pixels by their index: a `const float*` or `PackedPixels`.
   decltype(auto) read(const auto& work) const { return is_packed() ? work(packed()) : work(floats()); }
 
  private:

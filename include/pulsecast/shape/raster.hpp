@@ -34,21 +34,22 @@ struct RasterGrid {
 
   /// Pixel that holds a place, edges of the raster included; empty outside.
   [[nodiscard]] std::optional<std::size_t> pixel_at(const Vec3& place) const noexcept {
-    const double east = (place.x - first.x) / pixel.x + 0.5, south = (first.y - place.y) / pixel.y + 0.5;
+    const double east = (place.x - first.x) / pixel.x + 0.5;
+    const double south = (first.y - place.y) / pixel.y + 0.5;
     if (!(east >= 0 && east <= columns && south >= 0 && south <= rows)) return std::nullopt;
     return index(std::min(static_cast<std::uint32_t>(east), columns - 1),
                  std::min(static_cast<std::uint32_t>(south), rows - 1));
   }
 
-  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two
-  /// triangles, about its centre.
+  /// Pixel of the right angle of triangle i, row by row, two a cell; an inner pixel has two, about
+  /// it.
   [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, which = i % 2, cells = columns - 1;
     return index(cell % cells + which, cell / cells + which);
   }
 };
 
-/// Corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
+/// Cell with corners north-west, south-west, south-east, north-east; triangles 0 1 3 and 1 2 3.
 struct RasterCell {
   std::uint32_t column, row;
   float heights[4];
@@ -82,15 +83,15 @@ struct RasterCell {
 
 }  // namespace detail
 
-/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet
-/// along the south-west to north-east diagonal; a triangle with a missing corner is left out.
+/// Heights at pixel centres, as in a terrain file. Between four of them are two triangles that meet
+/// along the south-west to north-east diagonal; one with a missing corner is left out.
 struct Raster {
   std::uint32_t columns = 0, rows = 0;  ///< pixels, from 2 to 2^27 each
-  Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
-  Vec2 pixel{1, 1};  ///< spacing of the centres, to the next column in the east and the next row in the south [m]
-  std::vector<float> heights{};  ///< heights, row by row from the north [m]; NaN if missing
-  /// Index of each pixel into the part's table of materials, for the two triangles with their right
-  /// angle there; empty if all are 0.
+  Vec2 first{};                         ///< centre of the first pixel, north-west [m east, m north]
+  Vec2 pixel{1, 1};                     ///< spacing of the centres, to the east and to the south [m]
+  std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
+  /// By pixel, index into the part's materials, for triangles with their right angle there; empty:
+  /// 0.
   std::vector<std::uint8_t> materials{};
   PackedHeights packed{};  ///< heights in 16 bits, in place of `heights`
 
@@ -98,20 +99,16 @@ struct Raster {
     require_within("Raster::columns", columns, 2, detail::max_pixels, "");
     require_within("Raster::rows", rows, 2, detail::max_pixels, "");
     // two primitives per cell, none of which is `ClosestHits::none`
-    require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
+    const double cells = (columns - 1.0) * (rows - 1.0);
+    require_within("Raster::columns and rows, cells between them", cells, 1, 2147483647, "");
     require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
     require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
-    // far from the origin, coordinates round by at most an eighth of the minimum pixel size, so no two centres coincide
-    constexpr double least = 4 * std::numeric_limits<double>::epsilon();
-    require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
-    require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
-    if (is_packed())
-      check_packed();
-    else
-      check_heights();
-    if (!materials.empty() && materials.size() != pixels())
-      throw SettingError("Raster::materials", static_cast<double>(materials.size()), "",
-                         "as many as pixels, " + std::to_string(pixels()) + ", or none");
+    // coordinates round by at most an eighth of the least pixel size, so that no two centres coincide
+    const auto least = [](double at) { return std::max(1e-9, 0x1p-50 * std::fabs(at)); };
+    require_within("Raster::pixel.x", pixel.x, least(first.x), 1e6, "m");
+    require_within("Raster::pixel.y", pixel.y, least(first.y), 1e6, "m");
+    is_packed() ? check_packed() : check_heights();
+    if (!materials.empty()) require_pixels("Raster::materials", materials.size(), ", or none");
   }
 
   /// Number of pixels.
@@ -119,7 +116,7 @@ struct Raster {
   /// True if the heights are in 16 bits.
   [[nodiscard]] bool is_packed() const noexcept { return !packed.numbers.empty(); }
 
-  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a
+  /// Calls `work` with the heights of pixels by their index [m], NaN if missing: a
   /// `std::vector<float>` or a value that is indexed like it.
   decltype(auto) read(const auto& work) const {
     if (!is_packed()) return work(heights);
@@ -131,8 +128,8 @@ struct Raster {
   [[nodiscard]] Raster unpacked() const {
     validate();
     if (!is_packed()) return *this;
-    Raster wide{
-        .columns = columns, .rows = rows, .first = first, .pixel = pixel, .heights = {}, .materials = materials};
+    Raster wide{.columns = columns, .rows = rows, .first = first, .pixel = pixel};
+    wide.materials = materials;
     wide.heights.reserve(pixels());
     read([&](const auto& height) {
       for (std::size_t i = 0; i < pixels(); ++i) wide.heights.push_back(height[i]);
@@ -143,7 +140,7 @@ struct Raster {
   /// Placement of the pixels.
   [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
 
-  /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`
+  /// The same ground as a mesh, with the same hits and 13 times the memory. @throws SettingError
   [[nodiscard]] MeshData mesh() const {
     validate();
     constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
@@ -169,17 +166,20 @@ struct Raster {
             triangle[i] = vertex;
           }
           mesh.triangles.push_back(triangle);
-          if (!materials.empty()) mesh.materials.push_back(materials[which == 0 ? north : south + 1]);
+          if (materials.empty()) continue;
+          mesh.materials.push_back(materials[which == 0 ? north : south + 1]);
         }
       }
     return mesh;
   }
 
  private:
+  void require_pixels(const char* field, std::size_t size, const char* rest) const {
+    if (size == pixels()) return;
+    throw SettingError(field, static_cast<double>(size), "", "as many as pixels, " + std::to_string(pixels()) + rest);
+  }
   void check_heights() const {
-    if (heights.size() != pixels())
-      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
-                         "as many as pixels, " + std::to_string(pixels()));
+    require_pixels("Raster::heights", heights.size(), "");
     for (std::size_t i = 0; i < heights.size(); ++i)
       if (std::fabs(heights[i]) > 1e15F)
         throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
@@ -188,49 +188,47 @@ struct Raster {
 
   void check_packed() const {
     packed.validate();
-    require_within("Raster::heights (number of them beside `packed`)", static_cast<double>(heights.size()), 0, 0, "");
-    if (packed.numbers.size() != pixels())
-      throw SettingError("Raster::packed.numbers", static_cast<double>(packed.numbers.size()), "",
-                         "as many as pixels, " + std::to_string(pixels()) + ", or none");
+    detail::require_count("Raster::heights (number of them beside `packed`)", heights.size(), 0, 0);
+    require_pixels("Raster::packed.numbers", packed.numbers.size(), ", or none");
   }
 };
 
 namespace detail {
 
-/// Column or row of a tile's first pixel, from that of a mosaic `offset` away [m]. @throws SettingError if it is
-/// between two pixels, or the tile's last one of `count` pixels of size `own` is
+/// Column or row of a tile's first pixel, `offset` from that of a mosaic [m]. @throws SettingError
+/// if it, or the tile's last one of `count` pixels of size `own`, is between two pixels
 [[nodiscard]] inline std::uint32_t place_in_mosaic(double offset, double own, std::uint32_t count, double pixel) {
-  const double place = offset / pixel, nearest = std::nearbyint(place), slip = std::fabs(own / pixel - 1) * count;
-  require_within("mosaic (shift of a tile's pixels against those of the first)", std::fabs(place - nearest) + slip, 0,
-                 0.01, "pixel");
+  const double place = offset / pixel, nearest = std::nearbyint(place);
+  const double slip = std::fabs(place - nearest) + std::fabs(own / pixel - 1) * count;
+  require_within("mosaic (shift of a tile's pixels against those of the first)", slip, 0, 0.01, "pixel");
   return static_cast<std::uint32_t>(nearest);
 }
 
-/// Number that no height of any raster has; empty if there is none, or if their heights are packed differently.
+/// Number that no height of any raster has; empty if none, or if they are packed differently.
 [[nodiscard]] inline std::optional<std::uint16_t> number_of_gaps(const std::vector<Raster>& tiles) {
   const PackedHeights& alike = tiles.front().packed;
-  if (!std::all_of(tiles.begin(), tiles.end(),
-                   [&](const Raster& r) { return r.is_packed() && r.packed.same_scale(alike); }))
-    return {};
+  for (const Raster& tile : tiles)
+    if (!tile.is_packed() || !tile.packed.same_scale(alike)) return {};
   if (alike.missing) return alike.missing;
   std::vector<bool> present(std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1, false);
   for (const Raster& tile : tiles)
     for (const std::uint16_t number : tile.packed.numbers) present[number] = true;
   const auto gap = std::find(present.begin(), present.end(), false);
-  return gap == present.end() ? std::nullopt : std::optional(static_cast<std::uint16_t>(gap - present.begin()));
+  if (gap == present.end()) return {};
+  return static_cast<std::uint16_t>(gap - present.begin());
 }
 
 }  // namespace detail
 
-/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are missing; where
-/// tiles overlap, the first one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one
-/// pixel between them. Its heights are packed where those of all tiles are, with one scale.
-/// @throws SettingError as `Raster::validate`; for no tile, pixels of different lattices, or tiles on less than a 64th
-/// of their extent
+/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are
+/// missing; where tiles overlap, the first with a height counts. A mosaic has no gap of one pixel
+/// between tiles, as parts of their own have. Its heights are packed where those of all tiles are,
+/// with one scale. @throws SettingError as `Raster::validate`; for no tile, pixels of different
+/// lattices, or tiles on less than a 64th of their extent
 [[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
-  require_within("mosaic (number of tiles)", static_cast<double>(tiles.size()), 1, 1e6, "");
-  const Vec2 pixel = tiles.front().pixel;
-  double west = tiles.front().first.x, north = tiles.front().first.y, east = west, south = north, pixels = 0;
+  detail::require_count("mosaic (number of tiles)", tiles.size(), 1, 1'000'000);
+  const Vec2 pixel = tiles.front().pixel, first = tiles.front().first;
+  double west = first.x, north = first.y, east = west, south = north, pixels = 0;
   for (const Raster& tile : tiles) {
     tile.validate();
     west = std::min(west, tile.first.x);
@@ -249,17 +247,16 @@ namespace detail {
   const detail::RasterGrid grid = all.grid();
   const std::optional<std::uint16_t> gap = detail::number_of_gaps(tiles);
   if (gap) {
-    const PackedHeights& first = tiles.front().packed;
-    all.packed = {.scale = first.scale, .offset = first.offset, .zero = first.zero, .missing = gap};
+    const PackedHeights& alike = tiles.front().packed;
+    all.packed = {.scale = alike.scale, .offset = alike.offset, .zero = alike.zero, .missing = gap};
     all.packed.numbers.assign(all.pixels(), *gap);
   } else {
     all.heights.assign(all.pixels(), std::numeric_limits<float>::quiet_NaN());
   }
-  if (std::any_of(tiles.begin(), tiles.end(), [](const Raster& tile) { return !tile.materials.empty(); }))
-    all.materials.assign(all.pixels(), 0);
   for (const Raster& tile : tiles) {
     const std::uint32_t column = detail::place_in_mosaic(tile.first.x - west, tile.pixel.x, tile.columns, pixel.x);
     const std::uint32_t row = detail::place_in_mosaic(north - tile.first.y, tile.pixel.y, tile.rows, pixel.y);
+    if (!tile.materials.empty()) all.materials.resize(all.pixels(), 0);
     tile.read([&](const auto& heights) {
       for (std::uint32_t r = 0; r < tile.rows; ++r)
         for (std::uint32_t c = 0; c < tile.columns; ++c) {
@@ -284,15 +281,14 @@ struct CodeMaterial {
 };
 
 /// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes
-/// the code of the pixel that its centre is in. `otherwise` is that of pixels without a code, or
-/// with one that is not listed; returns their number.
-/// @throws SettingError as `Raster::validate`, of both
+/// the code of the one that its centre is in. `otherwise` is for pixels without a code, or with one
+/// that is not listed; returns their number. @throws SettingError as `Raster::validate`, of both
 inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed,
                                  std::uint8_t otherwise = 0) {
   ground.validate();
   codes.validate();
   const detail::RasterGrid grid = ground.grid();
-  const auto by_code = [](const CodeMaterial& a, const CodeMaterial& b) { return a.code < b.code; };
+  const auto by_code = [](const auto& a, const auto& b) { return a.code < b.code; };
   std::vector<CodeMaterial> sorted = listed;  // of equal codes, the first counts
   std::erase_if(sorted, [](const CodeMaterial& one) { return std::isnan(one.code); });
   std::stable_sort(sorted.begin(), sorted.end(), by_code);
@@ -302,9 +298,9 @@ inline std::size_t set_materials(Raster& ground, const Raster& codes, const std:
     for (std::uint32_t row = 0; row < ground.rows; ++row)
       for (std::uint32_t column = 0; column < ground.columns; ++column) {
         const std::optional<std::size_t> at = codes.grid().pixel_at(grid.vertex(column, row, 0));
-        const double own = at ? static_cast<double>(code[*at]) : std::numeric_limits<double>::quiet_NaN();
-        const auto found = std::lower_bound(sorted.begin(), sorted.end(), CodeMaterial{own, 0}, by_code);
-        if (found == sorted.end() || found->code != own)
+        const CodeMaterial own{at ? static_cast<double>(code[*at]) : std::nan(""), 0};
+        const auto found = std::lower_bound(sorted.begin(), sorted.end(), own, by_code);
+        if (found == sorted.end() || found->code != own.code)
           ++unlisted;
         else
           materials[grid.index(column, row)] = found->material;

@@ -24,13 +24,13 @@ struct LeafColumn {
   std::uint32_t place = 0;  ///< place in the layer, mixed
 };
 
-/// Columns of space of a leaf's area across the ray, along the axis that a ray is nearest to, in layers of a few
-/// leaves' width that are shifted against each other. Rays in the same column of a layer meet the same leaf.
+/// Columns of space of a leaf's area across the ray, along the axis that it is nearest to, in
+/// shifted layers of a few leaves' width. Rays in the same column of a layer meet the same leaf.
 class LeafColumns {
  public:
   struct Layer {
-    double end = std::numeric_limits<double>::infinity();  ///< range at which the ray leaves it [m]
-    LeafColumn column{};                                   ///< the ray's column in it
+    double end = detail::infinity;  ///< range at which the ray leaves it [m]
+    LeafColumn column{};            ///< the ray's column in it
   };
 
   LeafColumns() = default;
@@ -43,7 +43,6 @@ class LeafColumns {
     width_ = std::sqrt(area * length(direction) / size[along_]);
   }
 
-  /// Layer at a range [m].
   [[nodiscard]] Layer at(double range) const noexcept {
     const double start = origin_[along_], slope = direction_[along_], step = slope > 0 ? 1 : -1;
     double layer = std::floor((start + range * slope) / thickness_);
@@ -52,14 +51,14 @@ class LeafColumns {
     const double end = end_of_layer(), middle = ((layer + 0.5) * thickness_ - start) / slope;
     // shifts of layers are even in the plane. Source: Roberts 2018, powers of the plastic number
     const auto place = [&](int axis, double shift) {
-      const double shifted =
-          (origin_[axis] + middle * direction_[axis]) / width_ + layer * shift - std::floor(layer * shift);
+      const double at = (origin_[axis] + middle * direction_[axis]) / width_;
+      const double shifted = at + layer * shift - std::floor(layer * shift);
       return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(shifted)));
     };
-    std::uint32_t mixed =
-        place((along_ + 1) % 3, 0.7548776662466927) * 0x9E3779B1U + place((along_ + 2) % 3, 0.5698402909980532);
+    std::uint32_t mixed = place((along_ + 1) % 3, 0.7548776662466927) * 0x9E3779B1U;
+    mixed += place((along_ + 2) % 3, 0.5698402909980532);
     mixed = (mixed ^ (mixed >> 15)) * 0x85EBCA77U + static_cast<std::uint32_t>(along_);
-    return {end > range ? end : std::nextafter(range, std::numeric_limits<double>::infinity()),
+    return {end > range ? end : std::nextafter(range, detail::infinity),
             {static_cast<std::uint64_t>(static_cast<std::int64_t>(layer)), mixed}};
   }
 
@@ -72,23 +71,21 @@ class LeafColumns {
 }  // namespace detail
 
 /// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
-///
-/// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical depth once per part and
-/// consumes it from voxel to voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws
-/// are independent between parts. A ray that begins inside counts its path from there. Density and paths are in metres
-/// of the part's own frame: scaling a plant keeps its transmittance. G is taken in that frame too, z being the
-/// vertical. Leaves send back as tilted surfaces do: the cosine of incidence is their mean squared cosine by their mean
-/// cosine.
-///
-/// Leaves without an area are as small as the subrays: each ray draws for itself, so that echoes depend on the number
-/// of subrays. With an area, rays that pass as close to each other as a leaf is wide share their draws; echoes and
-/// their deviation are then those of facets of that area, and leaves stay from pulse to pulse, each with its own
-/// incidence. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
+/// Transmittance along a path of length s is exp(-PAD G s clumping). Each ray draws its optical
+/// depth once per part and consumes it from voxel to voxel: as the law is memoryless, this equals a
+/// draw per voxel, of any size. Draws are independent between parts. A ray that begins inside
+/// counts its path from there. Density, paths and G are of the part's own frame, z being vertical:
+/// scaling a plant keeps its transmittance. Leaves send back as tilted surfaces: the cosine of
+/// incidence is their mean squared cosine by their mean cosine.
+/// Leaves without an area are as small as the subrays: each ray draws for itself, and echoes depend
+/// on their number. With an area, rays as close to each other as a leaf is wide share their draws;
+/// echoes and their deviation are those of such facets, and leaves stay from pulse to pulse, each
+/// with its own incidence. Source: North 1996; Ross 1981; Nilson 1971 for clumping.
 struct TransmissiveVoxels {
-  LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
-  bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
-  double leaf_area = 0;  ///< one-sided area of a leaf, or of a shoot, at most 100; 0 for leaves without a size [m^2]
-  double clumping = 1;   ///< factor of the extinction: below 1 for leaves in clumps, as needles in shoots; 0.01 to 10
+  LeafAngles leaf_angles{};   ///< inclinations of all leaves
+  bool tilted_leaves = true;  ///< false: as if all leaves were across the light, as in HELIOS++
+  double leaf_area = 0;       ///< one-sided, of a leaf or shoot, at most 100; 0: no size [m^2]
+  double clumping = 1;        ///< of the extinction, 0.01 to 10: below 1 as needles in shoots
 
   void validate() const {
     require_within("TransmissiveVoxels::leaf_area", leaf_area, 0, 100, "m^2");
@@ -103,7 +100,7 @@ struct TransmissiveVoxels {
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
-    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    /// The columns of `data` in the order of the numbers. @throws SettingError for a missing one
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : densities_(detail::reordered<float>(data.densities, order)) {
       if (densities_.empty())
@@ -123,7 +120,7 @@ struct TransmissiveVoxels {
           : columns_(columns), leaves_(leaves), rays_(rays), j_(j), nearest_(nearest) {}
 
       /// Passes a voxel; returns the range limit of the walk [m].
-      double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
+      double operator()(std::uint32_t number, const auto&, const Crossing& in, const Crossing& out) noexcept {
         if (per_density_ == 0) begin(in.range);
         const double extinction = static_cast<double>(columns_.densities_[number]) * per_density_;
         for (double from = in.range;;) {
@@ -131,7 +128,7 @@ struct TransmissiveVoxels {
           const double to = std::min(out.range, layer_.end), depth = extinction * (to - from);
           if (depth > 0 && depth >= left_) return meet(std::min(from + left_ / extinction, to), number);
           left_ -= depth;
-          if (to == out.range) return infinity;
+          if (to == out.range) return detail::infinity;
           from = to;
         }
       }
@@ -140,26 +137,26 @@ struct TransmissiveVoxels {
       void finish() noexcept {}
 
      private:
-      static constexpr double infinity = std::numeric_limits<double>::infinity();
-
       double meet(double at, std::uint32_t number) noexcept {
-        if (!(at > rays_.near)) at = std::nextafter(rays_.near, infinity);
+        if (!(at > rays_.near)) at = std::nextafter(rays_.near, detail::infinity);
         nearest_.offer(j_, at, number);
-        return -infinity;
+        return -detail::infinity;
       }
 
       void begin(double range) noexcept {
         const Vec3 direction = rays_.direction(j_);
-        per_density_ = leaves_.clumping * leaves_.leaf_angles.projection(direction) * rays_.direction_length;
-        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // all leaves edge-on
+        const double projection = leaves_.leaf_angles.projection(direction);
+        per_density_ = leaves_.clumping * projection * rays_.direction_length;
+        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // edge-on
         if (leaves_.leaf_area > 0) columns_of_leaves_ = {rays_.origin, direction, leaves_.leaf_area};
         draw(range);
       }
 
-      /// Draws the optical depth for the layer at a range: one without an end for leaves without a size.
+      /// Draws the optical depth for the layer at a range, endless without a leaf size.
       void draw(double range) noexcept {
-        RandomKey key{rays_.seed, rays_.pulse, rays_.first_subray + static_cast<std::uint32_t>(j_), Purpose::free_path,
-                      static_cast<std::uint32_t>(nearest_.part >> 32)};
+        const auto subray = rays_.first_subray + static_cast<std::uint32_t>(j_);
+        const auto part = static_cast<std::uint32_t>(nearest_.part >> 32);
+        RandomKey key{rays_.seed, rays_.pulse, subray, Purpose::free_path, part};
         if (leaves_.leaf_area > 0) {
           layer_ = columns_of_leaves_.at(range);
           key.pulse = layer_.column.layer;
@@ -190,15 +187,14 @@ struct TransmissiveVoxels {
       if (!settings.tilted_leaves) return {};
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
-      if (settings.leaf_area >
-          0) {  // a leaf's own, of that mean: that of spherical leaves if 2/3, whose squared cosine is uniform
+      if (settings.leaf_area > 0) {  // a leaf's own, of that mean; its square is uniform if 2/3, as of spherical leaves
         const LatticeRay::Passage passage = index.ray(rays, j).through(index.cell(number));
         const detail::LeafColumns columns(rays.origin, direction, settings.leaf_area);
-        const detail::LeafColumn column = columns.at(0.5 * (passage.in.range + passage.out.range)).column;
-        cosine = std::pow(uniform({rays.seed, column.layer, column.place, Purpose::leaf_tilt, 0}), 1 / cosine - 1);
+        const auto [layer, place] = columns.at(0.5 * (passage.in.range + passage.out.range)).column;
+        cosine = std::pow(uniform({rays.seed, layer, place, Purpose::leaf_tilt, 0}), 1 / cosine - 1);
       }
-      const Vec3 aside =
-          pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
+      const Vec3 other = std::fabs(along.x) < 0.5 ? axis::right : axis::up;  // any direction
+      const Vec3 aside = pulsecast::normalize(cross(along, other));
       return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
     }
 

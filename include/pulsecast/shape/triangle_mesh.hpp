@@ -35,12 +35,12 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 };
 }  // namespace detail
 
-/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are
-/// never hit, nor those so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their
-/// numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle
-/// takes 10 bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray
-/// passes the holes of the masks of a `MaskedMesh`. `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the
-/// hits of `Bvh<double>` in less time and memory, since triangles are tested in double.
+/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles
+/// without area are never hit, nor those whose area is no normal number, of edges below 1e-150 m.
+/// Triangles keep their numbers but are stored in the index's order, in blocks with vertices of
+/// their own. Each takes 10 bytes, its index and vertices of 24 bytes, and a byte for several
+/// materials. Rays pass holes of a `MaskedMesh`. `Bvh<float>` is Pareto-optimal in
+/// docs/tradeoff.md: the hits of `Bvh<double>` in less time and memory.
 template <Accelerator Index = Bvh<float>, class Masks = detail::NoMasks>
 class TriangleMesh {
  public:
@@ -265,7 +265,7 @@ class TriangleMesh {
   /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, const Workers& workers) {
     const auto order = index_.order();
-    const bool once = order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last wins
+    const bool once = order.size() == data.triangles.size();  // else the last of its blocks wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (!once) {
       std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
@@ -301,12 +301,12 @@ class TriangleMesh {
 
   SharedArray<Vec3> corners_;
   SharedArray<std::uint64_t> first_corners_;  ///< first corner of each block
-  SharedArray<Corners> triangles_;            ///< corners of the triangles, in the order of the index
-  SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
-  SharedArray<std::uint8_t> materials8_;  ///< material of each triangle; empty if all are 0, or if an index exceeds 255
-  SharedArray<std::uint32_t> materials_;  ///< material of each triangle if an index exceeds 255, else empty
-  SharedArray<TextureCorners> texture_;   ///< texture coordinates of each triangle's corners; empty without
-  Masks masks_;                           ///< holes by material
+  SharedArray<Corners> triangles_;            ///< of the triangles, in the index's order
+  SharedArray<std::uint32_t> places_;         ///< of each triangle in that order
+  SharedArray<std::uint8_t> materials8_;      ///< by triangle; empty if all are 0, or one above 255
+  SharedArray<std::uint32_t> materials_;      ///< by triangle, if one is above 255
+  SharedArray<TextureCorners> texture_;       ///< of each triangle's corners, if any
+  Masks masks_;                               ///< holes by material
   Index index_;
   std::size_t material_count_ = 1;
 };

@@ -32,7 +32,8 @@ class PackedVector {
   static constexpr std::int64_t middle = 1048576;
 
   double part(int shift) const noexcept {
-    return static_cast<double>(static_cast<std::int64_t>(bits_ >> shift & 0x1FFFFF) - middle) / steps;
+    const auto number = static_cast<std::int64_t>(bits_ >> shift & 0x1FFFFF);
+    return static_cast<double>(number - middle) / steps;
   }
 
   std::uint64_t bits_ = 0;
@@ -40,7 +41,7 @@ class PackedVector {
 
 /// Reorders and converts a column of the data; empty for an empty column.
 template <class To, class From>
-[[nodiscard]] SharedArray<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
+[[nodiscard]] SharedArray<To> reordered(const From& column, std::span<const std::uint32_t> order) {
   std::vector<To> kept;
   if (column.empty()) return kept;
   kept.reserve(order.size());
@@ -51,15 +52,15 @@ template <class To, class From>
 }  // namespace detail
 
 /// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without
-/// duplicates. The columns below `cells` have one entry per cell, or none.
+/// duplicates. Columns below `cells` have one entry per cell, or none.
 struct VoxelData {
   Vec3 corner{};                                      ///< lower corner of the cell (0, 0, 0) [m]
   double edge = 1;                                    ///< edge of a cell [m]
   std::vector<std::array<std::uint32_t, 3>> cells{};  ///< cell coordinates along x, y and z
-  std::vector<std::array<float, 3>> normals{};        ///< unit normal of the surface inside, or zero if there is none
-  std::vector<float> densities{};                     ///< plant area density, not negative [m^2/m^3]
-  std::vector<float> scales{};                        ///< edge of the cube inside relative to the cell's, in (0, 1]
-  std::vector<std::array<float, 3>> shifts{};         ///< centre of that cube from the cell's centre [cell edges]
+  std::vector<std::array<float, 3>> normals{};        ///< unit normal of the surface inside, or zero
+  std::vector<float> densities{};                     ///< plant area density, at least 0 [m^2/m^3]
+  std::vector<float> scales{};                        ///< edge of the cube inside by the cell's, in (0, 1]
+  std::vector<std::array<float, 3>> shifts{};         ///< its centre from the cell's centre [cell edges]
   std::vector<std::uint16_t> materials{};             ///< index into the part's table
 
   /// Least edge of a lattice at a place [m]: coordinates there round by an eighth of it.
@@ -67,7 +68,7 @@ struct VoxelData {
     return 4 * std::numeric_limits<double>::epsilon() * max_norm(place);
   }
 
-  /// Refuses invalid data, except for duplicate cells, which the grid finds when it sorts them. @throws SettingError
+  /// Refuses invalid data, but for duplicate cells, which the grid finds. @throws SettingError
   void validate() const {
     constexpr double max_coordinate = 1e18;
     for (int k = 0; k < 3; ++k)
@@ -81,9 +82,11 @@ struct VoxelData {
     if (cells.size() > 4294967294)
       throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= max_coordinate))
-          reject("cells", cells[i][static_cast<std::size_t>(k)], "a cell within 1e18 m of the origin", i);
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t at = cells[i][static_cast<std::size_t>(k)];
+        if (!(std::fabs(corner[k] + edge * (at + 1.0)) <= max_coordinate))
+          reject("cells", at, "a cell within 1e18 m of the origin", i);
+      }
     require_entries("normals", normals);
     for (std::size_t i = 0; i < normals.size(); ++i) {
       const double norm = std::hypot(normals[i][0], normals[i][1], normals[i][2]);

@@ -18,8 +18,8 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray
-/// that begins inside a cube meets its far side, or the cube that touches it there.
+/// Intersection of a ray's walk with solid cubes, as with a mesh of them without walls between two.
+/// A ray that begins inside a cube meets its far side, or the cube that touches it there.
 template <class Columns, class Hits>
 class SolidMeeting {
  public:
@@ -46,8 +46,6 @@ class SolidMeeting {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   const Columns& columns_;
   const LatticeRay& ray_;
   Crossing begin_;
@@ -70,13 +68,13 @@ class SolidMeeting {
 
 /// Surface direction of a voxel.
 enum class Incidence : std::uint8_t {
-  normal,         ///< the voxel's normal; its face's if it has none
+  normal,         ///< the voxel's normal, or its face's
   face,           ///< normal of the face of the cube that the ray hits
   perpendicular,  ///< always towards the scanner
 };
 
-/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a
-/// voxel hits its far side, as with any closed surface.
+/// Opaque cubes as large as their cells: voxels of a point cloud. From inside, rays hit the far
+/// side.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 
@@ -85,7 +83,7 @@ struct OpaqueVoxels {
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
-    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    /// The columns of `data` in the order of the numbers. @throws SettingError for a missing one
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : normals_(detail::reordered<detail::PackedVector>(data.normals, order)) {}
 
@@ -119,8 +117,8 @@ struct OpaqueVoxels {
   };
 };
 
-/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser
-/// et al. 2021. Requires scales; normals are not kept, so `Incidence::normal` means the face.
+/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known
+/// density. Source: Weiser et al. 2021. Requires scales; `Incidence::normal` means the face.
 struct ScaledVoxels {
   Incidence incidence = Incidence::face;  ///< surface direction of all voxels
 
@@ -129,7 +127,7 @@ struct ScaledVoxels {
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
-    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
+    /// The columns of `data` in the order of the numbers. @throws SettingError for a missing one
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : scales_(detail::reordered<float>(data.scales, order)),
           shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
@@ -173,18 +171,19 @@ struct ScaledVoxels {
   };
 };
 
-/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data.
-/// Keeps only the data that the filling needs, in at most 40 bytes per voxel plus 16. `Filling`: `OpaqueVoxels`,
-/// `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
+/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position,
+/// not as in the data. Takes at most 40 bytes per voxel plus 16. `Filling`: `OpaqueVoxels`,
+/// `ScaledVoxels` or `TransmissiveVoxels`, with the settings of all voxels.
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
-  static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;  ///< true if its surfaces are foliage
-  static constexpr bool deterministic = !of_leaves;  ///< as the concept DeterministicGeometry describes
+  /// True if its surfaces are foliage.
+  static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;
+  static constexpr bool deterministic = !of_leaves;  ///< as DeterministicGeometry describes
 
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
-  /// @throws SettingError as `VoxelData::validate` and `VoxelIndex`, or for a column that the filling lacks
+  /// @throws SettingError as `VoxelData::validate`, `VoxelIndex`, or for a missing column
   explicit VoxelGrid(const VoxelData& data, Filling filling = {}) : VoxelGrid(data, std::move(filling), {}) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
@@ -206,28 +205,27 @@ class VoxelGrid {
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
-    const auto span =
-        BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
+    const auto box = BoundingBox<double>::around(bounds(), centre);
+    const auto span = BundleInterval<double>(rays, bounds(), centre).inside(box);
     if (span.empty() || span.entry > nearest.limit(rays)) return;
     for (std::size_t j = 0; j < rays.size; ++j) {
       const LatticeRay ray = index_.ray(rays, j);
       auto meeting = columns_.meeting(filling_, ray, rays, j, nearest);
-      index_.walk(ray, rays.near, nearest.limit_of(j),
-                  [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
+      const auto meet = [&meeting](auto... crossed) noexcept { return meeting(crossed...); };
+      index_.walk(ray, rays.near, nearest.limit_of(j), meet);
       meeting.finish();
     }
   }
 
-  /// All hits of a ray with solid voxels: the closest one from each on. Light through leaves ends at its first leaf.
+  /// All hits of a ray with solid voxels: the closest from each on. Light ends at its first leaf.
   void closest(const SingleRayPacket& ray, AllHits& hits) const noexcept {
-    if constexpr (of_leaves)
-      hits.offer_first(ray, [this](const SingleRayPacket& from, ClosestHit& first) noexcept { closest(from, first); });
-    else
-      hits.offer_chain(ray, [this](const SingleRayPacket& from, ClosestHit& next) noexcept { closest(from, next); });
+    const auto next = [this](const SingleRayPacket& from, ClosestHit& hit) noexcept { closest(from, hit); };
+    of_leaves ? hits.offer_first(ray, next) : hits.offer_chain(ray, next);
   }
 
   [[nodiscard]] SurfaceInteraction surface(PrimitiveIndex i, const auto& rays, std::size_t j) const noexcept {
-    return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
+    const std::uint32_t material = materials_.empty() ? 0U : materials_[i];
+    return {columns_.normal(filling_, i, index_, rays, j), material, of_leaves};
   }
 
   void archive(auto& a) {

@@ -30,18 +30,18 @@ struct WaterArea {
   }
 };
 
-/// Surface of water with the waves that it has when a pulse leaves; two-sided. Without waves it is a plane.
-/// Hits lie within 1e-10 m of the surface along the ray, and a rounding of the ray's coordinates. A ray that dips into
-/// a crest, or leaves the water in a trough, for less than 1e-10 m may miss both hits. Primitives number places along a
-/// ray: one is the share of 2^32 of the ray's way between the bounds of the waves, at which it is hit. Search: along
-/// steps that a bound of slope and curvature proves to be free of hits. Of short waves the bound is their height, until
-/// the ray is near them. Source: Kalra & Barr 1989, Guaranteed ray intersections with implicit surfaces (bounds of the
-/// first derivative).
+/// Surface of water with the waves that it has when a pulse leaves; two-sided. Without waves it is
+/// a plane. Hits lie within 1e-10 m of the surface along the ray, and a rounding of its
+/// coordinates; one that dips into a crest, or leaves the water in a trough, for less may miss
+/// both. Primitives number places along a ray: shares of 2^32 of its way between the bounds of the
+/// waves. Search: along steps that a bound of slope and curvature proves to be free of hits; of
+/// short waves it is their height, until the ray is near them. Source: Kalra & Barr 1989,
+/// Guaranteed ray intersections with implicit surfaces (bounds of the first derivative).
 class WaterSurface {
  public:
   using refinements = refines<tag::DeterministicGeometry, tag::TimeDependentGeometry>;
-  static constexpr bool deterministic = true;   ///< as the concept DeterministicGeometry describes
-  static constexpr bool time_dependent = true;  ///< as the concept TimeDependentGeometry describes
+  static constexpr bool deterministic = true;   ///< as DeterministicGeometry describes
+  static constexpr bool time_dependent = true;  ///< as TimeDependentGeometry describes
 
   /// @throws SettingError as `WaterArea::validate`
   explicit WaterSurface(const WaterArea& area, WaveField waves = {}) : waves_(std::move(waves)), level_(area.level) {
@@ -50,7 +50,7 @@ class WaterSurface {
                {area.max.x, area.max.y, level_ + waves_.highest()}};
   }
 
-  [[nodiscard]] const WaveField& waves() const noexcept { return waves_; }  ///< waves about the mean level
+  [[nodiscard]] const WaveField& waves() const noexcept { return waves_; }  ///< about the mean level
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return waves_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
@@ -62,7 +62,8 @@ class WaterSurface {
     for (std::size_t j = 0; j < rays.size; ++j) {
       const Vec3 direction = rays.direction(j);
       const Span span = span_of(rays.origin, direction);
-      if (!(span.begin <= span.end) || !(span.end > rays.near) || !(span.begin <= nearest.limit_of(j))) continue;
+      if (!(span.begin <= span.end) || !(span.end > rays.near)) continue;
+      if (!(span.begin <= nearest.limit_of(j))) continue;
       // true while more hits are of use
       const auto offer = [&](double at) noexcept {
         if (!(at > rays.near)) return true;
@@ -91,7 +92,8 @@ class WaterSurface {
     if (waves_.empty()) return {axis::up, 0};
     const Vec3 direction = rays.direction(j);
     const double at = span_of(rays.origin, direction).at_share(i);
-    const Vec2 slope = waves_.slope({rays.origin.x + at * direction.x, rays.origin.y + at * direction.y}, rays.tick);
+    const Vec3 place = rays.origin + at * direction;
+    const Vec2 slope = waves_.slope({place.x, place.y}, rays.tick);
     return {normalize(Vec3{-slope.x, -slope.y, 1}), 0};
   }
 
@@ -136,19 +138,19 @@ class WaterSurface {
     return span;
   }
 
-  /// Range at which a ray steeper than all waves hits them, before its origin too: Newton's method between bounds.
+  /// Range at which a ray steeper than all waves hits them, even before its origin: bounded Newton.
   [[nodiscard]] double only_root(const detail::WaveProfile& profile, const Line& line) const noexcept {
     const std::size_t all = profile.groups();
-    const double sense = line.climb < 0 ? -1 : 1, least = std::fabs(line.climb) - profile.steepest(all);
-    double t = -line.start / line.climb, half = waves_.highest() / std::fabs(line.climb), low = t - half,
-           high = t + half;
+    const double sense = line.climb < 0 ? -1 : 1, speed = std::fabs(line.climb);
+    const double half = waves_.highest() / speed, least = speed - profile.steepest(all);
+    double t = -line.start / line.climb, low = t - half, high = t + half;
     double slack = 0.125 * waves_.highest();
     for (int step = 0;; ++step) {
       const double z = line.at(t);
       const auto sample = profile.at(t, z, slack);
       const double above = z - sample.height, newton = -above / (line.climb - sample.rate);
-      if (sample.groups == all && (profile.curviest(all) * newton * newton <= 2 * tolerance * least || step == 64))
-        return t + newton;
+      const bool near = profile.curviest(all) * newton * newton <= 2 * tolerance * least;
+      if (sample.groups == all && (near || step == 64)) return t + newton;
       if (std::fabs(above) > sample.rest) (above * sense < 0 ? low : high) = t;
       const double next = t + newton;
       t = next > low && next < high && step < 16 ? next : 0.5 * (low + high);
@@ -156,7 +158,7 @@ class WaterSurface {
     }
   }
 
-  /// Offers each place where a ray passes the surface, in order, up to the end of its span and to a limit [m].
+  /// Offers each place where a ray passes the surface, in order, to the end of its span or a limit.
   void find_roots(const detail::WaveProfile& profile, const Line& line, const Span& span, double limit,
                   const auto& offer) const noexcept {
     double t = span.begin, side = 0;

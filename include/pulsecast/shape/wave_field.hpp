@@ -30,7 +30,7 @@ struct SineWave {
   double amplitude = 0;   ///< half of the height from trough to crest [m], from 0 to 100
   double wavelength = 1;  ///< distance between crests [m], from 1 mm to 1000 km
   double toward = 0;      ///< direction that the wave travels to, from east towards north [rad]
-  double phase = 0;  ///< phase at the origin and the start [rad]; at 0 the next crest is a quarter wavelength ahead
+  double phase = 0;       ///< at the origin and the start; at 0 the crest is a quarter wavelength ahead [rad]
 
   void validate() const {
     require_within("SineWave::amplitude", amplitude, 0, 100, "m");
@@ -63,8 +63,7 @@ class WaveSum {
   simd::Doubles parts_[count]{};
 };
 
-/// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of
-/// the sum that it belongs to.
+/// Calls `add(i, part)` for each register of waves from `first` up to `last`, by part of the sum.
 [[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const auto& add) noexcept {
   // unrolled, so that the sums stay in registers
   const auto each_part = [&]<std::size_t... part>(std::size_t i, std::index_sequence<part...>) noexcept {
@@ -77,26 +76,18 @@ class WaveSum {
 struct WaveSine {
   simd::Doubles sin, cos;
 
-  /// Source: sin(pi r) / r and cos(pi r), interpolated as polynomials in r^2 at the Chebyshev nodes of [0, 1/4].
+  /// Source: sin(pi r) / r and cos(pi r), as polynomials in r^2 at the Chebyshev nodes of [0, 1/4].
   [[gnu::always_inline]] explicit WaveSine(const simd::Doubles& half_turns) noexcept {
     constexpr double whole = 0x1.8p52;
     const simd::Doubles shifted = half_turns + whole, r = half_turns - (shifted - whole), z = r * r;
     const simd::Ids sign = simd::Ids(shifted) << 63;
     const simd::Doubles s =
-        r *
-        (3.1415926535897927 +
-         z * (-5.1677127800497855 +
-              z * (2.5501640398618677 +
-                   z * (-0.599264528825224 +
-                        z * (0.08214587881631043 + z * (-0.0073703643265304155 +
-                                                        z * (0.0004659870158043378 - z * 2.113362735205297e-05)))))));
-    const simd::Doubles c =
-        0.9999999999999981 +
-        z * (-4.934802200543686 +
-             z * (4.058712126333295 +
-                  z * (-1.3352627661817635 +
-                       z * (0.23533058831317874 +
-                            z * (-0.025806531975921563 + z * (0.0019278700526981333 - z * 0.0001004164642205389))))));
+        r * simd::detail::polynomial(z, -2.113362735205297e-05, 0.0004659870158043378, -0.0073703643265304155,
+                                     0.08214587881631043, -0.599264528825224, 2.5501640398618677, -5.1677127800497855,
+                                     3.1415926535897927);
+    const simd::Doubles c = simd::detail::polynomial(z, -0.0001004164642205389, 0.0019278700526981333,
+                                                     -0.025806531975921563, 0.23533058831317874, -1.3352627661817635,
+                                                     4.058712126333295, -4.934802200543686, 0.9999999999999981);
     sin = simd::Doubles(simd::Ids(s) ^ sign);
     cos = simd::Doubles(simd::Ids(c) ^ sign);
   }
@@ -105,6 +96,7 @@ struct WaveSine {
 /// Phases of the waves of a field at a place and a time [half turns].
 struct WavePhases {
   alignas(64) std::array<double, max_waves> at;
+  [[nodiscard]] simd::Doubles lanes(std::size_t i) const noexcept { return simd::load<simd::Doubles>(at[i]); }
 };
 
 class WaveProfile;
@@ -123,13 +115,12 @@ class WaveField {
 
   /// Of at most `max_size` waves. @throws SettingError for a wave out of range, or too many of them
   explicit WaveField(std::vector<SineWave> waves) {
-    require_within("WaveField::waves (number)", static_cast<double>(waves.size()), 0, static_cast<double>(max_size),
-                   "");
+    detail::require_count("WaveField::waves (number)", waves.size(), 0, max_size);
     for (const SineWave& wave : waves) wave.validate();
     std::erase_if(waves, [](const SineWave& wave) { return wave.amplitude == 0; });
     if (waves.empty()) return;
-    std::stable_sort(waves.begin(), waves.end(),
-                     [](const SineWave& a, const SineWave& b) { return a.wavelength > b.wavelength; });
+    const auto is_longer = [](const SineWave& a, const SineWave& b) { return a.wavelength > b.wavelength; };
+    std::stable_sort(waves.begin(), waves.end(), is_longer);
     size_ = (waves.size() + detail::wave_group - 1) / detail::wave_group * detail::wave_group;
     std::vector<double> columns(column_count * size_), rest(size_ / detail::wave_group + 1);
     for (std::size_t i = waves.size(); i-- > 0;) {
@@ -149,9 +140,9 @@ class WaveField {
     rest_ = std::move(rest);
   }
 
-  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if the surface is flat
-  [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of the magnitude of heights [m]
-  [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of the magnitude of slopes
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< if flat
+  [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of heights [m]
+  [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of slopes
   [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }
 
   /// Height above the mean level at a place [m east, m north] [m].
@@ -160,7 +151,7 @@ class WaveField {
     set_phases(place, t, phases);
     detail::WaveSum sum;
     detail::each_wave(0, size_, [&](std::size_t i, std::size_t part) noexcept {
-      sum.add(part, lanes(amplitude, i) * detail::WaveSine(simd::load<simd::Doubles>(phases.at[i])).sin);
+      sum.add(part, lanes(amplitude, i) * detail::WaveSine(phases.lanes(i)).sin);
     });
     return sum.total();
   }
@@ -171,7 +162,7 @@ class WaveField {
     set_phases(place, t, phases);
     detail::WaveSum x, y;
     detail::each_wave(0, size_, [&](std::size_t i, std::size_t part) noexcept {
-      const simd::Doubles rise = lanes(amplitude, i) * detail::WaveSine(simd::load<simd::Doubles>(phases.at[i])).cos;
+      const simd::Doubles rise = lanes(amplitude, i) * detail::WaveSine(phases.lanes(i)).cos;
       x.add(part, lanes(east, i) * rise);
       y.add(part, lanes(north, i) * rise);
     });
@@ -182,8 +173,7 @@ class WaveField {
   friend class detail::WaveProfile;
   friend class WaterSurface;
 
-  /// Numbers of a wave: amplitude [m], components of the wavenumber [half turns/m], frequency [half
-  /// turns/s], phase [half turns].
+  /// Amplitude [m], wavenumber [half turns/m], frequency [half turns/s], phase [half turns].
   enum Column : std::size_t { amplitude, east, north, frequency, phase, column_count };
 
   [[nodiscard]] const double* column(Column c) const noexcept { return columns_.data() + c * size_; }
@@ -199,15 +189,15 @@ class WaveField {
       const simd::Doubles lost = detail::product_error(speed, tick.second, half_turns);
       const simd::Doubles left = half_turns - 2.0 * simd::round(simd::Doubles(0.5 * half_turns));
       const simd::Doubles travelled = left + (speed * tick.fraction + lost);
-      simd::store(simd::Doubles(lanes(east, i) * place.x + lanes(north, i) * place.y + (lanes(phase, i) - travelled)),
-                  phases.at[i]);
+      const simd::Doubles by_place = lanes(east, i) * place.x + lanes(north, i) * place.y;
+      simd::store(simd::Doubles(by_place + (lanes(phase, i) - travelled)), phases.at[i]);
     }
   }
 
   std::size_t size_ = 0;  ///< waves, with idle ones to a whole number of groups
   double highest_ = 0, steepest_ = 0;
-  SharedArray<double> columns_,
-      rest_;  ///< numbers of the waves, the longest first; amplitudes of each group and all after it [m]
+  SharedArray<double> columns_;  ///< numbers of the waves, the longest first
+  SharedArray<double> rest_;     ///< sums of the amplitudes of each group and all after it [m]
 };
 
 namespace detail {
@@ -230,8 +220,8 @@ class WaveProfile {
     for (std::size_t g = 0; g < groups_; ++g) {
       WaveSum slopes, curvatures;
       each_wave(g * wave_group, (g + 1) * wave_group, [&](std::size_t i, std::size_t part) noexcept {
-        const simd::Doubles speed =
-            field.lanes(WaveField::east, i) * direction.x + field.lanes(WaveField::north, i) * direction.y;
+        const simd::Doubles east = field.lanes(WaveField::east, i), north = field.lanes(WaveField::north, i);
+        const simd::Doubles speed = east * direction.x + north * direction.y;
         const simd::Doubles rise = field.lanes(WaveField::amplitude, i) * speed;
         simd::store(speed, speeds_[i]);
         slopes.add(part, simd::detail::magnitude(rise));
@@ -242,9 +232,9 @@ class WaveProfile {
     }
   }
 
-  [[nodiscard]] std::size_t groups() const noexcept { return groups_; }                           ///< number of groups
-  [[nodiscard]] double steepest(std::size_t groups) const noexcept { return steepest_[groups]; }  ///< bound of |rate|
-  /// Bound of |second derivative|.
+  [[nodiscard]] std::size_t groups() const noexcept { return groups_; }
+  /// Bounds of |rate| and of |second derivative|, of the first groups.
+  [[nodiscard]] double steepest(std::size_t groups) const noexcept { return steepest_[groups]; }
   [[nodiscard]] double curviest(std::size_t groups) const noexcept { return curviest_[groups]; }
 
   /// Sample at t. Leaves out the shortest waves if their bound is at most `slack`, or a quarter of
@@ -255,8 +245,9 @@ class WaveProfile {
     std::size_t g = 0;
     while (g < groups_ && field_.rest_[g] > slack && 4 * field_.rest_[g] > std::fabs(z - height)) {
       each_wave(g * wave_group, (g + 1) * wave_group, [&](std::size_t i, std::size_t part) noexcept {
-        const simd::Doubles speed = simd::load<simd::Doubles>(speeds_[i]), size = field_.lanes(WaveField::amplitude, i);
-        const WaveSine wave(simd::load<simd::Doubles>(phases_.at[i]) + speed * t);
+        const simd::Doubles speed = simd::load<simd::Doubles>(speeds_[i]);
+        const simd::Doubles size = field_.lanes(WaveField::amplitude, i);
+        const WaveSine wave(phases_.lanes(i) + speed * t);
         heights.add(part, size * wave.sin);
         rates.add(part, size * speed * wave.cos);
       });
@@ -271,7 +262,7 @@ class WaveProfile {
   const WavePhases& phases_;
   std::size_t groups_;
   std::array<double, max_waves / wave_group + 1> steepest_, curviest_;  ///< of the first groups
-  alignas(64) std::array<double, max_waves> speeds_;                    ///< derivatives of the phases by t [half turns]
+  alignas(64) std::array<double, max_waves> speeds_;                    ///< of the phases by t [half turns]
 };
 
 }  // namespace detail

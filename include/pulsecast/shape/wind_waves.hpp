@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
@@ -14,10 +13,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Slopes of a clean sea surface under wind, of waves of all lengths down to the shortest: a normal distribution about
-/// the level, with independent slopes along and across the wind. Source: Cox & Munk 1954, Measurement of the roughness
-/// of the sea surface from photographs of the sun's glitter, J. Opt. Soc. Am. 44; observed at 1 to 14 m/s. Limits:
-/// without the skewness and peakedness of their Gram-Charlier series.
+/// Slopes of a clean sea under wind, of all waves: normally distributed about the level,
+/// independent along and across the wind. Source: Cox & Munk 1954, Measurement of the roughness of
+/// the sea surface from photographs of the sun's glitter, J. Opt. Soc. Am. 44; observed at 1 to 14
+/// m/s. Limits: without the skewness and peakedness of their Gram-Charlier series.
 struct SlopeDistribution {
   double along = 0;   ///< variance of the slope upwind and downwind
   double across = 0;  ///< variance of the slope crosswind
@@ -28,8 +27,7 @@ struct SlopeDistribution {
     return {0.00316 * wind_speed, 0.003 + 0.00192 * wind_speed, toward};
   }
 
-  /// Probability density of a slope, the derivatives of the height by x and y; infinite or not a
-  /// number if a variance is zero.
+  /// Probability density of a slope, the derivatives of the height; no number without a variance.
   [[nodiscard]] double density(const Vec2& slope) const noexcept {
     const double c = std::cos(toward), s = std::sin(toward);
     const double u = c * slope.x + s * slope.y, v = c * slope.y - s * slope.x;
@@ -39,29 +37,28 @@ struct SlopeDistribution {
 
 /// Waves raised by a steady wind on deep water.
 struct WindWaves {
-  double wind_speed = 5;  ///< 10 to 12.5 m above the mean level, from 0, a flat surface, to 30 [m/s]
-  double toward = 0;      ///< direction that the wind blows to, from east towards north [rad]
-  double fetch = std::numeric_limits<double>::infinity();  ///< distance from the windward shore, at least 1 [m]
-  double shortest = 3e-3;                                  ///< minimum wavelength, from 2 mm to 0.1 m [m]
-  std::size_t components = 96;                             ///< number of sine waves, from 16 to `WaveField::max_size`
-  std::uint64_t seed = 0;                                  ///< key of the draws of lengths, directions and phases
+  double wind_speed = 5;            ///< 10 to 12.5 m above the mean level, from 0 (flat) to 30 [m/s]
+  double toward = 0;                ///< direction that the wind blows to, from east towards north [rad]
+  double fetch = detail::infinity;  ///< from the windward shore, at least 1 [m]
+  double shortest = 3e-3;           ///< minimum wavelength, from 2 mm to 0.1 m [m]
+  std::size_t components = 96;      ///< sine waves, from 16 to `WaveField::max_size`
+  std::uint64_t seed = 0;           ///< of the draws of lengths, directions and phases
 
   void validate() const {
     require_within("WindWaves::wind_speed", wind_speed, 0, 30, "m/s");
     require_angle("WindWaves::toward", toward);
-    require_within("WindWaves::fetch", fetch, 1, std::numeric_limits<double>::infinity(), "m");
+    require_within("WindWaves::fetch", fetch, 1, detail::infinity, "m");
     require_within("WindWaves::shortest", shortest, 2e-3, 0.1, "m");
-    require_within("WindWaves::components (number)", static_cast<double>(components), 16,
-                   static_cast<double>(WaveField::max_size), "");
+    detail::require_count("WindWaves::components (number)", components, 16, WaveField::max_size);
   }
 };
 
 namespace detail {
 
-/// Spectrum of wind waves over wavenumbers [rad/m] and directions, from the longest waves to capillary waves.
-/// Source: Elfouhaily, Chapron, Katsaros & Vandemark 1997, A unified directional spectrum for long and short
-/// wind-driven waves, J. Geophys. Res. 102; friction velocity by the drag coefficient of Wu 1982, J. Geophys. Res. 87.
-/// Limits: of winds below 0.5 m/s it is that of 0.5 m/s, and of waves younger than an inverse wave age of 5 that of 5.
+/// Spectrum of wind waves over wavenumbers [rad/m] and directions, down to capillary waves. Source:
+/// Elfouhaily, Chapron, Katsaros & Vandemark 1997, A unified directional spectrum for long and
+/// short wind-driven waves, J. Geophys. Res. 102; drag coefficient: Wu 1982, J. Geophys. Res. 87.
+/// Limits: winds below 0.5 m/s count as 0.5 m/s, inverse wave ages above 5 as 5.
 class WindSpectrum {
  public:
   /// Of a wind speed 10 m above the mean level [m/s] and a fetch [m].
@@ -72,19 +69,19 @@ class WindSpectrum {
     peak_speed_ = wind / age_;
     friction_ = wind * std::sqrt((0.8 + 0.065 * wind) * 1e-3);
     long_ = 6e-3 * std::pow(age_, 0.55);
-    short_ = 1e-2 * std::max(0.0, 1 + (friction_ > least_speed ? 3 : 1) * std::log(friction_ / least_speed));
+    const double rough = std::log(friction_ / least_speed);
+    short_ = 1e-2 * std::max(0.0, 1 + (friction_ > least_speed ? 3 : 1) * rough);
     overshoot_ = age_ > 1 ? 1.7 + 6 * std::log10(age_) : 1.7;
     width_ = 0.08 * (1 + 4 / (age_ * age_ * age_));
   }
 
-  [[nodiscard]] double peak() const noexcept { return peak_; }  ///< wavenumber of the highest waves [rad/m]
+  [[nodiscard]] double peak() const noexcept { return peak_; }  ///< of the highest waves [rad/m]
 
-  /// Variance of the slope per unit of the logarithm of the wavenumber [rad/m]; that of the height
-  /// [m^2] is k^2 times less.
+  /// Variance of the slope per logarithm of the wavenumber [rad/m]; by k^2, of the height [m^2].
   [[nodiscard]] double curvature(double k) const noexcept {
     const double root = std::sqrt(k / peak_) - 1, speed = phase_speed(k), ratio = peak_ / k;
-    const double peaked =
-        std::exp(-1.25 * ratio * ratio) * std::pow(overshoot_, std::exp(-root * root / (2 * width_ * width_)));
+    const double by_peak = std::exp(-root * root / (2 * width_ * width_));
+    const double peaked = std::exp(-1.25 * ratio * ratio) * std::pow(overshoot_, by_peak);
     const double from_long = long_ * peak_speed_ * std::exp(-age_ / std::sqrt(10.0) * root);
     const double capillary = k / least_speed_wavenumber - 1;
     const double from_short = short_ * least_speed * std::exp(-0.25 * capillary * capillary);
@@ -99,15 +96,15 @@ class WindSpectrum {
   }
 
  private:
-  static constexpr double least_speed = 0.23;            ///< of waves by gravity and surface tension [m/s]
-  static constexpr double least_speed_wavenumber = 370;  ///< wavenumber of the slowest waves [rad/m]
+  static constexpr double least_speed = 0.23;            ///< of waves [m/s]
+  static constexpr double least_speed_wavenumber = 370;  ///< of the slowest waves [rad/m]
 
   [[nodiscard]] static double phase_speed(double k) noexcept {
     const double ratio = k / least_speed_wavenumber;
     return std::sqrt(standard_gravity / k * (1 + ratio * ratio));
   }
 
-  double age_;                ///< inverse wave age: wind speed over the phase speed of the highest waves
+  double age_;                ///< inverse wave age: wind speed over that of the highest waves
   double peak_, peak_speed_;  ///< wavenumber [rad/m] and phase speed [m/s] of the highest waves
   double friction_;           ///< friction velocity of the wind [m/s]
   double long_, short_;       ///< equilibrium ranges of long and short waves
@@ -120,7 +117,6 @@ struct DrawnWave {
   Vec2 slope;         ///< amplitude times wavenumber, along and across the wind
 };
 
-/// Symmetric matrix of variances of slopes.
 struct SlopeVariance {
   double along = 0, mixed = 0, across = 0;
 
@@ -139,15 +135,16 @@ struct SlopeVariance {
   [[nodiscard]] bool positive() const noexcept { return along > 0 && determinant() > 0; }
 };
 
-/// Lower triangular matrix that maps slopes of one variance to those of another, by their Cholesky factors.
+/// Lower triangular matrix that maps slopes of one variance to another, by their Cholesky factors.
 class SlopeMap {
  public:
   SlopeMap(const SlopeVariance& from, const SlopeVariance& to) noexcept {
     const double from_side = std::sqrt(from.determinant() / from.along),
                  to_side = std::sqrt(to.determinant() / to.along);
+    const double of_from = std::sqrt(from.along), of_to = std::sqrt(to.along);
     along_ = std::sqrt(to.along / from.along);
     across_ = to_side / from_side;
-    mixed_ = (to.mixed / std::sqrt(to.along) - across_ * from.mixed / std::sqrt(from.along)) / std::sqrt(from.along);
+    mixed_ = (to.mixed / of_to - across_ * from.mixed / of_from) / of_from;
   }
   [[nodiscard]] Vec2 operator()(const Vec2& slope) const noexcept {
     return {along_ * slope.x, mixed_ * slope.x + across_ * slope.y};
@@ -157,7 +154,7 @@ class SlopeMap {
   double along_, mixed_, across_;
 };
 
-/// Angle to the wind within a quarter turn, distributed as 1 + spread cos(2 angle); `share` in (0, 1).
+/// Angle to the wind within a quarter turn, distributed as 1 + spread cos(2 angle); `share` < 1.
 [[nodiscard]] inline double angle_to_wind(double spread, double share) noexcept {
   double low = -pi / 2, high = pi / 2;
   for (int halving = 0; halving < 50; ++halving) {
@@ -167,12 +164,12 @@ class SlopeMap {
   return 0.5 * (low + high);
 }
 
-/// Draws waves of a spectrum: intervals of wavenumber in which half of the sums is of heights and half of slopes, with
-/// drawn ends, and in each a wave with the interval's variances of height and slope, in a drawn direction.
+/// Draws waves of a spectrum: in each interval of wavenumber one with its variances of height and
+/// slope, drawn in direction. Intervals have equal sums, half heights, half slopes; drawn ends.
 [[nodiscard]] inline std::vector<DrawnWave> draw_waves(const WindWaves& settings, const WindSpectrum& spectrum) {
   constexpr std::size_t cells = 1 << 14;
-  const double first = std::log(0.25 * spectrum.peak()), last = std::log(2 * pi / settings.shortest),
-               step = (last - first) / cells;
+  const double first = std::log(0.25 * spectrum.peak());
+  const double step = (std::log(2 * pi / settings.shortest) - first) / cells;
   std::vector<double> slopes(cells), heights(cells);
   double slope = 0, height = 0;
   for (std::size_t n = 0; n < cells; ++n) {
@@ -184,10 +181,8 @@ class SlopeMap {
   double sum = 0, slope_here = 0, height_here = 0;
   std::size_t n = 0;
   for (std::size_t i = 0; i < settings.components; ++i) {
-    const double drawn = uniform({settings.seed, i, 1});
-    const double end = i + 1 < settings.components
-                           ? (static_cast<double>(i) + 0.5 + drawn) / static_cast<double>(settings.components)
-                           : 2;
+    const double drawn = static_cast<double>(i) + 0.5 + uniform({settings.seed, i, 1});
+    const double end = i + 1 < settings.components ? drawn / static_cast<double>(settings.components) : 2;
     slope_here = height_here = 0;
     for (; n < cells && sum < end; ++n) {
       slope_here += slopes[n];
@@ -204,11 +199,11 @@ class SlopeMap {
 
 }  // namespace detail
 
-/// Sine waves drawn for a wind: their heights are those of the `WindSpectrum`, and the variances of their slopes
-/// exactly those of the `SlopeDistribution`, without correlation. To that end slopes of the waves shorter than a tenth
-/// of those at the peak are mapped to others. Where that would leave them less than a quarter of their variance, as in
-/// winds below some 2 m/s, slopes of all waves are mapped.
-/// @throws SettingError as `WindWaves::validate`
+/// Sine waves drawn for a wind: heights of the `WindSpectrum`, and slopes with exactly the
+/// variances of the `SlopeDistribution`, without correlation. To that end slopes of waves shorter
+/// than a tenth of those at the peak are mapped to others. Where that would leave them less than a
+/// quarter of their variance, as in winds below some 2 m/s, slopes of all waves are mapped. @throws
+/// SettingError as `WindWaves::validate`
 [[nodiscard]] inline std::vector<SineWave> waves_of(const WindWaves& settings) {
   settings.validate();
   if (settings.wind_speed == 0) return {};
@@ -229,8 +224,8 @@ class SlopeMap {
     const detail::DrawnWave& wave = waves[i];
     const Vec2 slope = room && wave.wavenumber <= limit ? wave.slope : map(wave.slope);
     const double toward = std::remainder(settings.toward + std::atan2(slope.y, slope.x), 2 * pi);
-    drawn.push_back(
-        {length(slope) / wave.wavenumber, 2 * pi / wave.wavenumber, toward, 2 * pi * uniform({settings.seed, i, 3})});
+    const double phase = 2 * pi * uniform({settings.seed, i, 3});
+    drawn.push_back({length(slope) / wave.wavenumber, 2 * pi / wave.wavenumber, toward, phase});
   }
   return drawn;
 }

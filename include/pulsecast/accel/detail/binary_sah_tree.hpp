@@ -13,38 +13,38 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of
-/// minimum SAH cost. Leaves of the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of
-/// the leaves. Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
+/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an
+/// 8-wide tree of minimum SAH cost, of up to `leaf_size` a leaf. Reorders primitives. Source: Wald
+/// 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
 template <std::floating_point Real>
 class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the
-  /// node's index; 0 for one primitive.
+  /// Subtree: a range of primitives; `middle`: start of the second child, and node; 0 for one
+  /// primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of
-  /// primitives per leaf of the collapsed tree.
+  /// At least one primitive, in an array that must outlive the tree. `leaf_size`: greatest number
+  /// of primitives per leaf of the collapsed tree.
   BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, const Workers& workers)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // upper levels: one node at a time on all threads; then the subtrees in parallel
     struct Step {
       Task task;
       Sums sums{};
-      std::size_t halves = 0;  // index of the first half, the second follows it; 0 if built as one subtree
+      std::size_t halves = 0;  // index of the first of two; 0 for a subtree
     };
     const unsigned threads = workers.count();
-    const std::size_t grain =
-        threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
+    const std::size_t all = primitives.size();
+    const std::size_t grain = threads == 1 ? all : std::max<std::size_t>(all / (8 * threads), 4096);
     std::vector<Step> steps;
-    steps.push_back({{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(workers)}});
+    steps.push_back({{0, static_cast<std::uint32_t>(all), 0, false, &root_, bounds(workers)}});
     std::vector<std::size_t> subtrees;
-    const SharedBuffer<ChunkBins> space(threads == 1 ? 1 : chunk_count(primitives.size()));
+    const SharedBuffer<ChunkBins> space(threads == 1 ? 1 : chunk_count(all));
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         subtrees.push_back(i);
@@ -83,9 +83,10 @@ class BinarySahTree {
     std::size_t count = 0;
   };
 
-  /// Appends the children that this range contributes when given `given` of its parent's eight slots.
+  /// Appends the children that this range contributes for `given` of its parent's eight slots.
   void gather(const Range& range, std::size_t given, Children& children) const {
-    const std::uint8_t left = given > 1 && range.middle != 0 ? nodes_[range.middle].left[given - 2] : 0;
+    const bool split = given > 1 && range.middle != 0;
+    const std::uint8_t left = split ? nodes_[range.middle].left[given - 2] : 0;
     if (left == 0) {
       children.ranges[children.count++] = range;
     } else {
@@ -95,18 +96,17 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t few = 4096;  ///< primitives: smaller trees, perhaps of shapes, take all slices
-  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
+  static constexpr std::size_t few = 4096;  ///< smaller trees, perhaps of shapes, take all slices
+  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf, by a traversal step's
 
   /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;
 
-  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its
-  /// position is the node's index.
+  /// Inner node. Its index is the gap between neighbours in the final order that it splits.
   struct Node {
     BoundingBox<Real> box;
     std::uint32_t first, second;    ///< indices of the children, 0 for one primitive
-    std::uint8_t left[places - 1];  ///< slots of the first child, out of j + 2; 0 if the node itself takes one slot
+    std::uint8_t left[places - 1];  ///< slots of the first child, out of j + 2; 0: one for the node
     bool leaf;
   };
 
@@ -146,7 +146,7 @@ class BinarySahTree {
 
   struct Split {
     std::size_t axis = 0, slice = 0;  ///< first slice of the second half; 0 for no split
-    double cost = std::numeric_limits<double>::infinity();
+    double cost = infinity;
   };
 
   [[nodiscard]] Bounds bounds(const Workers& workers) const {
@@ -183,7 +183,7 @@ class BinarySahTree {
     return plan(node, sums_of(task.begin), 1, sums_of(task.begin + 1), 1);
   }
 
-  /// Splits a node of three or more primitives. Both halves keep enough levels for halving down to single primitives.
+  /// Splits a node of three or more primitives; both halves keep levels to halve to one.
   std::array<Task, 2> split(const Task& task, const SharedBuffer<ChunkBins>& space, const Workers& workers) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
     const bool alone = task.size() <= 2 * chunk_size || workers.count() == 1;
@@ -194,8 +194,8 @@ class BinarySahTree {
         act(space[i], from + begin, from + end);
       });
     };
-    const std::size_t count =
-        primitives_.size() <= few ? Bins::max_slices : std::min<std::size_t>(Bins::max_slices, 4 + task.size() / 16);
+    constexpr std::size_t most = Bins::max_slices;
+    const std::size_t count = primitives_.size() <= few ? most : std::min<std::size_t>(most, 4 + task.size() / 16);
     const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
     each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
       part.bins.fill(slices, begin, end);
@@ -216,13 +216,15 @@ class BinarySahTree {
       (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
       if (i < split.slice) left += all->counts[split.axis][i];
     }
-    if (task.depth + 1 + std::bit_width(std::max(left, task.size() - left) - 1) > max_depth) return halve(task);
+    const std::uint32_t larger = std::max(left, task.size() - left);
+    if (task.depth + 1 + std::bit_width(larger - 1) > max_depth) return halve(task);
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {
       ChunkBins& part = space[i];
       std::copy_n(to, 2, part.to);
-      for (std::size_t s = 0; s < slices.count(); ++s) to[s < split.slice ? 0 : 1] += part.bins.counts[split.axis][s];
+      const auto& counts = part.bins.counts[split.axis];
+      for (std::size_t s = 0; s < slices.count(); ++s) to[s < split.slice ? 0 : 1] += counts[s];
     }
     each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
       scatter(part, slices, split, array(!task.spare), begin, end);
@@ -249,8 +251,8 @@ class BinarySahTree {
     part.centres[0] = part.centres[1] = Growing();
     for (; begin != end; ++begin) {
       const Corner centre = begin->low() + begin->high();
-      const std::size_t half =
-          slices.reaches(split.axis, begin->box.min[split.axis] + begin->box.max[split.axis], split.slice) ? 1 : 0;
+      const std::size_t k = split.axis;
+      const std::size_t half = slices.reaches(k, begin->box.min[k] + begin->box.max[k], split.slice) ? 1 : 0;
       to[part.to[half]++] = *begin;
       part.centres[half].extend(centre, centre);
     }
@@ -262,11 +264,12 @@ class BinarySahTree {
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (centres.max[k] - centres.min[k] > centres.max[axis] - centres.min[axis]) axis = k;
-    const auto centre = [axis](const Boxed<Real>& boxed) { return boxed.box.min[axis] + boxed.box.max[axis]; };
+    const auto is_before = [axis](const Boxed<Real>& a, const Boxed<Real>& b) {
+      return a.box.min[axis] + a.box.max[axis] < b.box.min[axis] + b.box.max[axis];
+    };
     Boxed<Real>* const all = array(task.spare);
     const std::uint32_t middle = task.begin + task.size() / 2;
-    std::nth_element(all + task.begin, all + middle, all + task.end,
-                     [&](const Boxed<Real>& a, const Boxed<Real>& b) { return centre(a) < centre(b); });
+    std::nth_element(all + task.begin, all + middle, all + task.end, is_before);
     Task first{task.begin, middle, task.depth + 1, task.spare, nullptr, {}},
         second{middle, task.end, task.depth + 1, task.spare, nullptr, {}};
     for (std::uint32_t i = task.begin; i < task.end; ++i) (i < middle ? first : second).bounds.extend(all[i]);
@@ -313,7 +316,7 @@ class BinarySahTree {
         node.left[j - 1] = node.left[j - 2];
         continue;
       }
-      sums[j] = std::numeric_limits<double>::infinity();
+      sums[j] = infinity;
       for (std::size_t k = j > in_second ? j - in_second : 0; k < std::min(j, in_first); ++k)
         if (const double sum = first[k] + second[j - 1 - k]; sum < sums[j]) {
           sums[j] = sum;
@@ -321,7 +324,7 @@ class BinarySahTree {
         }
     }
     const double area = half_area(node.box), as_node = area + sums[places - 1];
-    const double as_leaf = size <= leaf_size_ ? area * leaf_cost : std::numeric_limits<double>::infinity();
+    const double as_leaf = size <= leaf_size_ ? area * leaf_cost : infinity;
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
     for (std::size_t j = 1; j < places - 1; ++j)  // the last entry is the node itself

@@ -19,17 +19,17 @@ namespace PULSECAST_NAMESPACE::detail {
 template <std::floating_point Real, class Node>
 class KdTreeBuilder {
  public:
-  /// Takes at least one primitive.
-  KdTreeBuilder(const SharedBuffer<Boxed<Real>>& primitives, const Workers& workers)
-      // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
-      : deepest_(std::min(max_depth,
-                          static_cast<std::size_t>(8 + 1.3 * std::log2(static_cast<double>(primitives.size()))))) {
+  KdTreeBuilder(const SharedBuffer<Boxed<Real>>& primitives, const Workers& workers) {
+    const auto count = static_cast<double>(primitives.size());
+    // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
+    deepest_ = std::min(max_depth, static_cast<std::size_t>(8 + 1.3 * std::log2(count)));
     const Box whole = box_of(primitives);
     cell = whole.box();
-    steps_.push_back({{whole, cell, leaves_per_primitive * static_cast<double>(primitives.size()), 0}, primitives});
+    steps_.push_back({{whole, cell, leaves_per_primitive * count, 0}, primitives});
     split_large(workers);
     for_each_index(steps_.size(), workers, [&](std::size_t i) {
-      if (steps_[i].lower == 0) steps_[i].subtree = build(steps_[i].task, std::exchange(steps_[i].primitives, {}));
+      Step& step = steps_[i];
+      if (step.lower == 0) step.subtree = build(step.task, std::exchange(step.primitives, {}));
     });
     join(workers);
   }
@@ -43,10 +43,10 @@ class KdTreeBuilder {
   using Box = GrowingBox<Real>;
   using Primitives = std::span<const Boxed<Real>>;
 
-  static constexpr std::size_t grain = 4096;  ///< primitives of a subtree at most: what is pending then fits a cache
+  static constexpr std::size_t grain = 4096;  ///< primitives of a subtree at most, for the cache
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
-  static constexpr double empty_bonus = 0.8;  ///< factor of splits with an empty side. Source: Wald & Havran 2006, 3.2
+  static constexpr double empty_bonus = 0.8;  ///< factor with an empty side. Source: Wald & Havran 2006, 3.2
 
   struct Task {
     Box filled;  ///< bounds of its primitives
@@ -95,8 +95,8 @@ class KdTreeBuilder {
     Split split{};
     std::size_t lower = 0;  ///< index of the lower child, the upper one follows it; 0 for a subtree
     Subtree subtree{};
-    std::size_t own = 0, first_node = 0,
-                first_reference = 0;  ///< places of its node, and of the first node and reference below
+    /// Places of its node, and of the first node and reference below.
+    std::size_t own = 0, first_node = 0, first_reference = 0;
   };
 
   /// Chunk of the primitives of a large node.
@@ -133,10 +133,11 @@ class KdTreeBuilder {
   /// Halves of a node, without their bounds.
   static std::array<Task, 2> halves(const Task& task, const Split& split, std::size_t lower,
                                     std::size_t upper) noexcept {
-    const auto share = [&](std::size_t side) {
-      return task.allowance * static_cast<double>(side) / static_cast<double>(lower + upper);
+    const auto half = [&](std::size_t side) -> Task {
+      const double share = task.allowance * static_cast<double>(side) / static_cast<double>(lower + upper);
+      return {{}, task.cell, share, task.depth + 1};
     };
-    Task below{{}, task.cell, share(lower), task.depth + 1}, above{{}, task.cell, share(upper), task.depth + 1};
+    Task below = half(lower), above = half(upper);
     below.cell.max[split.axis] = above.cell.min[split.axis] = split.at;
     return {below, above};
   }
@@ -184,7 +185,8 @@ class KdTreeBuilder {
           pieces.push_back({i, all.subspan(from, std::min(chunk_size, all.size() - from))});
       }
       const auto each = [&](const auto& act) {
-        for_each_index(pieces.size(), workers, [&](std::size_t i) { act(pieces[i], steps_[pieces[i].step]); });
+        const auto act_on = [&](std::size_t i) { act(pieces[i], steps_[pieces[i].step]); };
+        for_each_index(pieces.size(), workers, act_on);
       };
       each([](Piece& piece, const Step& step) { piece.counts.fill(slices_of(step.task), piece.part); });
       for_each_step(pieces, [](std::span<Piece> of, Step& step) {
@@ -244,11 +246,10 @@ class KdTreeBuilder {
     for (std::size_t half = 0; half < 2; ++half) piece.filled[half] = box_of({to[half], piece.sizes[half]});
   }
 
-  /// Builds a subtree depth first.
   [[nodiscard]] Subtree build(const Task& root, Primitives primitives) const {
     struct Open {
       Task task;
-      std::size_t node, begin;  ///< index of the node, and of its first primitive among the pending ones
+      std::size_t node, begin;  ///< of the node, and its first pending primitive
     };
     Subtree made;
     made.nodes.resize(1);
@@ -259,7 +260,8 @@ class KdTreeBuilder {
       const Open next = open.back();
       const Task& task = next.task;
       open.pop_back();
-      const Primitives part = made.nodes.size() == 1 ? primitives : Primitives(pending).subspan(next.begin);
+      const bool is_root = made.nodes.size() == 1;
+      const Primitives part = is_root ? primitives : Primitives(pending).subspan(next.begin);
       Split split;
       if (task.depth < deepest_) {
         Counts counts;
@@ -324,7 +326,8 @@ class KdTreeBuilder {
       const Subtree& own = step.subtree;
       std::copy(own.order.begin(), own.order.end(), references.data() + step.first_reference);
       const auto placed = [&](Node node) {
-        node.place(node.first() + (node.axis() == 3 ? step.first_reference : step.first_node - 1), node.axis());
+        const std::size_t start = node.axis() == 3 ? step.first_reference : step.first_node - 1;
+        node.place(node.first() + start, node.axis());
         return node;
       };
       all[step.own] = placed(own.nodes[0]);

@@ -12,9 +12,9 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 
-/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that hits it. The
-/// probability that a ray through a box hits a box inside is the ratio of their surface areas. Source: Goldsmith &
-/// Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
+/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray
+/// that hits it; that hits a box inside with the ratio of surface areas. Source: Goldsmith & Salmon
+/// 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Cost of a primitive test, in traversal steps. Affects speed only.
@@ -26,16 +26,13 @@ inline constexpr std::size_t max_depth = 64;
 /// Greatest coordinate accepted, so that sums and areas in any Real stay finite [m].
 inline constexpr double max_coordinate = 1e18;
 
-/// Half of the surface area [m^2].
 template <std::floating_point Real>
 [[nodiscard]] double half_area(const BoundingBox<Real>& box) noexcept {
-  const double x = static_cast<double>(box.max[0]) - static_cast<double>(box.min[0]);
-  const double y = static_cast<double>(box.max[1]) - static_cast<double>(box.min[1]);
-  const double z = static_cast<double>(box.max[2]) - static_cast<double>(box.min[2]);
+  const auto size = [&](int k) noexcept { return static_cast<double>(box.max[k]) - static_cast<double>(box.min[k]); };
+  const double x = size(0), y = size(1), z = size(2);
   return x * y + y * z + z * x;
 }
 
-/// Primitive during a build.
 template <std::floating_point Real>
 struct Boxed {
   BoundingBox<Real> box;
@@ -49,7 +46,6 @@ struct Boxed {
   }
 };
 
-/// Growing bounding box, initially empty.
 template <std::floating_point Real>
 struct GrowingBox {
   simd::Vec4<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
@@ -89,19 +85,19 @@ class Slices {
   /// True if the box is long enough along axis k to be sliced.
   [[nodiscard]] bool valid(std::size_t k) const noexcept { return valid_[k]; }
 
-  /// Slice along each axis that holds a point, clamped to the box; 0 along axes that are not sliced.
+  /// Slice along each axis that holds a point, clamped to the box; 0 along axes not sliced.
   [[nodiscard]] std::array<std::uint32_t, 3> of(const simd::Vec4<Real>& point) const noexcept {
-    const simd::Vec4<Real> slice = simd::min(simd::max((point - low_) * per_width_, simd::Vec4<Real>(0)), last_);
+    using Four = simd::Vec4<Real>;
+    const Four slice = simd::min(simd::max((point - low_) * per_width_, Four(0)), last_);
     const auto whole = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(slice[k])); };
     return {whole(0), whole(1), whole(2)};
   }
 
-  /// True if coordinate x along axis k is in slice i or a later one, consistent with `of`. Requires i > 0.
+  /// True if coordinate x along axis k is in slice i > 0 or a later one, consistent with `of`.
   [[nodiscard]] bool reaches(std::size_t k, Real x, std::size_t i) const noexcept {
     return (x - low_[k]) * per_width_[k] >= static_cast<Real>(i);
   }
 
-  /// Lower edge of slice i along axis k.
   [[nodiscard]] Real edge(std::size_t k, std::size_t i) const noexcept {
     return low_[k] + static_cast<Real>(i) * width_[k];
   }
@@ -135,7 +131,7 @@ struct Bins {
       }
   }
 
-  /// Bins of the primitives from `begin` to `end`, each by its centre. The slices are those of the centres, times two.
+  /// Bins of primitives from `begin` to `end` by their centres, times two, as are the slices.
   void fill(const Slices<Real>& slices, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
     const auto put = [&](const Boxed<Real>& boxed, Bins& to) noexcept {
       const simd::Vec4<Real> low = boxed.low(), high = boxed.high();
@@ -146,7 +142,7 @@ struct Bins {
       }
     };
     clear(slices.count());
-    if (end - begin > 256) {  // alternates two sets of bins, since neighbours often share a slice and would serialize
+    if (end - begin > 256) {  // two sets of bins in turn, as neighbours often share a slice
       Bins other;
       other.clear(slices.count());
       for (; end - begin > 1; begin += 2) {
@@ -159,18 +155,17 @@ struct Bins {
   }
 };
 
-/// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there is more than one chunk. Results
-/// merged in chunk order, or independent of it, do not depend on the number of threads.
+/// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there are
+/// several. Results merged in chunk order do not depend on the number of threads.
 inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
 [[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept {
   return (count + chunk_size - 1) / chunk_size;
 }
 void for_each_chunk(std::size_t count, const Workers& workers, const auto& act) {
-  for_each_index(chunk_count(count), workers,
-                 [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
+  const auto act_on = [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); };
+  for_each_index(chunk_count(count), workers, act_on);
 }
 
-/// Test of the primitives of a leaf.
 template <class T>
 concept LeafTest = std::invocable<const T&, std::span<const PrimitiveIndex>>;
 
@@ -181,13 +176,13 @@ concept BoxRange = requires(const B& boxes) {
 };
 
 /// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The
-/// range must outlive the view, and yield the same `Box` for an index every time.
+/// range must outlive it, and yield the same `Box` for an index every time.
 class BoxRangeRef {
  public:
   template <BoxRange Boxes>
   BoxRangeRef(const Boxes& boxes)  // NOLINT(google-explicit-constructor): implicit from an array
-      : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t begin, std::size_t end, Box* to) {
-          for (std::size_t i = begin; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];
+      : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t i, std::size_t end, Box* to) {
+          for (; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];
         }) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -218,7 +213,7 @@ struct BuildInput {
   SharedBuffer<Boxed<Real>> primitives;
 
   explicit BuildInput(const BoxRangeRef& boxes, const Workers& workers = 1) {
-    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // the next is `ClosestHits::none`
+    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // the next is no hit
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
     struct ChunkBounds {

@@ -68,7 +68,6 @@ struct Box8 {
     for (auto& side : max) std::fill(std::begin(side), std::end(side), -most);
   }
 
-  /// Sets the box in a slot.
   void put(std::size_t place, const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       min[k][place] = box.min[k];
@@ -126,7 +125,6 @@ struct QuantizedBox8 {
 #endif
     return {step(0), step(1), step(2)};
   }
-  /// Step of the grid along an axis [m].
   [[nodiscard]] Real step(std::size_t k) const noexcept {
     if constexpr (sizeof(Real) == 4)
       return std::bit_cast<Real>(std::uint32_t{exponent[k]} << 23);

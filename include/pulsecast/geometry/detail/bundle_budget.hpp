@@ -18,7 +18,6 @@ struct BudgetedLimit {
   const Hits& nearest;    ///< hits so far
   mutable int asked = 0;  ///< number of reads of the limit
 
-  /// As in `ClosestHits`.
   [[nodiscard]] double limit(const auto& rays) const noexcept {
     return ++asked > most ? -infinity : nearest.limit(rays);
   }

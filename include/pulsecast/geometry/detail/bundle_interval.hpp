@@ -23,7 +23,6 @@ class BundleInterval {
  public:
   using Entries = std::array<Real, 8>;  ///< entry ranges of boxes [m]
 
-  /// Interval of range.
   struct Span {
     Real entry, exit;  ///< ends of the interval [m]
     [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
@@ -54,7 +53,6 @@ class BundleInterval {
     }
   }
 
-  /// Largest range at which any ray can still find a closer hit.
   [[nodiscard]] Real limit(const auto& rays, const auto& nearest) const noexcept {
     return round_up<Real>(nearest.limit(rays));
   }
@@ -77,7 +75,6 @@ class BundleInterval {
               (simd::load<simd::Packet<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
-  /// Bit mask and entry ranges, as above.
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, Entries& entries) const noexcept {
     // two roundings of a wall's distance, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
@@ -95,13 +92,12 @@ class BundleInterval {
     return inside(limit, entries, walls_of) & ((1U << boxes.count) - 1);
   }
 
-  /// Part of an interval in which any ray may be at or above the plane at `position` on axis k.
+  /// Part of an interval in which any ray may be at or above, or below, a plane on axis k.
   [[nodiscard]] Span above(Span span, int k, Real position) const noexcept {
     keep_above(span, axes_[k], position);
     return span;
   }
 
-  /// Part of an interval in which any ray may be at or below the plane at `position` on axis k.
   [[nodiscard]] Span below(Span span, int k, Real position) const noexcept {
     keep_below(span, axes_[k], position);
     return span;
@@ -209,7 +205,6 @@ class RayInterval {
                      : std::numeric_limits<Real>::infinity();  // no -0
   }
 
-  /// Largest range at which the ray can still find a closer hit.
   [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
     return static_cast<Real>(std::min(nearest.limit_of(0) * (1 + tolerance), max_limit));
   }

@@ -16,14 +16,15 @@
 /// Boxes around all that a body passes on its timeline.
 namespace PULSECAST_NAMESPACE::detail {
 
+[[nodiscard]] inline Box around(const Vec3& a, const Vec3& b) noexcept { return {min(a, b), max(a, b)}; }
 [[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
 
-/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from
-/// an axis in uniform straight motion; in the unit of the distance. Source: the error of linear interpolation, |f''|
-/// h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
+/// Greatest deviation of a point from uniform straight motion while it turns by an angle [rad] at
+/// this distance from an axis in such motion; in its unit. Source: error of linear interpolation,
+/// |f''| h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
 [[nodiscard]] inline double bulge(double distance, double angle) noexcept { return distance * angle * angle / 8; }
 
-/// Angle beyond which the bound of a turning point is its whole sphere [rad]; affects only the size of boxes.
+/// Angle beyond which a turning point is bounded by its whole sphere [rad]; for the size of boxes.
 inline constexpr double wide_turn = 2;
 
 [[nodiscard]] inline Box moved(const Box& box, const Screw& by) noexcept {
@@ -46,10 +47,8 @@ inline constexpr double wide_turn = 2;
   for (const Vec3& p : corners(box)) radius = std::max(radius, length(p - centre));
   const double angle = turn.angle * static_cast<double>(last - first);
   if (angle <= wide_turn) return grown(out, bulge(radius, angle));
-  Box axis;
-  axis.extend(centre + static_cast<double>(first) * along);
-  axis.extend(centre + static_cast<double>(last) * along);
-  return grown(axis, radius);
+  const auto at = [&](std::int64_t n) noexcept { return centre + static_cast<double>(n) * along; };
+  return grown(around(at(first), at(last)), radius);
 }
 
 /// Box of a body as placed, in any attitude.
@@ -61,8 +60,7 @@ struct SweptBody {
 
   /// Radius of a ball about the own centre that holds the body [m].
   [[nodiscard]] double radius() const noexcept { return length(offset) + length(half); }
-  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and
-  /// these axes of the box [m].
+  /// Greatest distance of a corner from a point, by the offset of the middle, and these axes [m].
   [[nodiscard]] double corner_distance(const Vec3& middle, const Matrix3& axes) const noexcept {
     double mixed = 0;  // the corner in the octant of `middle`
     for (int k = 0; k < 3; ++k) mixed += std::fabs(dot(middle, axes[k])) * half[k];
@@ -70,7 +68,6 @@ struct SweptBody {
   }
 };
 
-/// A body in a state: the middle of its box, and the axes.
 struct SweptState {
   Vec3 middle;  ///< relative to the reference [m]
   Matrix3 axes;
@@ -83,21 +80,20 @@ struct SweptState {
   }
 };
 
-/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else
-/// as `extend_by_piece`.
+/// Extends a box by the path of a body that turns otherwise than it orbits, as of a ball.
 inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end,
                            double span) noexcept {
   const MotionPiece& piece = *place.piece;
-  const Vec3 first = state_at(place, body.start).centre, middle = piece.centre + piece.velocity * place.time.seconds();
+  const Vec3 first = state_at(place, body.start).centre;
+  const Vec3 middle = piece.centre + piece.velocity * place.time.seconds();
   const double angle = std::fabs(piece.orbit.angular_rate) * span, radius = length(first - middle);
   const bool wide = angle > wide_turn;
-  Box way;
-  way.extend(wide ? middle : first);
-  way.extend(wide ? middle + piece.velocity * span : state_at({place.before, place.piece, end}, body.start).centre);
+  const Vec3 last = state_at({place.before, place.piece, end}, body.start).centre;
+  const Box way = wide ? around(middle, middle + piece.velocity * span) : around(first, last);
   box.extend(grown(way, body.radius() + (wide ? radius : bulge(radius, angle))));
 }
 
-/// Extends a box by the path of a body, from a place in a piece to its time `end`, `span` seconds later.
+/// Extends a box by the path of a body, from a place in a piece to its time `end`, `span` later.
 inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end,
                             double span) noexcept {
   const MotionPiece& piece = *place.piece;
@@ -109,23 +105,17 @@ inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& 
   Box ends = first.box(body);
   if (angle == 0) {
     box.extend(ends);
-    box.extend(Box{ends.min + way, ends.max + way});
-    return;
+    return box.extend(Box{ends.min + way, ends.max + way});
   }
-  const Vec3 centre = piece.about_itself ? state.centre : piece.centre + piece.velocity * place.time.seconds();
+  const Vec3 axis_point = piece.centre + piece.velocity * place.time.seconds();
+  const Vec3 centre = piece.about_itself ? state.centre : axis_point;
   const double radius = body.corner_distance(first.middle - centre, first.axes);
-  if (angle > wide_turn) {
-    ends = Box{centre, centre};
-    ends.extend(centre + way);
-    box.extend(grown(ends, radius));
-    return;
-  }
+  if (angle > wide_turn) return box.extend(grown(around(centre, centre + way), radius));
   ends.extend(SweptState(body, state_at({place.before, place.piece, end}, body.start)).box(body));
   box.extend(grown(ends, bulge(radius, angle)));
 }
 
-/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at
-/// the start or at that of a cycle.
+/// Extends a box by passes `first` to `last` of a run, for an own centre in `own` at the start.
 inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own, const MotionRun& run,
                           std::int64_t first, std::int64_t last, double end) noexcept {
   const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);
@@ -142,9 +132,7 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
     }
     double radius = 0;
     for (const Vec3& p : corners(at_start)) radius = std::max(radius, length(p - piece.centre));
-    Box axis;
-    axis.extend(piece.centre);
-    axis.extend(piece.centre + way);
+    const Box axis = around(piece.centre, piece.centre + way);
     box.extend(piece.orbit.angular_rate == 0 ? ends : grown(axis, radius));
   }
 }
@@ -158,19 +146,20 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
   const bool cycles = motion.cycle_first < motion.runs.size();
   if (!cycles || from < motion.cycle_start)
     for (std::size_t i = 0; i < motion.cycle_first; ++i) {
-      if (to < motion.runs[i].start || (i + 1 < motion.cycle_first && motion.runs[i + 1].start < from)) continue;
-      const std::int64_t whole =
-          motion.runs[i].times > 1 ? Periods(since(motion.runs[i].start, to), motion.runs[i].pass_duration).whole : 0;
-      const Tick early = motion.runs[i].start < from ? since(motion.runs[i].start, from) : Tick{};
-      const std::int64_t first = motion.runs[i].times > 1 ? Periods(early, motion.runs[i].pass_duration).whole : 0;
-      extend_by_run(box, motion, own, motion.runs[i], std::min(first, motion.runs[i].times - 1),
-                    std::min(whole, motion.runs[i].times - 1), end);
+      const MotionRun& run = motion.runs[i];
+      if (to < run.start || (i + 1 < motion.cycle_first && motion.runs[i + 1].start < from)) continue;
+      const auto pass = [&](const Tick& time) noexcept {
+        return run.times > 1 ? std::min(Periods(time, run.pass_duration).whole, run.times - 1) : 0;
+      };
+      const Tick early = run.start < from ? since(run.start, from) : Tick{};
+      extend_by_run(box, motion, own, run, pass(early), pass(since(run.start, to)), end);
     }
   if (cycles && !(to < motion.cycle_start)) {
     const Tick early = motion.cycle_start < from ? since(motion.cycle_start, from) : Tick{};
     const std::int64_t first = Periods(early, motion.cycle_duration).whole;
     const std::int64_t last = Periods(since(motion.cycle_start, to), motion.cycle_duration).whole;
-    const Box before = repeated_box(moved(own, motion.cycle_before.path), motion.cycle.path, first, last);
+    const Box at_start = moved(own, motion.cycle_before.path);
+    const Box before = repeated_box(at_start, motion.cycle.path, first, last);
     for (std::size_t i = motion.cycle_first; i < motion.runs.size(); ++i)
       extend_by_run(box, motion, before, motion.runs[i], 0, motion.runs[i].times - 1, end);
   }

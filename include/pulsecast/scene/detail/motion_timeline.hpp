@@ -4,7 +4,6 @@
 #define PULSECAST_SCENE_DETAIL_MOTION_TIMELINE_HPP
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
@@ -22,24 +21,23 @@ struct Change {
   Screw path{};
 };
 
-/// Change by one motion and then another.
 [[nodiscard]] inline Change then(const Change& first, const Change& second) noexcept {
-  if (first.attitude == no_rotation && first.path.turn == no_rotation && first.path.shift == Vec3{}) return second;
+  const auto& [turn, shift] = first.path;
+  if (first.attitude == no_rotation && turn == no_rotation && shift == Vec3{}) return second;
   return {normalize(second.attitude * first.attitude), then(first.path, second.path)};
 }
 
-/// Change by a motion repeated n times.
 [[nodiscard]] inline Change repeated(const Change& once, std::int64_t n) noexcept {
   return {repeated(Screw{once.attitude, {}}, n).turn, repeated(once.path, n)};
 }
 
-/// Rotation at a constant rate.
 struct Turning {
   Vec3 axis = axis::up;     ///< unit
   double angular_rate = 0;  ///< [rad/s]
 
   [[nodiscard]] Rotation until(const Tick& time) const noexcept {
-    return angular_rate == 0 ? no_rotation : rotation_about(axis, 2 * pi * time.phase(angular_rate / (2 * pi)));
+    if (angular_rate == 0) return no_rotation;
+    return rotation_about(axis, 2 * pi * time.phase(angular_rate / (2 * pi)));
   }
 };
 
@@ -52,11 +50,10 @@ struct MotionPiece {
   bool about_itself = true;  ///< true for rotation about its own centre, which moves straight
   bool spins = false;        ///< true for an attitude other than the orbit's
   Turning attitude{};
-  double start = 0;                                           ///< since the start of the run [s]
-  double duration = std::numeric_limits<double>::infinity();  ///< [s]
+  double start = 0;            ///< since the start of the run [s]
+  double duration = infinity;  ///< [s]
 };
 
-/// Pieces repeated `times` times.
 struct MotionRun {
   Change before;           ///< since the start, or since that of the cycle
   Tick start;              ///< since the start, or since that of the cycle
@@ -66,14 +63,12 @@ struct MotionRun {
   std::size_t first, end;  ///< its pieces
 };
 
-/// Piece at a time.
 struct MotionPlace {
   Change before;
   const MotionPiece* piece;
   Tick time;  ///< since the start of the piece
 };
 
-/// Attitude and own centre of a body.
 struct BodyState {
   Rotation attitude;
   Vec3 centre;  ///< relative to the reference [m]
@@ -99,8 +94,8 @@ struct BodyState {
   const MotionPiece& p = *place.piece;
   if (p.about_itself) return p.velocity;
   const Turning& orbit = p.spins ? p.orbit : p.attitude;
-  const Vec3 axis_point =
-      p.centre + p.velocity * static_cast<double>(place.time.second) + p.velocity * place.time.fraction;
+  const auto seconds = static_cast<double>(place.time.second);
+  const Vec3 axis_point = p.centre + p.velocity * seconds + p.velocity * place.time.fraction;
   return p.velocity + orbit.angular_rate * cross(orbit.axis, centre - axis_point);
 }
 
@@ -117,10 +112,10 @@ struct MotionTimeline {
     const auto has_pieces = [this](const MotionRun& run) {
       return run.first < run.end && run.end <= pieces.size() && run.times > 0;
     };
-    return !runs.empty() && cycle_first <= runs.size() && std::all_of(runs.begin(), runs.end(), has_pieces);
+    const bool has_runs = !runs.empty() && cycle_first <= runs.size();
+    return has_runs && std::all_of(runs.begin(), runs.end(), has_pieces);
   }
 
-  /// Memory of the lists [byte].
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return runs.capacity() * sizeof(MotionRun) + pieces.capacity() * sizeof(MotionPiece);
   }
@@ -142,8 +137,8 @@ struct MotionTimeline {
       first = end;
       end = runs.end();
     }
-    const MotionRun& run =
-        *(std::upper_bound(first + 1, end, time, [](const Tick& t, const MotionRun& r) { return t < r.start; }) - 1);
+    const auto before_start = [](const auto& t, const auto& later) { return t < later.start; };
+    const MotionRun& run = *(std::upper_bound(first + 1, end, time, before_start) - 1);
     time = since(run.start, time);
     before = then(before, run.before);
     if (run.times > 1) {
@@ -155,12 +150,10 @@ struct MotionTimeline {
       before = then(before, repeated(run.pass, passes.whole));
       time = passes.rest;
     }
-    const auto begin = pieces.begin();
-    const auto from = begin + static_cast<std::ptrdiff_t>(run.first), to = begin + static_cast<std::ptrdiff_t>(run.end);
-    const double seconds = time.seconds();
-    const MotionPiece& piece =
-        *(std::upper_bound(from + 1, to, seconds, [](double t, const MotionPiece& p) { return t < p.start; }) - 1);
-    return {then(before, piece.before), &piece, piece.start > 0 ? since(Tick::of_seconds(piece.start), time) : time};
+    const MotionPiece *const from = &pieces[run.first], *const to = pieces.data() + run.end;
+    const MotionPiece& piece = *(std::upper_bound(from + 1, to, time.seconds(), before_start) - 1);
+    if (piece.start > 0) time = since(Tick::of_seconds(piece.start), time);
+    return {then(before, piece.before), &piece, time};
   }
 };
 

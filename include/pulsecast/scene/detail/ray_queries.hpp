@@ -12,17 +12,14 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 
-/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an
-/// `AnyHit` or a `AllHits`.
+/// Queries by a ray: `search(ray, hits)` offers hits to a `ClosestHit`, `AnyHit` or `AllHits`.
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Shape that takes such rays and hits.
 template <class Shape, class Rays, class Hits>
 concept Intersects = requires(const Shape& shape, const Rays& rays, Hits& hits) {
   shape.closest(rays, hits);
 };
 
-/// Shape with a surface where a single ray meets it.
 template <class Shape>
 concept SurfacedBySingleRay = requires(const Shape& shape, const SingleRayPacket& ray) {
   shape.surface(PrimitiveIndex{}, ray, std::size_t{});
@@ -35,8 +32,8 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   if constexpr (Intersects<Shape, Rays, Hits>) {
     shape.closest(rays, hits);
   } else if constexpr (std::is_same_v<Hits, AllHits>) {
-    hits.offer_chain(
-        rays, [&shape](const SingleRayPacket& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
+    const auto closest = [&shape](const auto& from, auto& next) noexcept { offer_hits(shape, from, next); };
+    hits.offer_chain(rays, closest);
   } else {
     const RayBundle bundle = bundle_of(rays, hits.limit_of(0));
     ClosestHits nearest(bundle);
@@ -46,14 +43,13 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   }
 }
 
-/// Surface of a shape's primitive where a single ray meets it.
 template <class Shape>
 [[nodiscard]] SurfaceInteraction surface_of(const Shape& shape, PrimitiveIndex primitive,
                                             const SingleRayPacket& ray) noexcept {
   if constexpr (SurfacedBySingleRay<Shape>)
     return shape.surface(primitive, ray, 0);
   else
-    return shape.surface(primitive, bundle_of(ray, std::numeric_limits<double>::infinity()), 0);
+    return shape.surface(primitive, bundle_of(ray, infinity), 0);
 }
 
 [[nodiscard]] inline RayHit ray_hit(double range, std::uint64_t id) noexcept {
@@ -98,8 +94,7 @@ template <class Part>
 [[nodiscard]] SurfaceInteraction surface_at(const RayHit& hit, const Ray& ray, const Part& part,
                                             const Placement& placement) noexcept {
   SingleRayPacket before(ray);
-  before.near = std::nextafter(
-      hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
+  before.near = std::nextafter(hit.range, -infinity);  // the hit is the next one
   const SingleRayPacket local = placement.to_local(before);
   SurfaceInteraction point;
   const auto look = [&](const auto& shape) noexcept {

@@ -15,7 +15,8 @@ namespace PULSECAST_NAMESPACE::detail {
 [[nodiscard]] inline Tick since(const Tick& start, const Tick& tick) noexcept {
   const double fraction = tick.fraction - start.fraction;
   const std::int64_t second = tick.second - start.second;
-  return fraction < 0 && fraction + 1 < 1 ? Tick{second - 1, fraction + 1} : Tick{second, fraction > 0 ? fraction : 0};
+  if (fraction < 0 && fraction + 1 < 1) return {second - 1, fraction + 1};
+  return {second, fraction > 0 ? fraction : 0};
 }
 
 /// Time as a number of whole periods [s] and a remainder.
@@ -45,7 +46,7 @@ struct Screw {
   return {normalize(second.turn * first.turn), second.point(first.shift)};
 }
 
-/// Axis and angle of a rotation, the angle in [0, pi] [rad]; an axis of any length without rotation.
+/// Axis and angle of a rotation, the angle in [0, pi] [rad]; any axis without rotation.
 struct RotationParts {
   Vec3 axis;
   double angle;
@@ -58,7 +59,7 @@ struct RotationParts {
   }
 };
 
-/// Replaces a rotation of less than 1e-15 rad, a rounding, by none, so that repetitions do not amplify it.
+/// Replaces a rotation of less than 1e-15 rad, a rounding, by none: repetitions do not amplify it.
 [[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept {
   return RotationParts(r).angle < 1e-15 ? no_rotation : r;
 }
@@ -78,8 +79,8 @@ struct RotationParts {
   if (turn.angle == 0) return {no_rotation, static_cast<double>(n) * once.shift};
   const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;
   const double half = multiple(turn.angle / 2, n);
-  const Vec3 sum =
-      std::sin(half) / std::sin(turn.angle / 2) * (rotation_about(turn.axis, half - turn.angle / 2) * across);
+  const double chord = std::sin(half) / std::sin(turn.angle / 2);
+  const Vec3 sum = chord * (rotation_about(turn.axis, half - turn.angle / 2) * across);
   return {rotation_about(turn.axis, multiple(turn.angle, n)), static_cast<double>(n) * along + sum};
 }
 

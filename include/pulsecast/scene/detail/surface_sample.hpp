@@ -10,7 +10,7 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Members of a surface that all its hits need, in the part's frame: less to set than a `SurfaceInteraction`.
+/// Members of a surface that all its hits need, in the part's frame.
 struct SurfaceSample {
   Vec3 normal{};
   const Material* material = nullptr;
@@ -20,8 +20,7 @@ struct SurfaceSample {
   std::optional<Vec2> texture{};
 };
 
-/// Samples the surface of a primitive where ray j hits it. Inlined, so that a scene of one shape
-/// sets only what is read.
+/// Samples the surface of a primitive where ray j hits it. Inlined, to set what is read alone.
 template <class Part>
 struct SurfaceSampler {
   const Part& part;
@@ -40,7 +39,8 @@ struct SurfaceSampler {
     if constexpr (Textured<Shape>)
       if (found.material->reflectance_map) [[unlikely]] {
         found.uniform = false;
-        found.texture = shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
+        const Vec3 weights = shape->triangle(primitive).weights(local.origin, local.direction(j));
+        found.texture = shape->texture(primitive, weights);
       }
     return found;
   }

@@ -12,8 +12,8 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Heights of the 4 by 2 cells of a node of level 1 of a pyramid: in the raster itself, or copied
-/// from its edge or from packed heights.
+/// Heights of the 4 by 2 cells of a node of level 1: in the raster, or copied, if at its edge or
+/// packed.
 class CellBlock {
  public:
   /// Sets the heights of the cells of a node, and returns the mask of those in the raster.

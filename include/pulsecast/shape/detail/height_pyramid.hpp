@@ -34,23 +34,24 @@ struct HeightInterval {
 };
 
 /// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2
-/// cells, then alternately 2 by 4 and 4 by 2 nodes. The pyramid holds the heights of the children,
-/// node by node: eight minima, then eight maxima; an empty interval where there is no triangle.
+/// cells, then alternately 2 by 4 and 4 by 2 nodes. The pyramid holds their heights, node by node:
+/// eight minima, then eight maxima; an empty interval without triangle.
 struct PyramidLevel {
   std::uint32_t columns = 0, rows = 0;
   std::size_t begin = 0;                 ///< start in the pyramid
   std::array<std::uint32_t, 2> shift{};  ///< log2 of a node's width and height [cells]
   std::array<std::uint32_t, 2> below{};  ///< log2 of a child's width and height [cells]
-  std::array<float, 8> east{}, south{};  ///< offsets of the children from the node's north-west corner [m]
+  std::array<float, 8> east{}, south{};  ///< offsets of the children from the north-west [m]
   std::array<float, 2> size{};           ///< size of a child, east and south [m]
 
   [[nodiscard]] std::size_t node(std::uint32_t column, std::uint32_t row) const noexcept {
     return begin + (std::size_t{row} * columns + column) * 16;
   }
-  /// Index of a child's minimum height, by the child's column and row; the maximum is eight numbers on.
+  /// Index of a child's minimum height, by its column and row; the maximum is eight numbers on.
   [[nodiscard]] std::size_t of_child(std::uint32_t column, std::uint32_t row) const noexcept {
     const std::uint32_t w = wide(), tall = 3 - w;
-    return node(column >> w, row >> tall) + (column & ((1U << w) - 1)) + ((row & ((1U << tall) - 1)) << w);
+    const std::uint32_t right = column & ((1U << w) - 1), down = row & ((1U << tall) - 1);
+    return node(column >> w, row >> tall) + right + (down << w);
   }
   /// Number of column bits in a child's slot.
   [[nodiscard]] std::uint32_t wide() const noexcept { return shift[0] - below[0]; }
@@ -59,7 +60,7 @@ struct PyramidLevel {
 
 /// Levels of the pyramid of a raster, up to one that is a single node.
 struct PyramidLayout {
-  static constexpr std::size_t max_levels = 18;  ///< without level 0; two levels reduce 8 by 8 nodes to one
+  static constexpr std::size_t max_levels = 18;  ///< without level 0; two make one node of 8 by 8
 
   std::array<PyramidLevel, max_levels + 1> levels{};
   std::uint32_t top = 0;  ///< highest level
@@ -79,8 +80,9 @@ struct PyramidLayout {
       level.size = {static_cast<float>((1U << below.shift[0]) * grid.pixel.x),
                     static_cast<float>((1U << below.shift[1]) * grid.pixel.y)};
       for (std::uint32_t i = 0; i < 8; ++i) {
-        level.east[i] = static_cast<float>(((i & ((1U << wide) - 1)) << below.shift[0]) * grid.pixel.x);
-        level.south[i] = static_cast<float>((i >> wide << below.shift[1]) * grid.pixel.y);
+        const std::uint32_t column = i & ((1U << wide) - 1), row = i >> wide;
+        level.east[i] = static_cast<float>((column << below.shift[0]) * grid.pixel.x);
+        level.south[i] = static_cast<float>((row << below.shift[1]) * grid.pixel.y);
       }
       if (top > 1) size = level.node(0, level.rows);  // level 1 reads the heights themselves
     } while (levels[top].columns > 1 || levels[top].rows > 1);
@@ -90,8 +92,8 @@ struct PyramidLayout {
 /// Bounding box of the triangles of a node of level 1: 4 by 2 cells.
 [[nodiscard]] Box ground_of(const RasterGrid& grid, const auto& heights, std::uint32_t node_column,
                             std::uint32_t node_row) {
-  const std::uint32_t west = 4 * node_column, north = 2 * node_row;
-  const std::uint32_t east = std::min(west + 4, grid.columns - 1), south = std::min(north + 2, grid.rows - 1);
+  const std::uint32_t west = 4 * node_column, east = std::min(west + 4, grid.columns - 1);
+  const std::uint32_t north = 2 * node_row, south = std::min(north + 2, grid.rows - 1);
   HeightInterval range;
   bool whole = true;
   for (std::uint32_t row = north; row <= south; ++row)
@@ -125,7 +127,7 @@ struct HeightPyramid {
     constexpr HeightInterval empty;
     for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 16 < 8 ? empty.least : empty.greatest;
     std::vector<Box> grounds(layout.levels[1].rows);
-    if (std::size_t{grid.columns} * grid.rows < 1'000'000) workers = 1;  // starting threads would take longer
+    if (std::size_t{grid.columns} * grid.rows < 1'000'000) workers = 1;  // starts no threads
     for (unsigned level = 1; level <= layout.top; ++level)
       for_each_index(layout.levels[level].rows, level <= 2 ? workers : 1, [&](std::size_t task) {
         const auto row = static_cast<std::uint32_t>(task);

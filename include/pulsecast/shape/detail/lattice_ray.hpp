@@ -13,10 +13,10 @@ namespace PULSECAST_NAMESPACE {
 using LatticeCell = std::array<std::int32_t, 3>;
 
 /// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x
-/// comes before y before z (symbolic perturbation). So a ray through an edge or a corner still
+/// comes before y before z (symbolic perturbation), so that a ray through an edge or a corner
 /// passes from a cell to its neighbour through a face.
 struct Crossing {
-  static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings at that range
+  static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings there
 
   double range = 0;  ///< range of the crossing [m]
   int axis = begin;  ///< normal axis of the plane
@@ -27,8 +27,8 @@ struct Crossing {
   }
 };
 
-/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same to the last bit for the
-/// cells on both sides, so neighbours leave no gap. A cell owns its lower faces, for rays that run along them.
+/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same bit by
+/// bit on both sides: no gaps. A cell owns its lower faces, for rays along them.
 class LatticeRay {
  public:
   /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
@@ -41,7 +41,8 @@ class LatticeRay {
       per_speed_[k] = 1 / direction[k];
       sense_[k] = !std::isfinite(per_speed_[k]) ? 0 : direction[k] > 0 ? 1 : -1;
     }
-    valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);
+    const bool moves = sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0;
+    valid_ = finite(rays.origin) && finite(direction) && moves;
   }
 
   /// True if origin and direction are finite and the ray moves along at least one axis.
@@ -65,12 +66,14 @@ class LatticeRay {
 
   /// Entry into and exit from a box [edges]. The ray misses the box unless `in` is before `out`.
   struct Passage {
-    Crossing in{-std::numeric_limits<double>::infinity(), 0};  ///< entry
-    Crossing out{std::numeric_limits<double>::infinity(), 0};  ///< exit
+    Crossing in{-detail::infinity, 0};  ///< entry
+    Crossing out{detail::infinity, 0};  ///< exit
   };
+  using Corner = std::array<double, 3>;  ///< corner of a box [edges]
+
   /// Passage through a cell.
   [[nodiscard]] Passage through(const LatticeCell& cell) const noexcept {
-    std::array<double, 3> low, high;
+    Corner low, high;
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = cell[k];
       high[k] = cell[k] + 1;
@@ -78,12 +81,12 @@ class LatticeRay {
     return through(low, high);
   }
   /// Passage through the box between two corners [edges].
-  [[nodiscard]] Passage through(const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept {
+  [[nodiscard]] Passage through(const Corner& low, const Corner& high) const noexcept {
     Passage p;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       if (sense(k) == 0) {
-        if (!above(k, low[axis]) || above(k, high[axis])) return {.in = Passage{}.out, .out = Passage{}.in};
+        if (!above(k, low[axis]) || above(k, high[axis])) return {Passage{}.out, Passage{}.in};
         continue;
       }
       const Crossing in = crossing(k, sense(k) > 0 ? low[axis] : high[axis]),

@@ -10,13 +10,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of triangles against the line through a single ray, in a third of the operations of `intersect`,
-/// which decides about those that are left.
-///
-/// The line is on one side of the three edges of a triangle that it hits. The side of an edge is the sign of a volume.
-/// One bound on the roundings, of this test and of `intersect`, holds for all triangles in the bounds. Infinite and
-/// tiny coordinates pass. Source: volume test of Amanatides & Choi 1997, with the edge-to-direction products of each
-/// corner shared by its two edges; bounds: Higham 2002, ch. 3.
+/// Conservative test of triangles against the line through a single ray, in a third of the
+/// operations of `intersect`, which decides about those left. The line is on one side of the three
+/// edges of a triangle that it hits, by the sign of a volume. One bound on the roundings, of this
+/// test and of `intersect`, holds for all triangles in the bounds. Infinite and tiny coordinates
+/// pass. Source: volume test of Amanatides & Choi 1997, with the products of each corner shared by
+/// its two edges; bounds: Higham 2002, ch. 3.
 class LineTest {
  public:
   LineTest() noexcept {}
@@ -27,12 +26,12 @@ class LineTest {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes from = axes(origin_);
-    const Axes reaches = simd::max(magnitude(axes(bounds.min) - from), magnitude(axes(bounds.max) - from)),
-               speeds = magnitude(axes(direction_));
+    const Axes to_min = magnitude(axes(bounds.min) - from), to_max = magnitude(axes(bounds.max) - from);
+    const Axes reaches = simd::max(to_min, to_max), speeds = magnitude(axes(direction_));
     const double reach = reaches[0] + reaches[1] + reaches[2],
                  speed = ray.direction_length + speeds[0] + speeds[1] + speeds[2];
     doubt_ = 32 * std::numeric_limits<double>::epsilon() * reach * reach * speed + tiny;
-    if (!(doubt_ < huge)) doubt_ = std::numeric_limits<double>::infinity();
+    if (!(doubt_ < huge)) doubt_ = detail::infinity;
   }
 
   /// Bit mask of the triangles that the line may hit, idle lanes included.
@@ -59,7 +58,7 @@ class LineTest {
   static constexpr double huge = 1e280;   ///< volumes below do not overflow
 
   Vec3 origin_, direction_;
-  double doubt_;  ///< volume below which a side is in doubt [m^3, or m^2 times the unit of directions]
+  double doubt_;  ///< volume below which a side is in doubt [m^2 times that of directions]
 };
 
 }  // namespace PULSECAST_NAMESPACE

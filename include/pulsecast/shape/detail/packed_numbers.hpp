@@ -37,7 +37,8 @@ class PackedNumbers {
   }
 
   [[nodiscard]] std::uint32_t operator[](std::size_t i) const noexcept {
-    return bytes_.empty() ? 0 : bytes_[(i << shift_) / 8] >> ((i << shift_) % 8) & ((1U << (1U << shift_)) - 1);
+    const std::size_t bit = i << shift_;
+    return bytes_.empty() ? 0 : bytes_[bit / 8] >> bit % 8 & ((1U << (1U << shift_)) - 1);
   }
   [[nodiscard]] std::uint32_t greatest() const noexcept { return most_; }
   [[nodiscard]] std::size_t memory() const noexcept { return bytes_.memory(); }  ///< [byte]

@@ -23,7 +23,8 @@ inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
 
 /// Position of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
 [[nodiscard]] inline unsigned cell_bit(const LatticeCell& c, int shift) noexcept {
-  return static_cast<unsigned>((c[0] >> shift & 3) | (c[1] >> shift & 3) << 2 | (c[2] >> shift & 3) << 4);
+  const auto part = [&](std::size_t k) noexcept { return static_cast<unsigned>(c[k] >> shift & 3); };
+  return part(0) | part(1) << 2 | part(2) << 4;
 }
 
 /// Child at such a position, of a fourth of the edge.
@@ -34,14 +35,16 @@ inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
 
 /// Coordinates of a cell without `shift` bits each, in one number.
 [[nodiscard]] inline std::uint64_t packed_cell(const LatticeCell& c, int shift) noexcept {
-  return static_cast<std::uint64_t>(c[0] >> shift) | static_cast<std::uint64_t>(c[1] >> shift) << 21 |
-         static_cast<std::uint64_t>(c[2] >> shift) << 42;
+  const auto part = [&](std::size_t k) noexcept { return static_cast<std::uint64_t>(c[k] >> shift); };
+  return part(0) | part(1) << 21 | part(2) << 42;
 }
 
 /// Inverse of `packed_cell`, of no shift.
 [[nodiscard]] inline LatticeCell unpacked_cell(std::uint64_t key) noexcept {
-  return {static_cast<std::int32_t>(key & (max_lattice_extent - 1)),
-          static_cast<std::int32_t>(key >> 21 & (max_lattice_extent - 1)), static_cast<std::int32_t>(key >> 42)};
+  const auto part = [&](int shift) noexcept {
+    return static_cast<std::int32_t>(key >> shift & (max_lattice_extent - 1));
+  };
+  return {part(0), part(21), part(42)};
 }
 
 /// Slot of a key in a hash table. Source: multiplicative hashing by the golden ratio, Knuth 1973.
@@ -61,11 +64,10 @@ struct VoxelLevel {
 
   [[nodiscard]] std::size_t word(const LatticeCell& c) const noexcept {
     const int word_shift = shift + 2;
-    if (words > 0)
-      return static_cast<std::size_t>(first) + hash_slot(packed_cell(c, word_shift), static_cast<std::size_t>(words));
-    const auto x = static_cast<std::size_t>(c[0] >> word_shift), y = static_cast<std::size_t>(c[1] >> word_shift),
-               z = static_cast<std::size_t>(c[2] >> word_shift);
-    return static_cast<std::size_t>(first) + (z * extent[1] + y) * extent[0] + x;
+    const auto begin = static_cast<std::size_t>(first);
+    if (words > 0) return begin + hash_slot(packed_cell(c, word_shift), static_cast<std::size_t>(words));
+    const auto at = [&](std::size_t k) noexcept { return static_cast<std::size_t>(c[k] >> word_shift); };
+    return begin + (at(2) * extent[1] + at(1)) * extent[0] + at(0);
   }
 };
 
@@ -83,29 +85,30 @@ struct LatticeWalker {
     for (int k = 0; k < 3; ++k) {
       if (ray.sense(k) == 0) continue;
       const Crossing wall = ray.crossing(k, ray.sense(k) > 0 ? 0 : extent[static_cast<std::size_t>(k)]);
-      if (wall.range > in.range || (wall.range == in.range && in.axis != Crossing::begin)) in = wall;
+      const bool after_walls = wall.range == in.range && in.axis != Crossing::begin;
+      if (wall.range > in.range || after_walls) in = wall;
     }
-    if (!(in.range < std::numeric_limits<double>::infinity())) return;
+    if (!(in.range < infinity)) return;
     for (int k = 0; k < 3; ++k)
       if (!find(k, 0, extent[static_cast<std::size_t>(k)] - 1)) return;
     inside = true;
   }
 
-  /// Sets the cell along an axis to that of the ray at `in`; false if it is not between `low` and `high`.
+  /// Sets the cell along an axis to that of the ray at `in`; false if not between `low` and `high`.
   bool find(int k, std::int32_t low, std::int32_t high) noexcept {
     const auto axis = static_cast<std::size_t>(k);
     const int sense = ray.sense(k);
-    const double guess = ray.position(k, in.range);  // `low` is not negative, so truncation gives the cell
+    const double guess = ray.position(k, in.range);  // truncated, as `low` is not negative
     std::int32_t c = guess > low ? guess < high ? static_cast<std::int32_t>(guess) : high : low;
     if (sense == 0) {
       while (c < high && ray.above(k, c + 1)) ++c;
       while (c > low && !ray.above(k, c)) --c;
       cell[axis] = c;
-      next[axis] = std::numeric_limits<double>::infinity();
+      next[axis] = infinity;
       return ray.above(k, c) && !ray.above(k, c + 1);
     }
-    const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0,
-                       back = 1 - front;
+    const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low;
+    const std::int32_t front = sense > 0 ? 1 : 0, back = 1 - front;
     while (c != last && !in.before(ray.crossing(k, c + front))) c += sense;
     while (c != first && in.before(ray.crossing(k, c + back))) c -= sense;
     cell[axis] = c;
@@ -133,21 +136,21 @@ struct LatticeWalker {
     return neighbours(from, cell[axis]);
   }
 
-  /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by
-  /// the mask `occupied`, or outside of its 4 x 4 x 4. False if the ray never leaves.
+  /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell, up to one that is
+  /// occupied by the mask `occupied`, or outside of its 4 x 4 x 4. False if the ray never leaves.
   bool leap(int shift, std::uint64_t occupied) noexcept {
     LatticeCell at;
     std::array<double, 3> exit;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       at[axis] = cell[axis] >> shift;
-      exit[axis] = ray.sense(k) == 0 ? std::numeric_limits<double>::infinity()
-                                     : ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
+      const std::int32_t plane = (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift;
+      exit[axis] = ray.sense(k) == 0 ? infinity : ray.crossing(k, plane).range;
     }
     for (;;) {
       const int k = first_of(exit);
       const auto axis = static_cast<std::size_t>(k);
-      if (!(exit[axis] < std::numeric_limits<double>::infinity())) return false;
+      if (!(exit[axis] < infinity)) return false;
       in = {exit[axis], k};
       const std::int32_t from = at[axis];
       at[axis] += ray.sense(k);
@@ -170,10 +173,10 @@ struct LatticeWalker {
 
 }  // namespace detail
 
-/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks
-/// are bits of blocks of as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the
-/// whole lattice lets rays leap over empty cubes. Takes at most 26 bytes per occupied cell at any positions, plus 16.
-/// Source: Amanatides & Woo 1987 (traversal).
+/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of
+/// 4 x 4 x 4; bricks are bits of blocks of as many, where that saves memory. A hash table finds
+/// them. A bit pyramid lets rays leap over empty cubes. Takes at most 26 bytes per occupied cell,
+/// plus 16. Source: Amanatides & Woo 1987 (traversal).
 class VoxelIndex {
  public:
   /// Greatest extent along an axis [cells].
@@ -200,16 +203,17 @@ class VoxelIndex {
     const std::size_t brick = holder(brick_first_, number);
     const unsigned bit = nth_bit(brick_masks_[brick], number - brick_first_[brick]);
     if (height_ == 1) return detail::child_cell(detail::unpacked_cell(keys_[brick]), bit);
-    const std::size_t block = holder(block_first_, static_cast<std::uint32_t>(brick));
-    const unsigned place = nth_bit(block_masks_[block], static_cast<std::uint32_t>(brick) - block_first_[block]);
+    const auto child = static_cast<std::uint32_t>(brick);
+    const std::size_t block = holder(block_first_, child);
+    const unsigned place = nth_bit(block_masks_[block], child - block_first_[block]);
     return detail::child_cell(detail::child_cell(detail::unpacked_cell(keys_[block]), place), bit);
   }
 
   /// Ray j in the lattice, relative to the lower corner of the bounds.
   [[nodiscard]] LatticeRay ray(const auto& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
 
-  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order.
-  /// Stops at a cell beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
+  /// Traverses a ray from `near` on: `limit = visit(number, cell, in, out)` at each occupied cell
+  /// up to the limit, in order. `in` is the crossing into the cell, or `near`.
   void walk(const LatticeRay& ray, double near, double limit, auto visit) const noexcept {
     detail::LatticeWalker at(ray, near, extent_);
     if (!at.inside) return;
@@ -226,8 +230,7 @@ class VoxelIndex {
         const unsigned bit = detail::cell_bit(at.cell, 0);
         const int axis = detail::LatticeWalker::first_of(at.next);
         if (mask >> bit & 1) {
-          const auto number = brick_first_[place.brick] +
-                              static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+          const std::uint32_t number = brick_first_[place.brick] + bits_below(mask, bit);
           const Crossing out{at.next[static_cast<std::size_t>(axis)], axis};
           limit = std::min<double>(limit, visit(number, at.cell, at.in, out));
         }
@@ -255,9 +258,13 @@ class VoxelIndex {
 
   /// Last node whose first child is not after `child`.
   static std::size_t holder(const SharedArray<std::uint32_t>& first, std::uint32_t child) noexcept {
-    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), child) - first.begin()) - 1;
+    const auto after = std::upper_bound(first.begin(), first.end(), child);
+    return static_cast<std::size_t>(after - first.begin()) - 1;
   }
 
+  static std::uint32_t bits_below(std::uint64_t mask, unsigned bit) noexcept {
+    return static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+  }
   static unsigned nth_bit(std::uint64_t mask, std::uint32_t n) noexcept {
     for (; n > 0; --n) mask &= mask - 1;
     return static_cast<unsigned>(std::countr_zero(mask));
@@ -276,7 +283,7 @@ class VoxelIndex {
     return false;
   }
 
-  /// Empty cube: log2 of its edge [cells], 0 for none; and the occupancy mask of the 4 x 4 x 4 that it belongs to.
+  /// Empty cube: log2 of its edge [cells], 0 for none; and the occupancy mask of its 4 x 4 x 4.
   struct Empty {
     int shift = 0;
     std::uint64_t siblings = 0;
@@ -299,14 +306,13 @@ class VoxelIndex {
       place.key = key;
       place.root = root(key);
     }
-    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // unknown roots around it count as occupied
+    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // all around occupied
     place.brick = place.root;
     if (height_ == 1) return {};
     const std::uint64_t mask = block_masks_[place.root];
     const unsigned bit = detail::cell_bit(c, 2);
     if (!(mask >> bit & 1)) return {2, mask};
-    place.brick =
-        block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+    place.brick = block_first_[place.root] + bits_below(mask, bit);
     return {};
   }
 

@@ -15,16 +15,18 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-[[nodiscard]] inline LatticeCell cell_offset(const std::array<std::uint32_t, 3>& a,
-                                             const std::array<std::uint32_t, 3>& b) noexcept {
-  return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]),
-          static_cast<std::int32_t>(a[2] - b[2])};
+/// Cell of the data, by its coordinates.
+using DataCell = std::array<std::uint32_t, 3>;
+
+[[nodiscard]] inline LatticeCell cell_offset(const DataCell& a, const DataCell& b) noexcept {
+  const auto part = [&](std::size_t k) { return static_cast<std::int32_t>(a[k] - b[k]); };
+  return {part(0), part(1), part(2)};
 }
 
 /// Sort order in which the cells of a brick, and the bricks of a block, are contiguous.
 [[nodiscard]] inline std::uint64_t cell_sort_key(const LatticeCell& c) noexcept {
-  const std::uint64_t block = static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 |
-                              static_cast<std::uint64_t>(c[2] >> 4) << 34;
+  const auto part = [&](std::size_t k) { return static_cast<std::uint64_t>(c[k] >> 4); };
+  const std::uint64_t block = part(0) | part(1) << 17 | part(2) << 34;
   return block << 12 | std::uint64_t{cell_bit(c, 2)} << 6 | cell_bit(c, 0);
 }
 
@@ -46,13 +48,13 @@ struct VoxelNodes {
   }
 };
 
-/// Builder of a voxel index: sorts the cells, groups them in bricks and blocks, hashes these and makes the pyramid.
+/// Builder of a voxel index: sorts cells, groups and hashes bricks and blocks, makes the pyramid.
 class VoxelIndexBuilder {
  public:
   explicit VoxelIndexBuilder(VoxelIndex& index) noexcept : index_(index) {}
 
   void build(const VoxelData& data, std::vector<std::uint32_t>& order) {
-    const std::array<std::uint32_t, 3> least = place(data);
+    const DataCell least = place(data);
     const std::vector<Keyed> sorted = sorted_cells(data, least);
     order.clear();
     order.reserve(sorted.size());
@@ -67,12 +69,13 @@ class VoxelIndexBuilder {
       last = cell.key;
       order.push_back(cell.number);
     }
-    const std::size_t budget = 26 * sorted.size(), flat = 25 * bricks, deep = 12 * bricks + 28 * blocks;
+    const std::size_t flat = 25 * bricks, deep = 12 * bricks + 28 * blocks;
+    const std::size_t budget = 26 * sorted.size(), least_taken = std::min(flat, deep);
     index_.height_ = deep < flat ? 2 : 1;
     const std::size_t roots = index_.height_ == 2 ? blocks : bricks;
     std::vector<std::uint64_t> keys = group(data, least, sorted, bricks, roots);
     hash(keys, roots * (index_.height_ == 2 ? 8 : 5) / 4 + 1);
-    make_pyramid(keys, budget > std::min(flat, deep) ? budget - std::min(flat, deep) : 0);
+    make_pyramid(keys, std::max(budget, least_taken) - least_taken);
     index_.size_ = static_cast<std::uint32_t>(sorted.size());
     index_.keys_ = SharedArray<std::uint64_t>(std::move(keys));
   }
@@ -81,13 +84,16 @@ class VoxelIndexBuilder {
   struct Keyed {
     std::uint64_t key;
     std::uint32_t number;
+    friend bool operator<(const Keyed& a, const Keyed& b) noexcept {
+      return a.key < b.key || (a.key == b.key && a.number < b.number);
+    }
   };
 
   static constexpr std::uint64_t no_key = ~std::uint64_t{0};
 
   /// Sets the bounds of the index and returns the lowest coordinates.
-  std::array<std::uint32_t, 3> place(const VoxelData& data) {
-    std::array<std::uint32_t, 3> least = data.cells.front(), most = least;
+  DataCell place(const VoxelData& data) {
+    DataCell least = data.cells.front(), most = least;
     for (const auto& cell : data.cells)
       for (std::size_t k = 0; k < 3; ++k) {
         least[k] = std::min(least[k], cell[k]);
@@ -100,24 +106,23 @@ class VoxelIndexBuilder {
     }
     const LatticeCell& extent = index_.extent_;
     index_.edge_ = data.edge;
-    index_.corner_ = data.corner + data.edge * Vec3(least[0], least[1], least[2]);
-    index_.bounds_ = {index_.corner_, index_.corner_ + index_.edge_ * Vec3(extent[0], extent[1], extent[2])};
+    const Vec3 corner = index_.corner_ = data.corner + data.edge * Vec3(least[0], least[1], least[2]);
+    index_.bounds_ = {corner, corner + data.edge * Vec3(extent[0], extent[1], extent[2])};
     return least;
   }
 
   /// Cells in the order of their keys; of equal ones, in the order of the data.
-  static std::vector<Keyed> sorted_cells(const VoxelData& data, const std::array<std::uint32_t, 3>& least) {
+  static std::vector<Keyed> sorted_cells(const VoxelData& data, const DataCell& least) {
     std::vector<Keyed> sorted(data.cells.size());
     for (std::size_t i = 0; i < sorted.size(); ++i)
       sorted[i] = {cell_sort_key(cell_offset(data.cells[i], least)), static_cast<std::uint32_t>(i)};
-    std::sort(sorted.begin(), sorted.end(),
-              [](const Keyed& a, const Keyed& b) { return a.key < b.key || (a.key == b.key && a.number < b.number); });
+    std::sort(sorted.begin(), sorted.end());
     return sorted;
   }
 
   /// Sets the bricks and blocks of the index and returns the keys of the roots.
-  std::vector<std::uint64_t> group(const VoxelData& data, const std::array<std::uint32_t, 3>& least,
-                                   const std::vector<Keyed>& sorted, std::size_t bricks, std::size_t roots) {
+  std::vector<std::uint64_t> group(const VoxelData& data, const DataCell& least, const std::vector<Keyed>& sorted,
+                                   std::size_t bricks, std::size_t roots) {
     const int height = index_.height_;
     VoxelNodes brick(bricks), block(height == 2 ? roots : 0);
     std::vector<std::uint64_t> keys;
@@ -126,7 +131,8 @@ class VoxelIndexBuilder {
     for (std::size_t i = 0; i < sorted.size(); last = sorted[i++].key) {
       const std::uint64_t key = sorted[i].key;
       const bool new_brick = key >> 6 != last >> 6, new_root = key >> 6 * height != last >> 6 * height;
-      if (new_root) keys.push_back(packed_cell(cell_offset(data.cells[sorted[i].number], least), 2 * height));
+      const DataCell& cell = data.cells[sorted[i].number];
+      if (new_root) keys.push_back(packed_cell(cell_offset(cell, least), 2 * height));
       if (new_brick && height == 2)
         block.put(static_cast<unsigned>(key >> 6) & 63, brick.first.size(), key >> 12 != last >> 12);
       brick.put(static_cast<unsigned>(key) & 63, i, new_brick);
@@ -161,8 +167,8 @@ class VoxelIndexBuilder {
           {.extent = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])}, .shift = shift});
       whole.push_back(n[0] * n[1] * n[2]);
     }
-    const auto hashed = static_cast<std::size_t>(
-        std::count_if(whole.begin(), whole.end(), [&](std::size_t words) { return words > affordable / 4; }));
+    std::size_t hashed = 0;
+    for (const std::size_t words : whole) hashed += words > affordable / 4 ? 1 : 0;
     std::vector<std::uint64_t> pyramid;
     for (std::size_t i = 0; i < levels.size(); ++i) {
       VoxelLevel& level = levels[i];
