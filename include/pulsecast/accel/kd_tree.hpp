@@ -13,9 +13,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is
-/// in every leaf that its box reaches: at most four leaves on average. Source: Wald & Havran 2006;
-/// binned: Shevtsov, Soupikov & Kapustin 2007.
+/// Kd-tree split by the surface-area heuristic at 32 slices an axis. A primitive is in every leaf
+/// that its box reaches, on average four at most. Source: Wald & Havran 2006; Shevtsov et al. 2007.
 template <std::floating_point Real = float>
 class KdTree {
  public:

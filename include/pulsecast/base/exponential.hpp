@@ -29,9 +29,8 @@ template <class V, class... Lower>
 }
 }  // namespace simd::detail
 
-/// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative
-/// error at most 4e-16 for |x| up to 708. Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in
-/// two parts; Taylor series for r, with a remainder of 4e-18.
+/// e^x of a number or of lanes; 0 for x below -708. Relative error at most 4e-16. Source: Cody &
+/// Waite 1980: x = n ln 2 + r, ln 2 in two parts; Taylor series for r to 4e-18.
 template <class Number>
 requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 2>> ||
     std::same_as<Number, simd::Vec<double, 4>> || std::same_as<Number, simd::Vec<double, 8>>

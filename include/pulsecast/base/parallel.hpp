@@ -180,8 +180,7 @@ inline void work_on_threads(IndexLoop& loop, std::size_t threads) {
 }  // namespace detail
 
 /// Calls task(i) once for each i below `count`, low ones first, on as many threads as `workers`
-/// says. Starts none for a single index, or with an executor. Rethrows the exception of a task, or
-/// one of several; indices not yet begun are then skipped.
+/// says. Rethrows the exception of a task, or one of several; the indices left are skipped.
 inline void for_each_index(std::size_t count, const Workers& workers, const IndexTask& task) {
   detail::IndexLoop loop(count, task);
   const std::size_t threads = std::min<std::size_t>(workers.count(), count);

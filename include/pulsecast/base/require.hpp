@@ -35,8 +35,7 @@ inline void require_positive(std::string_view field, double value, std::string_v
   if (!(value > 0) || !std::isfinite(value)) throw_setting_error(field, value, unit, "finite and greater than 0");
 }
 
-/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12], where a `Tick` has 1e-4 of a
-/// cycle.
+/// Throws a `SettingError` unless the rate [Hz] is in (0, 1e12]: a `Tick` has 1e-4 of a cycle.
 inline void require_rate(std::string_view field, double value) {
   if (!(value > 0 && value <= 1e12)) throw_setting_error(field, value, "Hz", "greater than 0 and at most 1e12");
 }

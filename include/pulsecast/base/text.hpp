@@ -59,8 +59,7 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
   return text::joined({"'", out, text.size() > longest ? "...'" : "'"});
 }
 
-/// Removes the first word, and the separators after it. Returns it, empty if a separator comes
-/// first.
+/// Removes the first word and the separators after. Returns it, empty if a separator comes first.
 inline std::string_view take_word(std::string_view& text, std::string_view separators = blanks) noexcept {
   const std::string_view word = text.substr(0, text.find_first_of(separators));
   text.remove_prefix(std::min(text.find_first_not_of(separators, word.size()), text.size()));

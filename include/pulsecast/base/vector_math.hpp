@@ -15,10 +15,9 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // of wide vectors: all functions are inlined
 
-/// Elementary functions of a number or of all lanes of a vector, without tables and branches by
-/// lane. Without contraction of products and sums (`-ffp-contract=off`), a lane has the bits of the
-/// plain number, for any number of lanes and instruction set; with it, the last bits differ. Errors
-/// are in units in the last place of the result (ulp).
+/// Elementary functions of a number or of lanes of a vector, without tables and branches by lane.
+/// If products and sums are not contracted (`-ffp-contract=off`), a lane has the bits of the
+/// number, for all lanes and instruction sets. Errors in units in the last place (ulp).
 namespace PULSECAST_NAMESPACE::simd {
 
 /// Sine and cosine of the same angle.

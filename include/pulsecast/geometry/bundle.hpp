@@ -107,11 +107,7 @@ struct RayBundle : BundleOrigin {
 
  private:
   void copy_directions(const RayBundle& other) noexcept {
-    for (std::size_t j = 0; j < padded_size(); ++j) {
-      x[j] = other.x[j];
-      y[j] = other.y[j];
-      z[j] = other.z[j];
-    }
+    for (std::size_t j = 0; j < padded_size(); ++j) set_direction(j, other.direction(j));
     directions_min = other.directions_min;
     directions_max = other.directions_max;
   }

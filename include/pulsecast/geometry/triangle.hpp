@@ -25,8 +25,7 @@ struct Triangle {
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 
-  /// Barycentric weights where a ray hits, none negative, of a sum of one; a third each without
-  /// area.
+  /// Barycentric weights at a hit, none negative, that sum to one; a third each without area.
   [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
     const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
     const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),

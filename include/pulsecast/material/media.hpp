@@ -48,8 +48,7 @@ struct MediumRegion {
   }
 };
 
-/// Media in the air, in boxes, each inside another or apart: the innermost counts. Copies share
-/// memory.
+/// Media in the air, in boxes, each inside another or apart: the innermost counts. Copies share.
 class Media {
  public:
   /// Clear air.

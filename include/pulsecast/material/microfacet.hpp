@@ -65,8 +65,7 @@ struct Microfacets {
 }  // namespace detail
 
 /// Light reflected by rough facets, of the index of the material's body or 1.5, and Lambert's law
-/// for the rest: varnish, wet ground, rippled water. Facets weaken the rest on its way in only, so
-/// that light towards other directions is not quite reciprocal.
+/// for the rest, which they weaken on its way in only, not reciprocal. For varnish or wet ground.
 struct Microfacet {
   static constexpr bool reflects_interface = true;  ///< as the concept ReflectsInterface describes
 

@@ -93,8 +93,7 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
 }
 
 /// Speed of a pulse in air by that in water: n - w dn/dw of `water_index` n over the wavelength w.
-/// Differs from that of Daimon & Masumura 2007 by at most 5e-4 in the visible (3e-5 at 0.532 um),
-/// 5e-3 at 1.06 um. @throws SettingError out of range
+/// From Daimon & Masumura 2007 by 5e-4 in the visible, 5e-3 at 1.06 um. @throws SettingError
 [[nodiscard]] inline double water_group_index(double wavelength, const WaterState& state = {}) {
   detail::require_water(wavelength, state);
   const detail::WaterDispersion n(state);
@@ -102,9 +101,8 @@ inline constexpr std::array<AbsorptiveIndex, 122> water_absorptive_index{{
   return n.a + x * (2 * n.b + x * (3 * n.c + x * 4 * n.d));
 }
 
-/// Absorption coefficient of pure water [1/m] for a wavelength from 0.7 to 1.6 um [m]: 4 pi kappa /
-/// wavelength, kappa linear between rows. Varies by some per cent with temperature and salinity.
-/// Source: Segelstein 1981. @throws SettingError out of range
+/// Absorption of pure water [1/m] from 0.7 to 1.6 um [m]: 4 pi kappa / wavelength, kappa linear
+/// between rows; varies by some per cent. Source: Segelstein 1981. @throws SettingError
 [[nodiscard]] inline double pure_water_absorption(double wavelength) {
   require_within("pure_water_absorption (wavelength)", wavelength, 0.7e-6, 1.6e-6, "m");
   using detail::AbsorptiveIndex;

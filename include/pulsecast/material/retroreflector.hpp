@@ -45,8 +45,7 @@ struct Retroreflector {
   /// That of a white Lambertian surface is 1/pi; beaded sheeting has some 70, prismatic 300 to
   /// 1,000. The budget holds from a few apertures' diameters on. Source: ASTM E808, CIE 54.2.
   double coefficient = 0;
-  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide, of no known energy
-  /// [rad].
+  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide, energy unknown [rad].
   double half_angle = 0;
   Optics optics{};  ///< law by entrance angle
 

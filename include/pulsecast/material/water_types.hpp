@@ -44,9 +44,8 @@ inline constexpr double jerlov_shortest = 0.35e-6;  ///< wavelength of the first
 inline constexpr double jerlov_longest = 0.7e-6;    ///< wavelength of the last row [m]
 inline constexpr double jerlov_step = 25e-9;        ///< wavelength from row to row [m]
 
-/// Diffuse attenuation of downward irradiance [1/m] by wavelength (row) and type (column). Source:
-/// I to 1C by Austin & Petzold 1986, table VI, which replaces Jerlov's, in places below pure water;
-/// type I is pure sea water. 3C to 9C: Jerlov 1976, table XXVII.
+/// Diffuse attenuation of downward irradiance [1/m] by wavelength (row) and type. Source: I (pure)
+/// to 1C by Austin & Petzold 1986, table VI, for Jerlov's; 3C to 9C: Jerlov 1976, table XXVII.
 // clang-format off
 inline constexpr std::array<std::array<double, jerlov_type_count>, 15> jerlov_attenuation{{
     {0.0510, 0.0632, 0.0782, 0.1325, 0.2335, 0.3345, 1.70, 2.30, 3.00, 3.90},
@@ -90,16 +89,14 @@ struct MolecularScattering {
   [[nodiscard]] double total() const noexcept { return 2 * backward(); }
 };
 
-/// Shares of the light scattered by particles: straight back [1/sr], and to the backward half
-/// space. Means of three stations in San Diego Harbor at 0.53 um, without the water. Source:
-/// Petzold 1972, measured to 170 degrees and extrapolated to 180.
+/// Shares scattered by particles: straight back [1/sr], and to the backward half space. Means of
+/// San Diego Harbor at 0.53 um. Source: Petzold 1972, extrapolated from 170 degrees.
 inline constexpr double particles_straight_back = 3.17e-3;
 inline constexpr double particles_backward = 0.018;
 
 /// Scattering coefficient of the particles at 0.532 um [1/m] for an attenuation there [1/m]: linear
-/// between the types with measured scattering, none in pure sea water, beyond 5C in proportion to
-/// the attenuation above that. Source: Williamson & Hollins 2022 for IB, II, III, 1C, 3C and 5C;
-/// the other types lie on these lines.
+/// between measured types, none in pure sea water, beyond 5C in proportion to what is above that.
+/// Source: Williamson & Hollins 2022 for IB, II, III, 1C, 3C, 5C; the others lie on these lines.
 [[nodiscard]] inline double particle_scattering(double attenuation) noexcept {
   struct Measured {
     JerlovType type;
@@ -165,9 +162,8 @@ inline constexpr double particles_backward = 0.018;
 }
 
 /// Water of a measured diffuse attenuation [1/m] and backscatter coefficient [1/(m sr)] at a
-/// laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. Its scattering is that of particles by
-/// Petzold 1972 with this backscatter. @throws SettingError out of range, or if it exceeds the
-/// attenuation
+/// laser's wavelength in vacuum, from 0.35 to 1.1 um [m]. It scatters as particles by Petzold 1972
+/// with this backscatter. @throws SettingError out of range, or if this exceeds the attenuation
 [[nodiscard]] inline Medium measured_water(double attenuation, double backscatter, double wavelength,
                                            const WaterState& state = {}) {
   require_positive("measured_water (attenuation)", attenuation, "1/m");

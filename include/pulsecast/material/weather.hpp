@@ -17,8 +17,7 @@ namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
-/// Air with particles: extinction [1/m], share of it scattered, and its ratio to the backscatter
-/// [sr].
+/// Air with particles: extinction [1/m], share scattered, and its ratio to the backscatter [sr].
 [[nodiscard]] inline Medium hazy_air(double extinction, double albedo, double lidar_ratio) noexcept {
   return {.group_index = 1,
           .absorption = (1 - albedo) * extinction,
@@ -26,8 +25,7 @@ namespace detail {
           .backscatter = extinction / lidar_ratio};
 }
 
-/// Integral of x^(order-1) exp(-x) from 0 to y, order 1 to 3: by a series for small y, or closed
-/// form.
+/// Integral of x^(order-1) exp(-x) from 0 to y, order 1 to 3: a series for small y, or closed.
 template <int order>
 [[nodiscard]] double lower_gamma(double y) noexcept {
   if constexpr (order == 1) return -std::expm1(-y);
@@ -124,9 +122,8 @@ struct Precipitation {
     return std::clamp(diameter_min - std::log1p(-uniform * within()) / slope, diameter_min, diameter_max);
   }
 
-  /// Differential cross section of a particle of a diameter [m] for scattering straight back
-  /// [m^2/sr]. By the shadow: of its front, that of a mirror sphere; of its inside, the rest to
-  /// `lidar_ratio`, weakened by absorption.
+  /// Differential cross section of a particle of a diameter [m] straight back [m^2/sr]: of its
+  /// front, as of a mirror sphere; of its inside, the rest to `lidar_ratio`, with absorption.
   [[nodiscard]] double backscatter_cross_section(double diameter) const noexcept {
     const double shadow = std::numbers::pi / 4 * diameter * diameter;
     return shadow * (front() + inside() * std::exp(-absorption * diameter));

@@ -14,8 +14,7 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit; ties go to
-/// the first target. Refers to its targets, which must outlive it. A target assigned anew, as by
-/// `Scene::with_placements`, is met as it then is.
+/// the first target. The targets must outlive it; they may be assigned anew.
 template <Target First, Target... Others>
 class Layered {
   static constexpr bool answers = (SceneQueries<First> && ... && SceneQueries<Others>);

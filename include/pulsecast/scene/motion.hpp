@@ -162,9 +162,8 @@ class PartMotion {
     return detail::velocity_at(place, centre) + by_turning;
   }
 
-  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a
-  /// part, with its centre as the body's own. Tight for small rotations and few changes of motion,
-  /// loose otherwise. Empty for an empty box.
+  /// Box that holds all points passed by a box between two times [m], of a part. Tight for small
+  /// rotations and few changes of motion, loose otherwise. Empty for an empty box.
   [[nodiscard]] Box swept(const Box& box, const Placement& placement, const Tick& from, const Tick& to) const noexcept {
     if (box.empty()) return {};
     const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;

@@ -22,9 +22,8 @@ class MovingScene {
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
-  /// `time` should span the survey and little more: a longer time has longer windows. At other
-  /// times all moving parts are tested, with the same hits. `workers` build the indices. @throws
-  /// SettingError as `Scene` and `MovingIndexSettings`
+  /// `time` should span the survey and little more: at other times all moving parts are tested;
+  /// same hits. `workers` build the indices. @throws SettingError
   MovingScene(std::vector<Part> parts, const MovingIndexSettings& time, const Workers& workers = {})
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out, workers),
         movers_(movers(scene_.parts())),

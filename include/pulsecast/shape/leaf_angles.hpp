@@ -43,9 +43,8 @@ class LeafAngles {
   /// Uniform in inclination.
   [[nodiscard]] static LeafAngles uniform() { return of_density({}); }
 
-  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one:
-  /// spherical at 1, more vertical below. Source: Campbell 1986, with the exact surface.
-  /// @throws SettingError unless `chi` is from 1e-6 to 1e6
+  /// Inclinations of an ellipsoid's surface, horizontal axes `chi` times the vertical: 1 is
+  /// spherical. Source: Campbell 1986, exact surface. @throws SettingError unless 1e-6 to 1e6
   [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
     require_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
     LeafAngles made;
@@ -83,9 +82,8 @@ class LeafAngles {
     return detail::interpolated(table_, std::atan2(level, steep), &Entry::zenith, &Entry::g);
   }
 
-  /// Cosine of incidence at which a Lambertian surface across the light sends back as much as the
-  /// leaves do, per leaf area hit: the mean squared cosine by the mean cosine, between light along
-  /// a direction and normals of leaves. 2/3 for spherical ones.
+  /// Cosine of incidence of a Lambertian surface across the light that sends back as the leaves do,
+  /// per leaf area hit: their mean squared cosine by the mean cosine. 2/3 for spherical ones.
   [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
     const double up = direction.z * direction.z / dot(direction, direction);
     const double mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);

@@ -40,8 +40,7 @@ struct MeshData {
     validate_texture();
   }
 
-  /// Refuses counts beyond 32 bits, and `ClosestHits::none`, before allocation. @throws
-  /// SettingError
+  /// Refuses counts beyond 32 bits before allocation. @throws SettingError
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
     detail::require_count("MeshData::vertices (number)", vertices, 0, 4294967295);
     detail::require_count("MeshData::triangles (number)", triangles, 1, 4294967294);

@@ -75,8 +75,7 @@ class PixelHeights {
       least = std::min(least, number);
       greatest = std::max(greatest, number);
     }
-    // the table is short, as places count from the least number; missing: the last, or between
-    // others
+    // the table is short, as places count from the least; missing: the last, or between others
     std::vector<float> table;
     if (least <= greatest) table.assign(all.begin() + least, all.begin() + greatest + 1);
     std::size_t hole = table.size();

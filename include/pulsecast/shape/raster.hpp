@@ -41,8 +41,7 @@ struct RasterGrid {
                  std::min(static_cast<std::uint32_t>(south), rows - 1));
   }
 
-  /// Pixel of the right angle of triangle i, row by row, two a cell; an inner pixel has two, about
-  /// it.
+  /// Pixel of the right angle of triangle i, row by row, two a cell; inner pixels have two.
   [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, which = i % 2, cells = columns - 1;
     return index(cell % cells + which, cell / cells + which);
@@ -90,8 +89,7 @@ struct Raster {
   Vec2 first{};                         ///< centre of the first pixel, north-west [m east, m north]
   Vec2 pixel{1, 1};                     ///< spacing of the centres, to the east and to the south [m]
   std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
-  /// By pixel, index into the part's materials, for triangles with their right angle there; empty:
-  /// 0.
+  /// By pixel, index into the part's materials, for triangles with a right angle there; empty: 0.
   std::vector<std::uint8_t> materials{};
   PackedHeights packed{};  ///< heights in 16 bits, in place of `heights`
 
@@ -220,11 +218,10 @@ namespace detail {
 
 }  // namespace detail
 
-/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are
-/// missing; where tiles overlap, the first with a height counts. A mosaic has no gap of one pixel
-/// between tiles, as parts of their own have. Its heights are packed where those of all tiles are,
-/// with one scale. @throws SettingError as `Raster::validate`; for no tile, pixels of different
-/// lattices, or tiles on less than a 64th of their extent
+/// Raster of tiles whose pixels are those of one lattice, to a hundredth, without a gap between
+/// them. Pixels without a tile are missing; where tiles overlap, the first with a height counts.
+/// Its heights are packed if all are, with one scale. @throws SettingError as `Raster::validate`;
+/// for no tile, pixels of different lattices, or tiles on less than a 64th of their extent
 [[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
   detail::require_count("mosaic (number of tiles)", tiles.size(), 1, 1'000'000);
   const Vec2 pixel = tiles.front().pixel, first = tiles.front().first;

@@ -73,8 +73,7 @@ enum class Incidence : std::uint8_t {
   perpendicular,  ///< always towards the scanner
 };
 
-/// Opaque cubes as large as their cells: voxels of a point cloud. From inside, rays hit the far
-/// side.
+/// Opaque cubes as large as their cells: of a point cloud. From inside, rays hit the far side.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 

@@ -17,9 +17,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension
-/// [rad/s]; `wavenumber` in rad/m. Source: Lamb 1932, Hydrodynamics, article 267; surface tension:
-/// IAPWS R1-76(2014), over the density of water, 998.2 kg/m^3.
+/// Angular frequency of waves on deep water of 20 degrees Celsius [rad/s]; `wavenumber` in rad/m.
+/// Source: Lamb 1932, Hydrodynamics, article 267; tension: IAPWS R1-76(2014).
 [[nodiscard]] inline double wave_frequency(double wavenumber) noexcept {
   constexpr double tension = 72.74e-3 / 998.2;  // per density [m^3/s^2]
   return std::sqrt(wavenumber * (standard_gravity + tension * wavenumber * wavenumber));
@@ -103,9 +102,8 @@ class WaveProfile;
 
 }  // namespace detail
 
-/// Waves on a water surface about its mean level, as a sum of sine waves: a closed form in place
-/// and time. Copies share the waves. Its laws are those of linear waves: heights add up, crests and
-/// troughs are alike. Places are within 1e9 m of the origin.
+/// Waves on a water surface about its mean level: a sum of linear sine waves, in closed form in
+/// place and time. Copies share the waves. Places are within 1e9 m of the origin.
 class WaveField {
  public:
   static constexpr std::size_t max_size = detail::max_waves;  ///< greatest number of waves

@@ -200,10 +200,9 @@ class SlopeMap {
 }  // namespace detail
 
 /// Sine waves drawn for a wind: heights of the `WindSpectrum`, and slopes with exactly the
-/// variances of the `SlopeDistribution`, without correlation. To that end slopes of waves shorter
-/// than a tenth of those at the peak are mapped to others. Where that would leave them less than a
-/// quarter of their variance, as in winds below some 2 m/s, slopes of all waves are mapped. @throws
-/// SettingError as `WindWaves::validate`
+/// variances of the `SlopeDistribution`, uncorrelated. To that end slopes of waves shorter than a
+/// tenth of those at the peak are mapped; of all where that would leave them less than a quarter of
+/// their variance, as in winds below some 2 m/s. @throws SettingError as `WindWaves::validate`
 [[nodiscard]] inline std::vector<SineWave> waves_of(const WindWaves& settings) {
   settings.validate();
   if (settings.wind_speed == 0) return {};

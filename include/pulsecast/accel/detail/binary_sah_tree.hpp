@@ -21,8 +21,7 @@ class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// Subtree: a range of primitives; `middle`: start of the second child, and node; 0 for one
-  /// primitive.
+  /// Subtree: a range of primitives; `middle`: second child's start, and node; 0 for one.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }

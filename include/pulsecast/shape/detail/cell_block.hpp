@@ -12,8 +12,7 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Heights of the 4 by 2 cells of a node of level 1: in the raster, or copied, if at its edge or
-/// packed.
+/// Heights of 4 by 2 cells of a node of level 1: in the raster, or copied, at its edge or packed.
 class CellBlock {
  public:
   /// Sets the heights of the cells of a node, and returns the mask of those in the raster.

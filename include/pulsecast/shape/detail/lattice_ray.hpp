@@ -12,9 +12,8 @@ namespace PULSECAST_NAMESPACE {
 /// Cell of a lattice, along x, y and z.
 using LatticeCell = std::array<std::int32_t, 3>;
 
-/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x
-/// comes before y before z (symbolic perturbation), so that a ray through an edge or a corner
-/// passes from a cell to its neighbour through a face.
+/// Crossing of a ray and a lattice plane, ordered by range, then x before y before z (symbolic
+/// perturbation): a ray through an edge or a corner passes to a neighbour through a face.
 struct Crossing {
   static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings there
 

@@ -12,10 +12,9 @@ namespace PULSECAST_NAMESPACE {
 
 /// Conservative test of triangles against the line through a single ray, in a third of the
 /// operations of `intersect`, which decides about those left. The line is on one side of the three
-/// edges of a triangle that it hits, by the sign of a volume. One bound on the roundings, of this
-/// test and of `intersect`, holds for all triangles in the bounds. Infinite and tiny coordinates
-/// pass. Source: volume test of Amanatides & Choi 1997, with the products of each corner shared by
-/// its two edges; bounds: Higham 2002, ch. 3.
+/// edges of a triangle that it hits, by the sign of a volume. One bound on the roundings, here and
+/// in `intersect`, holds for all triangles. Infinite and tiny coordinates pass. Source: volume test
+/// of Amanatides & Choi 1997, with products of corners shared by edges; bounds: Higham 2002, ch. 3.
 class LineTest {
  public:
   LineTest() noexcept {}

@@ -173,10 +173,9 @@ struct LatticeWalker {
 
 }  // namespace detail
 
-/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of
-/// 4 x 4 x 4; bricks are bits of blocks of as many, where that saves memory. A hash table finds
-/// them. A bit pyramid lets rays leap over empty cubes. Takes at most 26 bytes per occupied cell,
-/// plus 16. Source: Amanatides & Woo 1987 (traversal).
+/// Sparse index of the occupied cells of a lattice, and their numbers: bits of bricks of 4 x 4 x 4,
+/// which are bits of blocks of as many, where that saves memory. A hash finds them; a bit pyramid
+/// lets rays leap over empty cubes. 26 bytes a cell and 16. Source: Amanatides & Woo 1987.
 class VoxelIndex {
  public:
   /// Greatest extent along an axis [cells].
