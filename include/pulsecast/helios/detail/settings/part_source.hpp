@@ -47,15 +47,15 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, `efilepath`; `.asc` and `.png` tell other formats
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, `efilepath`; also `.asc`, `.png`
   MaterialSource material{};                   ///< that of pixels without a class
-  bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
-  std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
-  bool class_colours = false;                  ///< true: its colour table colours the materials. `classcolours`
-  std::optional<double> height_scale{};  ///< metres per unit of height; by default that of the file [m]. `heightScale`
-  double height_offset = 0;              ///< added to the heights [m]. `heightOffset`
-  std::optional<double> missing{};       ///< number of missing heights; by default that of the file. `noDataValue`
-  std::optional<double> pixel_size{};    ///< of PNG files without a world file [m]. `pixelSize`
+  bool mosaic = false;                         ///< the files are tiles of one raster; `mosaic`
+  std::filesystem::path classes{};             ///< classes, which choose materials; `classfile`
+  bool class_colours = false;                  ///< in the colours of its table; `classcolours`
+  std::optional<double> height_scale{};        ///< of a unit, default by the file; `heightScale` [m]
+  double height_offset = 0;                    ///< added to the heights; `heightOffset` [m]
+  std::optional<double> missing{};             ///< missing height, default by the file; `noDataValue`
+  std::optional<double> pixel_size{};          ///< of a PNG file without world file; `pixelSize` [m]
 
   void fields(FieldIo& io) {
     material.fields(io);
@@ -74,11 +74,11 @@ struct GeoTiffSource {
 struct XyzSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
-  std::string separator{};               ///< set of column separators, default detected; `separator`
-  double voxel_size = 1;                 ///< edge length; `voxelSize` [m]
-  std::optional<Vec3> default_normal{};  ///< non-zero, any length; `defaultNormal`
-  int estimate_normals = 0;              ///< 0: from the file, else fitted to a plane in each voxel; `estimateNormals`
-  bool snap_neighbor_normal = false;  ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
+  std::string separator{};                     ///< of columns, default detected; `separator`
+  double voxel_size = 1;                       ///< edge length; `voxelSize` [m]
+  std::optional<Vec3> default_normal{};        ///< non-zero, any length; `defaultNormal`
+  int estimate_normals = 0;                    ///< 0: from the file; else by a plane; `estimateNormals`
+  bool snap_neighbor_normal = false;           ///< that nearest to the centre; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
   void fields(FieldIo& io) {
@@ -119,7 +119,7 @@ struct VoxelSource {
   MaterialSource material{};
   VoxelMode mode = VoxelMode::transmittive;  ///< `intersectionMode`
   double scaling_exponent = 0.5;             ///< scaled mode only; `intersectionArgument`
-  bool random_shift = false;                 ///< scaled mode: random place of each cube in its cell; `randomShift`
+  bool random_shift = false;                 ///< scaled mode: random places in cells; `randomShift`
   double leaf_area = 0;                      ///< 0: leaves without a size. `leafArea_m2` [m^2]
   double clumping = 1;                       ///< factor of the extinction. `clumping`
   std::filesystem::path leaf_angles{};       ///< look-up table; empty: none. `ladlut`
@@ -149,7 +149,7 @@ struct MeshSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MeshUp up = MeshUp::file;                    ///< `up`
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
-  std::filesystem::path materials{};  ///< MTL file whose materials replace those of the same names. `materials`
+  std::filesystem::path materials{};           ///< MTL file that replaces materials by name; `materials`
 
   void fields(FieldIo& io) {
     io.choice("up", up, {{"file", MeshUp::file}, {"z", MeshUp::z}, {"y", MeshUp::y}});

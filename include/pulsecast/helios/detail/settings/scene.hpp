@@ -22,13 +22,12 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Placement of geometry: maps each vertex to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
-/// `translate`.
+/// Filters `rotate`, `scale`, `translate`: `translation + scale * (rotations * vertex)`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
-  std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation` of each filter
+  std::vector<RotationList> rotations{};  ///< in sequence; `rotation` of each filter
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;  ///< not 0: moved onto the ground, by its lowest point, or, if -1, at first contact. `onGround`
+  int on_ground = 0;                      ///< not 0: with its lowest point; -1: at first contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -50,14 +49,14 @@ struct RotationMotion {
   Vec3 axis = axis::up;           ///< non-zero, any length; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};   ///< point on the axis, default the origin; `center` [m]
-  std::optional<double> glide{};  ///< shift along the axis, in lengths of `axis`: helical only. `glide`
+  std::optional<double> glide{};  ///< helical only: shift, in lengths of `axis`; `glide`
 
   bool operator==(const RotationMotion&) const = default;
 };
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = axis::up;       ///< normal of a plane through the origin; non-zero, any length. `ortho`
+  Vec3 normal = axis::up;       ///< of a plane through the origin, any length; `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
@@ -76,7 +75,7 @@ struct RotoreflectionMotion {
 struct MotionSettings {
   std::variant<NoMotion, TranslationMotion, RotationMotion, ReflectionMotion, RotoreflectionMotion> kind{};
   bool about_itself = false;  ///< in a frame at the part's centre; `selfMode`
-  double shift_factor = 0;    ///< multiple of the scene centre, added to the coordinates given; `autoCRS`
+  double shift_factor = 0;    ///< times the scene's centre is added; `autoCRS`
 
   bool operator==(const MotionSettings&) const = default;
 };
@@ -127,11 +126,11 @@ struct AttributeSettings {
 
 /// `<part>`
 struct PartSettings {
-  std::string id{};                               ///< `id`, default the number of parts and files before it
+  std::string id{};                               ///< `id`, default its number
   PartSource source{};                            ///< loading filter
   TransformSettings transform{};                  ///< placing filters
-  int dynamic_step = 1;                           ///< updates of the scene per motion step; `dynStep`
-  std::optional<double> dynamic_interval{};       ///< interval of motion steps, if the scene has one; `dynTimeStep` [s]
+  int dynamic_step = 1;                           ///< updates per motion step; `dynStep`
+  std::optional<double> dynamic_interval{};       ///< if the scene has one; `dynTimeStep` [s]
   std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: at rest
   std::vector<SwapSettings> swaps{};              ///< in sequence
   std::vector<AttributeSettings> attributes{};    ///< named numbers, each name once
@@ -147,8 +146,7 @@ struct PartSettings {
     for (const SwapSettings& swap : swaps) swap.validate();
     static_cast<void>(named_numbers());
   }
-  /// The attributes for the parts of a scene; empty without. @throws SettingError for a name that is empty or comes
-  /// twice
+  /// The attributes of a part. @throws SettingError for a name that is empty or comes twice
   [[nodiscard]] Attributes named_numbers() const {
     std::vector<Attribute> all;
     for (const auto& [name, value] : attributes) all.push_back({name, value});
@@ -164,7 +162,7 @@ struct LightSettings {
   double share_min = 1e-4;      ///< minimum share of a subray that is followed; `leastShare`
   int orders = 1;               ///< maximum number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
-  double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
+  double field_of_view = 2e-3;  ///< full angle, for more than one order; `fieldOfView_deg` [rad]
 
   void fields(FieldIo& io) {
     io.whole("passages", passages, 0, 32);
@@ -181,8 +179,7 @@ enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, sno
 
 namespace detail {
 
-/// Medium of a preset other than none, by its visibility [m] or rate [mm/h], for light of a wavelength [m].
-/// @throws SettingError for values out of its range
+/// Medium of a preset, by its visibility [m] or rate [mm/h], for a wavelength [m]. @throws SettingError
 [[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
   switch (preset) {
     case MediumPreset::fog:
@@ -207,7 +204,7 @@ namespace detail {
 
 /// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
 struct MediumSettings {
-  MediumPreset preset = MediumPreset::none;  ///< medium of the light's wavelength, instead of coefficients; `preset`
+  MediumPreset preset = MediumPreset::none;  ///< instead of coefficients; `preset`
   std::optional<double> visibility{};        ///< of fog, haze, dust and smoke; `visibility_m` [m]
   std::optional<double> rate{};              ///< of rain and snow, melted; `rate_mmPerH` [mm/h]
   double absorption = 0;                     ///< `absorption_perM` [1/m]
@@ -216,7 +213,7 @@ struct MediumSettings {
   std::optional<Vec3> min{};                 ///< lower corner of its box, default none; `min` [m]
   std::optional<Vec3> max{};                 ///< upper corner of its box, default none; `max` [m]
 
-  /// The same for `LightPaths`, for light of a wavelength [m]. @throws SettingError for values out of range of a preset
+  /// The same for `LightPaths`, for a wavelength [m]. @throws SettingError for values out of range
   [[nodiscard]] MediumRegion region(double wavelength) const {
     const Box all = everywhere();
     MediumRegion made =
@@ -265,9 +262,9 @@ struct SceneSettings {
   std::string id{};                          ///< `id`
   std::string name{};                        ///< `name`
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
-  std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
+  std::optional<double> dynamic_interval{};  ///< instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
-  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; without it and media, rays end at surfaces
+  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; none: rays end at surfaces
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
   void fields(FieldIo& io) {
@@ -277,8 +274,7 @@ struct SceneSettings {
     io.whole("dynStep", dynamic_step, 1, 1'000'000'000);
     io.number("dynTimeStep", dynamic_interval, units::second, 1e-9, 1e6);
   }
-  /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as
-  /// `MediumSettings::region`
+  /// Media in its air, for a wavelength [m]. @throws SettingError also for boxes that overlap
   [[nodiscard]] Media air(double wavelength) const {
     std::vector<MediumRegion> regions;
     for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -89,16 +90,15 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-/// Document of a survey. @throws SettingError for what `read_survey` would refuse of it, files and ground aside;
+/// Document of a survey. @throws SettingError for what `read_survey` would refuse, except files and ground;
 /// `leg_name(i)` begins the messages about a leg
-template <class LegName>
-DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name) {
+inline DocumentWriter document_of(const SurveySettings& survey, const auto& leg_name) {
   DocumentWriter document;
   if (survey.scanner.channels.empty()) throw SettingError("scanner: channels (number)", 0, "", "at least 1");
   if (survey.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
   ScannerSettings scanner = with_id(survey.scanner, "scanner");
   if (scanner.pulse_rates.empty()) scanner.pulse_rates = {first_pulse_rate(survey)};
-  PlatformSettings platform = with_id(survey.platform, "platform");
+  const PlatformSettings platform = with_id(survey.platform, "platform");
   const SceneSettings scene = with_id(survey.scene, "scene");
   document.add("scanner", scanner);
   document.add("platform", platform);
@@ -107,17 +107,14 @@ DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name
     io.put("name", survey.name);
     io.put("scene", "#" + scene.id);
     io.put("scanner", "#" + scanner.id);
-    if (platform.kind == PlatformKind::interpolated) {
-      io.put("platform", "interpolated");
-      io.put("basePlatform", "#" + platform.id);
-      xml::rotation_spec(io, platform.rotation_spec);
-    } else {
-      io.put("platform", "#" + platform.id);
-    }
+    const bool interpolated = platform.kind == PlatformKind::interpolated;
+    if (interpolated) io.put("platform", "interpolated");
+    io.put(interpolated ? "basePlatform" : "platform", "#" + platform.id);
+    if (RotationSpec spec = platform.rotation_spec; interpolated) xml::rotation_spec(io, spec);
     if (survey.seed) io.put("seed", std::to_string(*survey.seed));
-    if (LegOffsetSettings offset = survey.leg_offset.value_or(LegOffsetSettings{}); survey.leg_offset) {
+    if (std::optional<LegOffsetSettings> offset = survey.leg_offset) {
       io.put("legRandomOffset", "true");
-      offset.fields(io);
+      offset->fields(io);
     }
     for (const ChannelSettings& channel : scanner.channels)
       if (const std::string note = xml::bin_note(channel); !note.empty()) io.warn("binSize_ns", note);
