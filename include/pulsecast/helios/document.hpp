@@ -14,14 +14,14 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path> assets{};  ///< search folders before those of survey and document
+  std::vector<std::filesystem::path> assets{};  ///< searched before those of the documents
   bool channel_files = false;                   ///< for files named by channel ids: unique ones
 };
 
 /// Content of a survey document.
 struct SurveyDocument {
   SurveySettings survey{};                ///< settings of the survey
-  std::vector<std::string> warnings{};    ///< as in `survey.xml:3:10: attribute 'numRuns' has no effect`
+  std::vector<std::string> warnings{};    ///< as in `survey.xml:3:10: 'numRuns' has no effect`
   std::vector<std::string> leg_places{};  ///< position of each leg, as in `survey.xml:12:5`
   std::string place{};                    ///< position of the survey
 };
@@ -34,12 +34,12 @@ struct AssetDocument {
   std::vector<std::string> warnings{};        ///< as in `SurveyDocument`
 };
 
-/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. Overrides of
-/// the survey are in scanner and platform, for every channel. @throws XmlFaults with all faults, or another FileError
+/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files.
+/// Overrides of the survey are in scanner and platform. @throws XmlFaults with all faults, or FileError
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
-/// Writes a survey with scanner, platform and scene as one document. Reading it gives equal settings, but for the last
-/// digit of values that a program gives, where the document's unit is not SI.
+/// Writes a survey with scanner, platform and scene as one document. Reading it gives equal settings,
+/// but for the last digit of a program's values where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
 [[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< text of that document
 

@@ -24,13 +24,13 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// State of an instrument beside its settings.
 struct InstrumentOptions {
-  Rotation boresight = no_rotation;  ///< that of its `Mount`: beam origins are along the axes of the body
-  double optic_time = 0;             ///< earlier running time of the optic, which continues a scan [s]
+  Rotation boresight = no_rotation;  ///< of its `Mount`: beam origins are along the body's axes
+  double optic_time = 0;             ///< earlier running time of the optic [s]
 };
 
-/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels, which fire together,
-/// with their optics, head and error formulas. Put it on any trajectory: `Platform{trajectory, mount,
-/// Instrument{scanner, settings, 60}}`. If not `settings.active`, it has size, duration and emitters only.
+/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels, which
+/// fire together, with their optics, head and error formulas, for any trajectory: `Platform{trajectory,
+/// mount, Instrument{scanner, settings, 60}}`. Without `settings.active`, it emits nothing.
 class Instrument {
  public:
   using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
@@ -51,8 +51,8 @@ class Instrument {
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of the range; empty without
-  /// errors.
+  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the
+  /// range; empty without errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
@@ -71,11 +71,11 @@ static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument> && SkipsB
 /// Options of the receivers of a scanner.
 struct ReceiverOptions {
   double record_length = 0;  ///< length of the waveforms that are kept; 0: none [s]
-  bool noise = false;        ///< noise of a quarter of the minimum power of an echo, standard deviation
+  bool noise = false;        ///< adds noise: a quarter of the minimum power of an echo
 };
 
-/// Receivers of a scanner for `Survey`, each distinct one once. All sample waveforms by the smallest bins of the
-/// channels. @throws SettingError, or std::invalid_argument for an invalid noise formula
+/// Receivers of a scanner for `Survey`, each distinct one once. All sample waveforms by the smallest
+/// bins. @throws SettingError, or std::invalid_argument for an invalid noise formula
 template <EchoWidth Width = NoWidth>
 [[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(
     const ScannerSettings& scanner, const ReceiverOptions& options = {}) {

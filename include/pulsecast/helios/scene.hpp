@@ -60,7 +60,7 @@ struct PlacedRaster {
   Placement placement{};  ///< from there to the world
 };
 
-/// Builds the parts of a scene, with warnings about its files. Files and grids are kept for other runs.
+/// Builds the parts of a scene, with warnings about its files, which are kept for other runs.
 class SceneBuilder {
  public:
   /// Keeps the settings; `parts` reads the files. @throws SettingError for settings out of range

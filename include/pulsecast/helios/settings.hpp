@@ -51,12 +51,12 @@ struct TrajectoryIndices {
 /// Trajectory of an interpolated platform: attributes of `<platformSettings>`.
 struct TrajectorySettings {
   std::filesystem::path file{};                ///< `trajectory`
-  std::optional<char> separator{};             ///< default: detected; `trajectory_separator`, or `trajectory_seperator`
+  std::optional<char> separator{};             ///< default: detected; `trajectory_separator`
   std::optional<TrajectoryIndices> columns{};  ///< default: by the file's header; `tIndex`...
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
   bool sync_clock = false;                     ///< the clock is that of the file; `syncGPSTime`
-  bool teleports = false;                      ///< to the start; the optic restarts. `teleportToStart`
+  bool teleports = false;                      ///< the optic restarts; `teleportToStart`
   std::optional<double> start{};               ///< on the file's clock; `tStart` [s]
   std::optional<double> end{};                 ///< on the file's clock; `tEnd` [s]
 
@@ -144,7 +144,7 @@ struct LegScannerSettings {
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
   std::optional<double> divergence{};          ///< default: by channel; `beamDivergence_rad` [rad]
   double trajectory_interval = 0;              ///< 0: no records. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;                          ///< before the first pulse; `opticsWarmupPhase_s` [s]
+  double warm_up = 0;                          ///< before the pulses; `opticsWarmupPhase_s` [s]
 
   void fields(FieldIo& io) {
     io.flag("active", active);
@@ -252,11 +252,11 @@ struct PlatformSettings {
   std::string id{};                                              ///< `id`
   std::string name{};                                            ///< `name`
   PlatformKind kind = PlatformKind::stationary;                  ///< `type`
-  MountSettings mount{};                                         ///< of the instrument on the body; `<scannerMount>`
+  MountSettings mount{};                                         ///< `<scannerMount>`
   MulticopterDynamics multicopter{};                             ///< multicopter only
-  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated only; `rotationSpec`
-  std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
-  std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
+  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< `rotationSpec`
+  std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`... [m]
+  std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`... [rad]
 
   bool operator==(const PlatformSettings&) const = default;
 };

@@ -31,11 +31,11 @@ struct CompiledSurvey {
   };
   Legs<SurveyLeg> source;               ///< source of all pulses
   std::vector<Leg> legs;                ///< legs, in order of the document
-  std::optional<double> clock_start{};  ///< start of the earliest leg, if a trajectory's clock counts [s]
+  std::optional<double> clock_start{};  ///< start by the clock of a trajectory, if any [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
-/// Pulses of a survey on a ground. @throws SettingError with leg and attribute, FileError of a trajectory
+/// Pulses of a survey. @throws SettingError with leg and attribute, FileError of a trajectory
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                             const SurveyBuildOptions& options = {});
 
@@ -129,7 +129,7 @@ class SurveyCompiler {
            leg.platform.trajectory->teleports;
   }
 
-  /// Sets the path of a leg. A plan continues where the slots of the leg before ended. Returns the delay [s].
+  /// Sets the path of a leg. A plan continues where the leg before ended. Returns the delay [s].
   [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
     const SurveyPath& planned = paths_[k].path;
     const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
@@ -148,7 +148,7 @@ class SurveyCompiler {
     return std::fabs(duration - slots / rate) <= rounding ? slots / rate : duration;
   }
 
-  /// Duration of a leg whose path takes `way` [s]: until platform and head have arrived, or `duration_max` [s].
+  /// Duration of a leg: until platform, in `way` [s], and head have arrived, or `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k, double way) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;

@@ -23,8 +23,8 @@ struct AssetMatch {
   std::string warning{};                       ///< unusual place of the files; empty for others
 };
 
-/// Finds the files that documents name. An absolute path is taken as it is; of a relative one, the first folder that
-/// has it. A path that leads out of all folders ranks after the others and gives a warning.
+/// Finds the files that documents name: absolute, or in the first folder that has them. A path that
+/// leads out of all folders ranks after the others and gives a warning.
 class AssetSearch {
  public:
   explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {

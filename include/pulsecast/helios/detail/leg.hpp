@@ -25,10 +25,8 @@
 #include <pulsecast/platform/waypoints.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
-/// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
 /// Path, own or shared.
 template <class Path>
 [[nodiscard]] const Path& path_of(const Path& path) noexcept {
@@ -38,8 +36,6 @@ template <class Path>
 [[nodiscard]] const Path& path_of(const std::shared_ptr<const Path>& path) noexcept {
   return *path;
 }
-}  // namespace detail
-
 /// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
   using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>,
@@ -48,13 +44,11 @@ struct SurveyPath {
   Tick start{};  ///< start time on the clock of the plan
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return std::visit([&](const auto& p) noexcept { return detail::path_of(p).at(start + t); }, path);
+    return std::visit([&](const auto& p) noexcept { return path_of(p).at(start + t); }, path);
   }
 
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
-    const auto find = [&](const auto& p) noexcept {
-      return find_poses(detail::path_of(p), t + start, all_lanes(), poses);
-    };
+    const auto find = [&](const auto& p) noexcept { return find_poses(path_of(p), t + start, all_lanes(), poses); };
     return std::visit(find, path);
   }
 };
@@ -86,7 +80,7 @@ struct SurveyNoise {
   }
 };
 
-/// One leg of a survey: an instrument on a platform, whose reported poses may have the noise of documents.
+/// One leg of a survey: an instrument on a platform, whose reported poses may have noise.
 class SurveyLeg {
  public:
   /// `known` is the end of the known path, if that is within the last slot.
@@ -121,7 +115,7 @@ class SurveyLeg {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
-  [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of its path's records
+  [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the known path
 
  private:
   Platform<SurveyPath, Instrument> truth_;

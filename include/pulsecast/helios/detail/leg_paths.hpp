@@ -21,7 +21,6 @@
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 #include <pulsecast/helios/detail/survey_options.hpp>
-#include <pulsecast/helios/detail/trajectory_format.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
@@ -31,19 +30,42 @@
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-/// Paths of the legs of a survey document.
 namespace PULSECAST_NAMESPACE::helios {
+
+/// Format of the trajectory file of a leg.
+[[nodiscard]] inline io::TrajectoryFormat trajectory_format(const TrajectorySettings& t, RotationSpec spec) {
+  io::TrajectoryFormat format = io::helios_format();
+  format.angles = spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;
+  format.separator = t.separator.value_or(format.separator);
+  format.fixed_separator = t.separator.has_value();
+  format.angle_unit = t.angles_in_degrees ? io::AngleUnit::degree : io::AngleUnit::radian;
+  if (t.position_only) format.columns = {"t", "x", "y", "z"};
+  if (!t.columns) return format;
+  const TrajectoryIndices& at = *t.columns;
+  std::vector<std::pair<int, const char*>> columns{{at.time, "t"}, {at.x, "x"}, {at.y, "y"}, {at.z, "z"}};
+  if (!t.position_only) columns.insert(columns.end(), {{at.roll, "roll"}, {at.pitch, "pitch"}, {at.yaw, "yaw"}});
+  int most = 0;
+  for (const auto& [place, name] : columns) most = std::max(most, place);
+  format.names = io::ColumnNames::nowhere;
+  format.columns.clear();
+  for (int i = 0; i <= most; ++i) format.columns.push_back("column_" + std::to_string(i));
+  format.left_out = format.columns;
+  for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
+  const auto is_taken = [&](const std::string& column) { return std::ranges::count(format.columns, column) == 0; };
+  std::erase_if(format.left_out, is_taken);
+  return format;
+}
 
 /// Path and duration of a leg.
 struct LegPath {
   SurveyPath path{};
   double duration = 0;            ///< travel time [s]
   double rounding = 0;            ///< maximum error of the duration [s]
-  std::optional<double> clock{};  ///< start by the clock of a trajectory, if it is that of the survey [s]
+  std::optional<double> clock{};  ///< start by the clock of a trajectory, if it counts [s]
 };
 
-/// Paths of all legs of a survey on a ground. Settings and options must outlive it. @throws SettingError with leg
-/// and attribute, FileError of a trajectory
+/// Paths of all legs of a survey on a ground. Settings and options must outlive it.
+/// @throws SettingError with leg and attribute, FileError of a trajectory
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)
@@ -67,10 +89,8 @@ class LegPaths {
                      shared(std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path)));
   }
 
-  /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const { return options_.leg_name(k); }
 
-  /// True if a moving platform stays in place in this leg.
   [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
@@ -177,8 +197,8 @@ class LegPaths {
       s.turn = p.smooth_turn ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn;
       s.yaw_rate = std::clamp(d.yaw_speed, 1e-3, 1e3);
       s.bank_max = std::clamp(d.pitch_offset, 1e-3, 1.5);
-      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + detail::brief(degrees(s.yaw_rate)));
-      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + detail::brief(degrees(s.bank_max)));
+      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + brief(degrees(s.yaw_rate)));
+      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + brief(degrees(s.bank_max)));
       s.departure_heading = heading;
       heading = heading_from(end - 1, heading);
       s.arrival_heading = heading_from(end, heading);
@@ -196,14 +216,15 @@ class LegPaths {
     for (std::size_t k = 0, end = 0; k < last; k = end) {
       end = k + 1;
       if (is_stationary(k)) continue;
-      const auto keeps_speed = [&] { return survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed; };
-      while (end < last && !is_stationary(end) && keeps_speed()) ++end;
+      const auto speed = [&](std::size_t i) { return survey_.legs[i].platform.speed; };
+      while (end < last && !is_stationary(end) && speed(end - 1) == speed(end)) ++end;
       if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only ends the path
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
       const GroundVehicleSettings settings{
           .speed = speed_of(k), .start_height = height, .height_without_ground = places_[k].z};
-      const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, ground, settings));
+      auto plan = plan_ground_vehicle(points, ground, settings);
+      const auto way = std::make_shared<const GroundVehicleDrive>(std::move(plan));
       for (const std::string& warning : way->warnings()) warn(leg_name(k) + ": " + warning);
       height = way->at(way->duration()).position.z;
       split(k, end, way, way->duration().seconds());
@@ -220,9 +241,8 @@ class LegPaths {
     const double way = std::hypot(places_[k + 1].x - places_[k].x, places_[k + 1].y - places_[k].y);
     const double expected = way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
     if (paths_[k].duration > 2 * expected)
-      warn(text::joined({leg_name(k), ": the vehicle takes ", detail::brief(paths_[k].duration), " s for ",
-                         detail::brief(way), " m at up to ", detail::brief(s.speed),
-                         " m/s; turns and steep ground take time"}));
+      warn(text::joined({leg_name(k), ": the vehicle takes ", brief(paths_[k].duration), " s for ", brief(way),
+                         " m at up to ", brief(s.speed), " m/s; turns and steep ground take time"}));
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
@@ -243,8 +263,8 @@ class LegPaths {
     }
   }
 
-  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start of the
-  /// next; a flight also completes its turn towards the waypoint after it.
+  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start
+  /// of the next; a flight also completes its turn towards the waypoint after that.
   template <class Plan>
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
@@ -264,7 +284,7 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings> formats;  // columns and separator by file: those of its first leg
+    std::map<std::string, TrajectorySettings> formats;  // columns and separator by file
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");
@@ -275,7 +295,7 @@ class LegPaths {
       t->separator = of_file.separator;
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
-        const auto format = detail::trajectory_format(*t, survey_.platform.rotation_spec);
+        const auto format = trajectory_format(*t, survey_.platform.rotation_spec);
         auto table = naming(leg_name(k), [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
         for (const std::string& warning : table.warnings) warn(warning);
         if (t->position_only) table.poses = with_headings(std::move(table.poses));

@@ -19,7 +19,6 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 
-/// Rigid motions of a survey document.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Proper or improper rigid motion: each point p goes to `position + sign * rotation * p`.
@@ -42,7 +41,7 @@ struct MotionStep {
   }
 };
 
-/// Converts a motion. Coordinates are relative to the centre of the scene, except for `shift_factor`.
+/// Converts a motion. Coordinates are relative to the scene's centre, unless `shift_factor` is 1.
 [[nodiscard]] inline MotionStep motion_step(const MotionSettings& m, const Vec3& scene_centre) {
   MotionStep out;
   Vec3 centre = m.about_itself ? Vec3{} : (1 - m.shift_factor) * scene_centre, shift{};
@@ -87,12 +86,10 @@ struct MotionSteps {
   for (const auto& s : {steps.all, steps.own})
     if (s && s->sign < 0) return "an even number of reflections, since an odd number is no rigid motion";
   const Rotation turn = steps.all.value_or(MotionStep{}).settled().rotation;
-  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // finite: bad axes are reported
+  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // else reported
     return "rotations about a point or about its own centre, not both in one sequence";
   return "";
 }
-
-namespace detail {
 
 /// Motion at constant rates that equals all motions of a sequence, once per `step` [s].
 [[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence,
@@ -108,7 +105,7 @@ namespace detail {
   return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .angular_rate = turn.angular_rate};
 }
 
-/// Motion of a part with sequences, with a step in each `step` [s]. @throws SettingError with part and sequence
+/// Motion of a part, with a step in each `step` [s]. @throws SettingError with part and sequence
 [[nodiscard]] inline std::shared_ptr<const PartMotion> part_motion(const PartSettings& part, const Vec3& scene_centre,
                                                                    double step) {
   std::vector<MotionSequence> sequences;
@@ -130,8 +127,6 @@ namespace detail {
   }
   return std::make_shared<const PartMotion>(sequences, again);
 }
-
-}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -25,7 +25,6 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
-/// Converts the instrument of a survey document to stages of the library.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Pulse rate of a leg; by default the scanner's first [Hz]. @throws SettingError if there is none
@@ -46,8 +45,6 @@ namespace PULSECAST_NAMESPACE::helios {
   return leg.head_rate * (leg.head_stop - leg.head_start) < 0;
 }
 
-namespace detail {
-
 [[nodiscard]] inline double scan_angle_of(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double angle = leg.scan_angle.value_or(channel.scan_angle_max);
   return channel.scan_angle_max > 0 ? std::min(angle, channel.scan_angle_max) : angle;
@@ -60,8 +57,8 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of the device
-/// about the same centre.
+/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of the
+/// device about the same centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
                                             const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
@@ -96,7 +93,7 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
                                      most > 0 ? text::to_text(most) : "any", " Hz"}));
 }
 
-/// Rate of an oscillating mirror: within the device's product of angle and rate, in cycles of whole pulses [Hz].
+/// Rate of an oscillating mirror, within `scan_product_max` and in cycles of whole pulses [Hz].
 [[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic,
                                              const LegScannerSettings& leg, double pulse_rate) {
   const double angle = scan_angle_of(channel, leg), most = optic.scan_product_max;
@@ -108,7 +105,7 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
 /// Number for messages, rounded to three digits after the point.
 [[nodiscard]] inline std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
-/// Notes on rates and angles of a leg that channel `c` rounds or cuts, without plain limits of the first channel.
+/// Notes on rates and angles that channel `c` rounds or cuts, without plain limits of the first.
 [[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
                                                           const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
@@ -200,8 +197,8 @@ struct OpticBuilder {
   }
 };
 
-/// Error formula of an optic; none if the text is empty. @throws SettingError if it is not finite at one of 64 angles
-/// of the optic: poles between pass, as no beam reaches them
+/// Error formula; none if the text is empty. @throws SettingError if it is not finite at one of 64
+/// angles of the optic: poles between pass, as no beam reaches them
 [[nodiscard]] inline std::shared_ptr<const Formula> error_formula(const char* field, const std::string& text,
                                                                   const SurveyOptic::AnyOptic& optic) {
   if (text.empty()) return nullptr;
@@ -218,25 +215,23 @@ struct OpticBuilder {
   return error;
 }
 
-}  // namespace detail
-
-/// Optic of a channel in a leg. The beam origin of documents is along the axes of the platform, as that of the mount:
-/// the two add up, and `boresight` (rotation of the instrument on the body) does not turn it.
+/// Optic of a channel in a leg. The beam origin of documents is along the axes of the platform, like
+/// that of the mount: they add up, and `boresight` (instrument on the body) does not turn it.
 /// @throws SettingError with the attribute at fault
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {
-  if (leg.active) detail::require_scan_rate(channel, leg);
-  detail::OpticBuilder build{channel, leg, pulse_rate, active};
+  if (leg.active) require_scan_rate(channel, leg);
+  OpticBuilder build{channel, leg, pulse_rate, active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
                  conjugate(boresight) * channel.beam_origin.position};
   const double rate = head_rate(channel, leg);
   out.head = {.angular_rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
-  out.deflection_error = detail::error_formula("deflectionError", channel.errors.deflection, out.optic);
-  out.head_error = detail::error_formula("headError", channel.errors.head, out.optic);
-  out.range_error = detail::error_formula("rangeError", channel.errors.range, out.optic);
+  out.deflection_error = error_formula("deflectionError", channel.errors.deflection, out.optic);
+  out.head_error = error_formula("headError", channel.errors.head, out.optic);
+  out.range_error = error_formula("rangeError", channel.errors.range, out.optic);
   out.head_zero_threshold = channel.errors.head_zero_threshold;
   return out;
 }

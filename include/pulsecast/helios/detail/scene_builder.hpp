@@ -24,7 +24,6 @@
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
 
-/// Conversion of the scene of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {
 
 PULSECAST_INLINE int SceneBuilder::runs() const {
@@ -204,7 +203,7 @@ PULSECAST_INLINE void SceneBuilder::move(std::vector<SurveyPart>& all) {
     double step = settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;  // [s]
     if (const auto scene = settings_.dynamic_interval)
       step = *scene * std::max(1.0, std::floor(part.dynamic_interval.value_or(0) / *scene));
-    if (!part.motions.empty()) all[i].motion = detail::part_motion(part, box.centre(), step);
+    if (!part.motions.empty()) all[i].motion = part_motion(part, box.centre(), step);
   }
 }
 

@@ -20,9 +20,6 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-
-/// Files in the settings of scenes.
 class SceneFiles final : public FieldIo {
  public:
   explicit SceneFiles(const SceneSettings& scene) {
@@ -99,11 +96,9 @@ inline bool declares_ground(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace detail
-
-/// Files in the settings of a scene, in all runs, existing or not; `SceneBuilder::files` has those that they name.
+/// Files in the settings of a scene, in all runs, existing or not.
 [[nodiscard]] inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) {
-  return detail::SceneFiles(scene).all;
+  return SceneFiles(scene).all;
 }
 
 /// Folders of spectra, there or not: `spectra` in each folder of assets.
@@ -114,11 +109,11 @@ inline bool declares_ground(const std::filesystem::path& file) {
   return folders;
 }
 
-/// True if an MTL file declares a ground material, in any run, or cannot be read: else `onGround` has no height.
+/// True if an MTL file declares a ground material, in any run, or cannot be read: `onGround` needs one.
 [[nodiscard]] inline bool has_ground(const SceneSettings& scene) {
-  detail::SceneFiles files(scene);
-  for (const std::filesystem::path& obj : files.objs) detail::add_libraries(files.mtls, obj);
-  return std::ranges::any_of(files.mtls, detail::declares_ground);
+  SceneFiles files(scene);
+  for (const std::filesystem::path& obj : files.objs) add_libraries(files.mtls, obj);
+  return std::ranges::any_of(files.mtls, declares_ground);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -20,15 +20,15 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
-/// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name, unit and
-/// limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit these rows.
+/// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name, unit
+/// and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit these.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Words of documents with their values.
 template <class Value>
 using FieldWords = std::initializer_list<std::pair<std::string_view, Value>>;
 
-/// Visitor of the members of settings, in the order of documents; changes them only if it `reads`. This
+/// Visitor of the members of settings, in the order of documents; sets them only if it `reads`. This
 /// one does nothing.
 class FieldIo {
  public:
@@ -42,8 +42,8 @@ class FieldIo {
   FieldIo& operator=(const FieldIo&) = delete;
   virtual ~FieldIo() = default;
   [[nodiscard]] virtual bool reads() const noexcept { return false; }
-  [[nodiscard]] virtual bool has(const char* /*name*/) const { return false; }        ///< in the document
-  [[nodiscard]] virtual bool knows(std::string_view /*name*/) const { return true; }  ///< named before
+  [[nodiscard]] virtual bool has(const char* /*name*/) const { return false; }  ///< in the document
+  [[nodiscard]] virtual bool knows(std::string_view) const { return true; }     ///< named before
 
   /// Number with its limits, in the unit of documents.
   virtual void number(const char*, double& /*value*/, const XmlUnit&, double /*low*/, double /*high*/) {}

@@ -14,7 +14,6 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
 
-/// Sources of the geometry of parts: loading filters.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Materials of geometry files without any.
@@ -52,10 +51,10 @@ struct GeoTiffSource {
   bool mosaic = false;                         ///< the files are tiles of one raster; `mosaic`
   std::filesystem::path classes{};             ///< classes, which choose materials; `classfile`
   bool class_colours = false;                  ///< in the colours of its table; `classcolours`
-  std::optional<double> height_scale{};        ///< of a unit, default by the file; `heightScale` [m]
+  std::optional<double> height_scale{};        ///< default: by the file; `heightScale` [m]
   double height_offset = 0;                    ///< added to the heights; `heightOffset` [m]
-  std::optional<double> missing{};             ///< missing height, default by the file; `noDataValue`
-  std::optional<double> pixel_size{};          ///< of a PNG file without world file; `pixelSize` [m]
+  std::optional<double> missing{};             ///< default: by the file; `noDataValue`
+  std::optional<double> pixel_size{};          ///< of PNG without world file; `pixelSize` [m]
 
   void fields(FieldIo& io) {
     material.fields(io);
@@ -77,7 +76,7 @@ struct XyzSource {
   std::string separator{};                     ///< of columns, default detected; `separator`
   double voxel_size = 1;                       ///< edge length; `voxelSize` [m]
   std::optional<Vec3> default_normal{};        ///< non-zero, any length; `defaultNormal`
-  int estimate_normals = 0;                    ///< 0: from the file; else by a plane; `estimateNormals`
+  int estimate_normals = 0;                    ///< 0: from the file; else fitted. `estimateNormals`
   bool snap_neighbor_normal = false;           ///< that nearest to the centre; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
@@ -149,7 +148,7 @@ struct MeshSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MeshUp up = MeshUp::file;                    ///< `up`
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
-  std::filesystem::path materials{};           ///< MTL file that replaces materials by name; `materials`
+  std::filesystem::path materials{};           ///< MTL file; replaces by name. `materials`
 
   void fields(FieldIo& io) {
     io.choice("up", up, {{"file", MeshUp::file}, {"z", MeshUp::z}, {"y", MeshUp::y}});

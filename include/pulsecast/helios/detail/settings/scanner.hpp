@@ -82,18 +82,10 @@ struct RisleyOptic {
   bool operator==(const RisleyOptic&) const = default;
 };
 
-/// Any optic.
+/// Any optic, and the default of each.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
-
-namespace detail {
-
-/// Default optic of a kind.
-[[nodiscard]] inline OpticSettings optic_of(std::size_t kind) {
-  return std::array<OpticSettings, 5>{OscillatingOptic{}, RotatingOptic{}, ConicOptic{}, LineOptic{},
-                                      RisleyOptic{}}[kind];
-}
-
-}  // namespace detail
+inline constexpr std::array<OpticSettings, 5> default_optics{OscillatingOptic{}, RotatingOptic{}, ConicOptic{},
+                                                             LineOptic{}, RisleyOptic{}};
 
 /// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
@@ -113,7 +105,7 @@ struct FullWaveformSettings {
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
-/// Formulas of errors, in THETA, the deflection: `<deflectionError>`, `<headError>`, `<rangeError>`.
+/// Formulas of errors, of the deflection THETA: `<deflectionError>`, `<headError>`, `<rangeError>`.
 struct ErrorFormulas {
   std::string deflection{};        ///< of the deflection; `expr` [rad]
   std::string head{};              ///< of the head angle; `expr` [rad]
@@ -124,8 +116,8 @@ struct ErrorFormulas {
   bool operator==(const ErrorFormulas&) const = default;
 };
 
-/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position
-/// of `beam_origin` is along the axes of the platform: the rotation of the mount does not turn it.
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The
+/// position of `beam_origin` is along the axes of the platform: the mount does not turn it.
 struct ChannelSettings {
   std::string id{};                      ///< `id` of the channel; empty for the only channel
   OpticSettings optic{};                 ///< `optics` and its attributes
@@ -179,7 +171,7 @@ struct ChannelSettings {
   void optic_fields(FieldIo& io) {
     std::size_t kind = optic.index();
     io.choice("optics", kind, {{"oscillating", 0}, {"rotating", 1}, {"conic", 2}, {"line", 3}, {"risley", 4}});
-    if (kind != optic.index()) optic = detail::optic_of(kind);
+    if (kind != optic.index()) optic = default_optics[kind];
     std::visit([&](auto& of_kind) { of_kind.fields(io); }, optic);
     for (const char* name :
          {"scanProduct", "scanAngleEffectiveMax_deg", "numFibers", "rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz",

@@ -27,7 +27,7 @@ struct TransformSettings {
   double scale = 1;                       ///< `scale`
   std::vector<RotationList> rotations{};  ///< in sequence; `rotation` of each filter
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;                      ///< not 0: with its lowest point; -1: at first contact. `onGround`
+  int on_ground = 0;                      ///< not 0: by its lowest point; -1: at contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -177,31 +177,6 @@ struct LightSettings {
 /// Media by visibility or rate: the functions of `material/weather.hpp`.
 enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, snow };
 
-namespace detail {
-
-/// Medium of a preset, by its visibility [m] or rate [mm/h], for a wavelength [m]. @throws SettingError
-[[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
-  switch (preset) {
-    case MediumPreset::fog:
-      return {.medium = fog(visibility, wavelength)};
-    case MediumPreset::haze:
-      return {.medium = haze(visibility, wavelength)};
-    case MediumPreset::dust:
-      return {.medium = dust(visibility, wavelength)};
-    case MediumPreset::smoke:
-      return {.medium = smoke(visibility, wavelength)};
-    case MediumPreset::rain:
-      return MediumRegion::of(rain(rate, wavelength));
-    case MediumPreset::snow:
-      return MediumRegion::of(snow(rate, wavelength));
-    case MediumPreset::none:
-      break;
-  }
-  return {};
-}
-
-}  // namespace detail
-
 /// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
 struct MediumSettings {
   MediumPreset preset = MediumPreset::none;  ///< instead of coefficients; `preset`
@@ -215,11 +190,28 @@ struct MediumSettings {
 
   /// The same for `LightPaths`, for a wavelength [m]. @throws SettingError for values out of range
   [[nodiscard]] MediumRegion region(double wavelength) const {
+    const double seen = visibility.value_or(0), fallen = rate.value_or(0);
+    const auto unbounded = [&]() -> MediumRegion {
+      switch (preset) {
+        case MediumPreset::fog:
+          return {.medium = fog(seen, wavelength)};
+        case MediumPreset::haze:
+          return {.medium = haze(seen, wavelength)};
+        case MediumPreset::dust:
+          return {.medium = dust(seen, wavelength)};
+        case MediumPreset::smoke:
+          return {.medium = smoke(seen, wavelength)};
+        case MediumPreset::rain:
+          return MediumRegion::of(rain(fallen, wavelength));
+        case MediumPreset::snow:
+          return MediumRegion::of(snow(fallen, wavelength));
+        case MediumPreset::none:
+          break;
+      }
+      return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}};
+    };
+    MediumRegion made = unbounded();
     const Box all = everywhere();
-    MediumRegion made =
-        preset == MediumPreset::none
-            ? MediumRegion{.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}}
-            : detail::medium_of(preset, visibility.value_or(0), rate.value_or(0), wavelength);
     made.bounds = {min.value_or(all.min), max.value_or(all.max)};
     return made;
   }
@@ -241,12 +233,12 @@ struct MediumSettings {
   }
   /// @throws SettingError for values out of range, or that do not go together
   void validate() const {
-    const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow,
-               by_visibility = preset != MediumPreset::none && !drops;
-    if (visibility && !by_visibility)
+    const bool is_preset = preset != MediumPreset::none,
+               drops = preset == MediumPreset::rain || preset == MediumPreset::snow;
+    if (visibility && (drops || !is_preset))
       throw SettingError("visibility_m", *visibility, "m", "left out, but for fog, haze, dust and smoke");
     if (rate && !drops) throw SettingError("rate_mmPerH", *rate, "mm/h", "left out, but for rain and snow");
-    if (preset != MediumPreset::none)
+    if (is_preset)
       require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
     region(known_wavelength).validate();

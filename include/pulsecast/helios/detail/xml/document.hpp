@@ -41,8 +41,8 @@ struct XmlFault {
   std::string problem{};  ///< the fault and the expectation
 };
 
-/// All faults of a document and of those that it refers to, as a `FileError` about the first. `what()` has a
-/// line for each, `path:line:column: problem`.
+/// All faults of a document and of those that it refers to, as a `FileError` about the first. `what()`
+/// has a line for each, `path:line:column: problem`.
 class XmlFaults : public FileError {
  public:
   static constexpr std::size_t max_listed = 100;  ///< faults in `what()`
@@ -58,7 +58,7 @@ class XmlFaults : public FileError {
   }
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
-  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< as found
+  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }
   /// Those of the same documents.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
@@ -75,7 +75,7 @@ class XmlFaults : public FileError {
 /// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_listed = 1000;  ///< limit of faults and of warnings; later ones are dropped
+  static constexpr std::size_t max_listed = 1000;  ///< of faults and of warnings; later ones are dropped
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -103,7 +103,7 @@ class XmlReport {
   /// True if no more faults are kept, so that searching can stop.
   [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_listed; }
   [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_listed; }
-  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< number of faults
+  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< their number
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
   /// Throws `XmlFaults` if there is a fault.
@@ -119,7 +119,7 @@ class XmlReport {
   bool lenient_ = false;
 };
 
-/// XML file in memory, with the position of every element and attribute. Documents that declare entities are refused.
+/// XML file in memory, with the position of elements and attributes. Entities are refused.
 class XmlDocument {
  public:
   static constexpr std::size_t max_file_size = std::size_t{64} << 20;      ///< [byte]
@@ -217,7 +217,7 @@ class XmlDocument {
     throw XmlFaults({{place_of(std::min(byte, text_.size())), std::move(problem)}});
   }
 
-  /// Calls visit(byte, name, value) for each attribute of the element at an offset, until it returns false.
+  /// Calls visit(byte, name, value) for each attribute of an element, until it returns false.
   template <class Visit>
   void each_attribute(std::size_t at, Visit visit) const {
     const auto skip = [&](std::string_view set) { at = std::min(text_.find_first_not_of(set, at), text_.size()); };

@@ -31,8 +31,8 @@
 /// Reading of elements. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known;
-/// `finish` reports the others.
+/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. `finish`
+/// reports names that were not requested.
 class XmlInput final : public FieldIo {
  public:
   using Read = std::function<void(XmlInput&)>;

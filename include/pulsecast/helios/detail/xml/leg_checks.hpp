@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Checks the legs of a survey that is read or written against its scanner and platform. Faults: legs that never
-/// end, give no pulse, or exceed the device.
+/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give no
+/// pulse, or exceed the device.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
@@ -53,7 +53,7 @@ class LegChecks {
     check_head(io, device, settings, i);
     if (!s.active) return;
     check_rates(io, device, s, resolution);
-    if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
+    if (s.scan_angle && scan_angle_of(device, s) < *s.scan_angle)
       io.warn("scanAngle_deg",
               "scanAngle_deg exceeds the scanner's maximum: it is limited to " + shortest(device.scan_angle_max));
     check_gate(io, device, s);
@@ -104,8 +104,8 @@ class LegChecks {
                              brief(angle * frequency / s.scan_rate), ", for the scanner's ", name, " is ",
                              hertz(frequency)}));
     };
-    if (detail::scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
-    if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
+    if (scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
+    if (scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
     if (s.scan_rate == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
     if (s.scan_rate >= pulse_rate)
@@ -124,7 +124,7 @@ class LegChecks {
                 "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
       return;
     }
-    const auto [low, high, is_limited, is_cut] = detail::mirror_gate(device, *rotating, s);
+    const auto [low, high, is_limited, is_cut] = mirror_gate(device, *rotating, s);
     const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
     if (s.scan_rate > 0 && !(low < high))
       io.fault("verticalAngleMin_deg",

@@ -74,8 +74,7 @@ class LegReader {
     return places;
   }
 
-  /// Reads the templates of the survey's own document, also those that no leg uses. Faults become warnings, as they
-  /// have no effect.
+  /// Reads the templates of the survey's document, also without a leg: their faults become warnings.
   void read_unused_templates() {
     const auto all = [&](const char* element, const XmlInput::Read& read) {
       for (const pugi::xml_node node : document_.document().root().children(element))

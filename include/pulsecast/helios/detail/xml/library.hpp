@@ -27,8 +27,8 @@ namespace PULSECAST_NAMESPACE::helios {
   return folders;
 }
 
-/// Document of a survey or of assets, with its elements by id. Its files are searched in the folders of assets, the
-/// folder of the survey, and its own.
+/// Document of a survey or of assets, with its elements by id. Its files are searched in the folders of
+/// assets, the folder of the survey, and its own.
 class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders,
@@ -104,7 +104,7 @@ class XmlLibrary {
     return *document;
   }
 
-  /// Resolves the reference of an attribute: `file.xml#id`, or `id` or `#id` for an element of the same document.
+  /// Resolves a reference: `file.xml#id`, or `id` or `#id` for an element of the same document.
   [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute,
                                   const std::string& text, const char* element) {
     const std::size_t sign = text.find('#');

@@ -60,7 +60,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
     nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", deg};
 }  // namespace units
 
-/// True for an angle beyond a turn that is whole in radians, as one that was given in degrees [rad].
+/// True for an angle beyond a turn that is whole in radians, as if given in degrees [rad].
 [[nodiscard]] inline bool looks_like_degrees(double angle) noexcept {
   return std::fabs(angle) > max_angle && angle == std::round(angle);
 }
@@ -75,7 +75,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
           std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
 }
 
-/// Number of a document for a value. @throws SettingError out of its limits, but for the rounding of its unit
+/// Number of a document for a value. @throws SettingError out of its limits, rounding aside
 [[nodiscard]] inline double document_number(std::string_view name, double value, const XmlUnit& unit, double low,
                                             double high) {
   const double number = unit.number(value), limit = std::clamp(number, low, high);

@@ -35,7 +35,7 @@ inline void fields(FieldIo& io, PlatformSettings& platform) {
   io.text("id", platform.id);
   io.text("name", platform.name);
   PlatformKind kind = platform.kind;
-  if (!io.reads() && kind == PlatformKind::interpolated) kind = PlatformKind::stationary;  // its base has no effect
+  if (!io.reads() && kind == PlatformKind::interpolated) kind = PlatformKind::stationary;  // its base
   io.choice("type", kind,
             {{"static", PlatformKind::stationary},
              {"linearpath", PlatformKind::linear_path},

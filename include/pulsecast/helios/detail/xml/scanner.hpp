@@ -154,7 +154,7 @@ inline void channels(XmlOutput& io, ScannerSettings& scanner) {
     return check(io, scanner.channels.front());
   }
   if (!scanner.channels.empty())
-    ChannelSettings{.optic = detail::optic_of(scanner.channels.front().optic.index())}.optic_fields(io);
+    ChannelSettings{.optic = default_optics[scanner.channels.front().optic.index()]}.optic_fields(io);
   io.child("channels", "", [&](XmlOutput& list) {
     list.children("channel", scanner.channels, [](FieldIo& inner, ChannelSettings& channel) {
       inner.text("id", channel.id);

@@ -63,7 +63,7 @@ inline void fields(FieldIo& io, PartSource& source) {
 inline const std::vector<std::string> filter_types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
                                                    "meshloader", "scale",         "rotate",    "translate"};
 
-inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part, except 0, which has no effect
+inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part
 inline constexpr int most_on_ground = 1'000'000;                ///< `onGround` of a part
 
 /// Writes the filters of a part or swap.

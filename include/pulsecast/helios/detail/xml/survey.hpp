@@ -60,7 +60,7 @@ class SurveyReader {
   }
 
   [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< position of the survey
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< of the survey
   [[nodiscard]] const XmlReport& report() const noexcept { return report_; }
 
  private:
