@@ -34,12 +34,12 @@ struct AssetDocument {
   std::vector<std::string> warnings{};        ///< as in `SurveyDocument`
 };
 
-/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files.
-/// Overrides of the survey are in scanner and platform. @throws XmlFaults with all faults, or FileError
+/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's
+/// files. Scanner and platform have the survey's overrides. @throws XmlFaults with all faults, FileError
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
-/// Writes a survey with scanner, platform and scene as one document. Reading it gives equal settings,
-/// but for the last digit of a program's values where the document's unit is not SI.
+/// Writes a survey with scanner, platform and scene as one document. Reading it gives equal
+/// settings, but for the last digit of a program's values where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
 [[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< text of that document
 

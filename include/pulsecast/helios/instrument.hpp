@@ -29,8 +29,8 @@ struct InstrumentOptions {
 };
 
 /// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels, which
-/// fire together, with their optics, head and error formulas, for any trajectory: `Platform{trajectory,
-/// mount, Instrument{scanner, settings, 60}}`. Without `settings.active`, it emits nothing.
+/// fire together, with optics, head and error formulas, for any trajectory: `Platform{trajectory, mount,
+/// Instrument{scanner, settings, 60}}`. If inactive, only size, duration and emitters have a meaning.
 class Instrument {
  public:
   using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
@@ -51,8 +51,8 @@ class Instrument {
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the
-  /// range; empty without errors.
+  /// Beam of pulse i, fired at t, without errors of deflection and head, and shifted by that of range;
+  /// empty without errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
@@ -74,8 +74,8 @@ struct ReceiverOptions {
   bool noise = false;        ///< adds noise: a quarter of the minimum power of an echo
 };
 
-/// Receivers of a scanner for `Survey`, each distinct one once. All sample waveforms by the smallest
-/// bins. @throws SettingError, or std::invalid_argument for an invalid noise formula
+/// Receivers of a scanner for `Survey`, each distinct one once, with the smallest bins of all.
+/// @throws SettingError, or std::invalid_argument for an invalid noise formula
 template <EchoWidth Width = NoWidth>
 [[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(
     const ScannerSettings& scanner, const ReceiverOptions& options = {}) {
@@ -96,38 +96,29 @@ template <EchoWidth Width = NoWidth>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-
-[[nodiscard]] inline std::vector<SurveyChannel> instrument_channels(const ScannerSettings& scanner,
-                                                                    const LegScannerSettings& settings, double duration,
-                                                                    const InstrumentOptions& options) {
-  if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
-  scanner.validate();
-  settings.validate();
-  const double rate = pulse_rate_of(scanner, settings);
-  require_within("Instrument::duration", duration, 0, 1e15, "s");
-  require_within("Instrument::duration (pulses)", duration * rate, 0, 1e15, "");
-  const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
-  const bool fires = slots > 0 && settings.active;  // otherwise, optics are never called
-  const ReceiverGroups receivers(scanner);
-  std::vector<SurveyChannel> channels;
-  for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
-    const ChannelSettings& channel = scanner.channels[c];
-    SurveyOptic optic;
-    if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
-    channels.emplace_back(std::move(optic), Scanner{.pulse_rate = rate,
-                                                    .pulses = slots,
-                                                    .laser = survey_laser(channel, settings),
-                                                    .receiver = receivers.of_channel[c]});
-  }
-  return channels;
-}
-
-}  // namespace detail
-
 PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings,
                                         double duration, const InstrumentOptions& options)
-    : channels_(detail::instrument_channels(scanner, settings, duration, options)) {}
+    : channels_([&] {
+        if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
+        scanner.validate();
+        settings.validate();
+        const double rate = pulse_rate_of(scanner, settings);
+        require_within("Instrument::duration", duration, 0, 1e15, "s");
+        require_within("Instrument::duration (pulses)", duration * rate, 0, 1e15, "");
+        const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
+        const bool fires = slots > 0 && settings.active;  // otherwise, optics are never called
+        const ReceiverGroups receivers(scanner);
+        std::vector<SurveyChannel> channels;
+        for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
+          const ChannelSettings& channel = scanner.channels[c];
+          SurveyOptic optic;
+          if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
+          const Laser laser = survey_laser(channel, settings);
+          const Scanner fired{.pulse_rate = rate, .pulses = slots, .laser = laser, .receiver = receivers.of_channel[c]};
+          channels.emplace_back(std::move(optic), fired);
+        }
+        return channels;
+      }()) {}
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

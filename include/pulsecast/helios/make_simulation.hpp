@@ -9,7 +9,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
-/// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it once.
+/// Loading of surveys: slow to compile, unless `pulsecast::compiled` is linked. Include it once.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct BuiltParts;

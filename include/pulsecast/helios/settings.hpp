@@ -21,7 +21,7 @@
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// Settings of a survey document, in SI units and radians. Templates, references and inheritance are
+/// Settings of a survey document, in SI units and radians; templates, references and inheritance are
 /// resolved. The comment of a member names its attribute or element, `fields` its limits, which
 /// `check_fields` checks. A 0 may mean a default or none.
 namespace PULSECAST_NAMESPACE::helios {
@@ -100,11 +100,11 @@ struct TrajectorySettings {
 
 /// `<platformSettings>` of a leg
 struct LegPlatformSettings {
-  Vec3 position{};                           ///< start of the leg, in the scene; `x`, `y`, `z` [m]
-  bool on_ground = false;                    ///< take z from the ground; `onGround`
-  double speed = 70;                         ///< `movePerSec_m` [m/s]
-  bool smooth_turn = false;                  ///< multicopter; `smoothTurn`, `stopAndTurn="false"`
-  std::optional<double> yaw_at_departure{};  ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
+  Vec3 position{};                                 ///< start of the leg, in the scene; `x`, `y`, `z` [m]
+  bool on_ground = false;                          ///< take z from the ground; `onGround`
+  double speed = 70;                               ///< `movePerSec_m` [m/s]
+  bool smooth_turn = false;                        ///< multicopter; `smoothTurn`, `stopAndTurn="false"`
+  std::optional<double> yaw_at_departure{};        ///< from +y to -x; `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
   void fields(FieldIo& io) {
@@ -232,7 +232,8 @@ struct NoiseSettings {
   int lifespan = 1;  ///< number of pulses per random number, 0 for all; `fixedLifespan`
 
   void fields(FieldIo& io) {
-    io.choice("type", distribution, {{"NORMAL", NoiseDistribution::normal}, {"UNIFORM", NoiseDistribution::uniform}});
+    using enum NoiseDistribution;
+    io.choice("type", distribution, {{"NORMAL", normal}, {"UNIFORM", uniform}});
     io.number("mean", mean, units::one, -1e6, 1e6);
     io.number("stdev", deviation, units::one, 0, 1e6);
     io.number("min", low, units::one, -1e6, 1e6);
@@ -241,7 +242,7 @@ struct NoiseSettings {
     io.number("clipMin", clip_low, units::one, -1e6, 1e6);
     io.number("clipMax", clip_high, units::one, -1e6, 1e6);
     io.whole("fixedLifespan", lifespan, 0, 1'000'000'000);
-    if (distribution == NoiseDistribution::uniform && !(low <= high)) io.fault("max", "max is below min");
+    if (distribution == uniform && !(low <= high)) io.fault("max", "max is below min");
     if (clipped && !(clip_low <= clip_high)) io.fault("clipMax", "clipMax is below clipMin");
   }
   bool operator==(const NoiseSettings&) const = default;

@@ -19,7 +19,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
-/// Surveys of XML documents, ready to run. `make_simulation` makes them, `run` of run.hpp runs them.
+/// Surveys of XML documents, ready to run: `make_simulation` makes them, `run` runs them.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;
@@ -33,8 +33,8 @@ struct ReceiverOverrides {
   bool operator==(const ReceiverOverrides&) const = default;
 };
 
-/// Survey with its scene loaded and its legs planned: one of its repetitions. Immutable, and safe for
-/// several threads; other repetitions and receivers give other simulations.
+/// Survey with its scene loaded and its legs planned: one of its repetitions. Immutable, and safe
+/// for several threads; other repetitions and receivers give other simulations.
 class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
@@ -52,9 +52,9 @@ class Simulation {
     bool waveforms = false;                       ///< keep the waveforms of echoes
     bool las_waveforms = false;                   ///< cut and sample waveforms to the limits of LAS
     bool waveform_noise = false;                  ///< add receiver noise
-    bool fixed_incidence = false;                 ///< perpendicular incidence on all surfaces, for scattering
+    bool fixed_incidence = false;                 ///< perpendicular incidence, for scattering
     bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
-    bool light_paths = false;                     ///< multi-bounce light, also without `<light>` and `<medium>`
+    bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
     bool platform_noise = true;                   ///< as in the survey; false: none
     bool leg_noise = true;                        ///< random leg offsets as in the survey
     std::vector<std::filesystem::path> assets{};  ///< their folders `spectra` describe materials

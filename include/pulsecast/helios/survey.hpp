@@ -98,7 +98,9 @@ class SurveyCompiler {
       for (std::size_t c = 0; c < survey_.scanner.channels.size() && active && !only_ends(survey_, k); ++c)
         for (const std::string& note : limit_notes(survey_.scanner, c, leg.scanner, rate))
           if (noted.insert(note).second) warnings.push_back(name + ": " + note);
-      if (!active || teleports(leg)) optic_time = 0;
+      const auto& trajectory = leg.platform.trajectory;
+      const bool follows = survey_.platform.kind == PlatformKind::interpolated && trajectory;
+      if (!active || (follows && trajectory->teleports)) optic_time = 0;
       const MountSettings& mounted = survey_.platform.mount;
       const Mount mount{.lever_arm = mounted.position, .boresight = mounted.rotation.rotation()};
       const InstrumentOptions options{mount.boresight, optic_time};
@@ -123,11 +125,6 @@ class SurveyCompiler {
 
  private:
   static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
-
-  [[nodiscard]] bool teleports(const LegSettings& leg) const {
-    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory &&
-           leg.platform.trajectory->teleports;
-  }
 
   /// Sets the path of a leg. A plan continues where the leg before ended. Returns the delay [s].
   [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {

@@ -29,8 +29,8 @@ class AssetSearch {
  public:
   explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {
     for (const std::filesystem::path& folder : folders) {
-      std::filesystem::path whole = normal(folder);
-      if (std::ranges::find(folders_, whole) == folders_.end()) folders_.push_back(std::move(whole));
+      const std::filesystem::path whole = normal(folder);
+      if (std::ranges::find(folders_, whole) == folders_.end()) folders_.push_back(whole);
     }
   }
 
@@ -142,7 +142,7 @@ class AssetSearch {
                                     const char* missing) const {
     if (name.empty()) return "is empty: expected a path";
     std::string all;
-    for (const std::filesystem::path& place : places) all += (all.empty() ? "" : ", ") + place.string();
+    for (const auto& place : places) all += (all.empty() ? "" : ", ") + place.string();
     return text::joined({missing, ": looked for ", all.empty() ? "no folder" : all});
   }
 

@@ -20,12 +20,12 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, parentheses, `+ -
-/// * / ^`, all left-associative, `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh`, `atan2(y,
-/// x)`. Angles in radians.
+/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, parentheses,
+/// `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`, and `+ - * / ^`, which
+/// are left-associative, with their usual precedence. Angles in radians.
 class Formula {
  public:
-  /// Limits: 10,000 characters, parentheses 100 deep. @throws std::invalid_argument with the position
+  /// At most 10,000 characters, parentheses 100 deep. @throws std::invalid_argument with position
   Formula(std::string_view text, std::string_view variable) : text_(text), variable_(variable) {
     if (text.size() > 10'000) fail("is longer than 10000 characters");
     sum(0);

@@ -62,7 +62,7 @@ struct SurveyNoise {
   AxisNoise attitude{};  ///< about right, forward and up of the beam [rad]
   std::uint64_t seed = 0;
 
-  [[nodiscard]] bool none() const noexcept { return position == AxisNoise{} && attitude == AxisNoise{}; }
+  [[nodiscard]] bool none() const { return position == AxisNoise{} && attitude == AxisNoise{}; }
 
   [[nodiscard]] Vec3 draw(const AxisNoise& noise, PulseIndex slot, Purpose purpose) const noexcept {
     Vec3 out{};

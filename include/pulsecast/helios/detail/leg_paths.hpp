@@ -101,7 +101,7 @@ class LegPaths {
       if (p.on_ground && survey_.platform.kind != PlatformKind::interpolated) {
         const std::optional<double> height = ground(Vec2{at.x, at.y});
         if (!height)
-          throw SettingError(leg_name(k) + ": onGround at x = " + text::to_text(at.x) + ", y", at.y, "m",
+          throw SettingError(text::joined({leg_name(k), ": onGround at x = ", text::to_text(at.x), ", y"}), at.y, "m",
                              "over ground of the scene: a material with helios_isGround");
         at.z = *height;
       }
@@ -153,7 +153,7 @@ class LegPaths {
       const double least = length(way) / max_duration;
       if (line.speed < least)
         throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
-                           "at least " + text::to_text(least) + ", for a leg that ends within 1e15 s");
+                           "at least " + text::to_text(least) + ", for an end within 1e15 s");
       heading = heading_of(way, heading);
       paths_[k] = {{line, {}}, line.duration().seconds()};
     }
@@ -263,8 +263,8 @@ class LegPaths {
     }
   }
 
-  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start
-  /// of the next; a flight also completes its turn towards the waypoint after that.
+  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the
+  /// start of the next; a flight also completes its turn towards the waypoint after that.
   template <class Plan>
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;

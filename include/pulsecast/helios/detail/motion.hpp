@@ -28,7 +28,8 @@ struct MotionStep {
   int mirrors = 0;  ///< number of reflections in it
 
   [[nodiscard]] MotionStep after(const MotionStep& first) const {
-    return {{move.rotation * first.move.rotation, move.position + sign * (move.rotation * first.move.position)},
+    const auto& [rotation, position] = first.move;
+    return {{move.rotation * rotation, move.position + sign * (move.rotation * position)},
             sign * first.sign,
             mirrors + first.mirrors};
   }

@@ -57,8 +57,8 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of the
-/// device about the same centre.
+/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of
+/// the device about the same centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
                                             const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
@@ -77,18 +77,14 @@ struct MirrorGate {
   return gate;
 }
 
-[[nodiscard]] inline bool scans_too_slowly(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return leg.scan_rate < channel.scan_rate_min;
+[[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, double rate) {
+  return channel.scan_rate_max > 0 && rate > channel.scan_rate_max;
 }
 
-[[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return channel.scan_rate_max > 0 && leg.scan_rate > channel.scan_rate_max;
-}
-
-inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSettings& leg) {
+inline void require_scan_rate(const ChannelSettings& channel, double rate) {
   const double least = channel.scan_rate_min, most = channel.scan_rate_max;
-  if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
-    throw SettingError("scanFreq_hz", leg.scan_rate, "Hz",
+  if (rate < least || scans_too_fast(channel, rate))
+    throw SettingError("scanFreq_hz", rate, "Hz",
                        text::joined({"within the limits of the device, ", text::to_text(least), " to ",
                                      most > 0 ? text::to_text(most) : "any", " Hz"}));
 }
@@ -155,7 +151,7 @@ struct OpticBuilder {
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
     return OscillatingMirror{.cycle_rate = f,
                              .half_angle = scan_angle_of(channel, leg),
-                             .turning_time = std::min(100 / pulse_rate, 0.5 / f)};  // 100 pulses at most
+                             .turning_time = std::min(100 / pulse_rate, 0.5 / f)};  // 100 pulses
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
@@ -215,24 +211,25 @@ struct OpticBuilder {
   return error;
 }
 
-/// Optic of a channel in a leg. The beam origin of documents is along the axes of the platform, like
-/// that of the mount: they add up, and `boresight` (instrument on the body) does not turn it.
+/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the
+/// mount: they add up, and `boresight` (instrument on the body) does not turn it.
 /// @throws SettingError with the attribute at fault
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {
-  if (leg.active) require_scan_rate(channel, leg);
+  if (leg.active) require_scan_rate(channel, leg.scan_rate);
   OpticBuilder build{channel, leg, pulse_rate, active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
                  conjugate(boresight) * channel.beam_origin.position};
-  const double rate = head_rate(channel, leg);
-  out.head = {.angular_rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
-  out.deflection_error = error_formula("deflectionError", channel.errors.deflection, out.optic);
-  out.head_error = error_formula("headError", channel.errors.head, out.optic);
-  out.range_error = error_formula("rangeError", channel.errors.range, out.optic);
-  out.head_zero_threshold = channel.errors.head_zero_threshold;
+  const double rate = head_rate(channel, leg), start = leg.head_start + rate * leg.warm_up;
+  out.head = {.angular_rate = rate, .start = start, .axis = channel.head_axis};
+  const ErrorFormulas& errors = channel.errors;
+  out.deflection_error = error_formula("deflectionError", errors.deflection, out.optic);
+  out.head_error = error_formula("headError", errors.head, out.optic);
+  out.range_error = error_formula("rangeError", errors.range, out.optic);
+  out.head_zero_threshold = errors.head_zero_threshold;
   return out;
 }
 

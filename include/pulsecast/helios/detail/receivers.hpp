@@ -25,14 +25,14 @@ namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-/// Bins of a channel, limited to the pulse length, and a pulse to `WaveformSettings::max_samples` [s].
+/// Bins of a channel, at most a pulse long; a pulse has `WaveformSettings::max_samples` at most [s].
 [[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
   constexpr double most = WaveformSettings::max_samples;
   const double bin = channel.waveform.bin_size, length = channel.pulse_length;
   return bin > length ? length : length > most * bin ? std::nextafter(length / most, length) : bin;
 }
 
-/// Range noise by a formula, as a table. For powers of the range, interpolation errs by less than 1e-4.
+/// Range noise by a formula, as a table: for powers of the range, it errs by less than 1e-4.
 [[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
   const Formula times(channel.errors.range_noise, "t");
   const double first = std::max(channel.range_min, 0.01),
@@ -52,7 +52,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// Receiver of a channel. @throws SettingError or std::invalid_argument for an invalid noise formula
+/// Receiver of a channel. @throws SettingError, std::invalid_argument for an invalid noise formula
 [[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
   const bool by_formula = !channel.errors.range_noise.empty();
   const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
@@ -65,7 +65,7 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] beyond the range in which extinction was measured; or empty.
+/// Warning about light of a wavelength [m] for which extinction was not measured; or empty.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
   return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
@@ -76,8 +76,8 @@ namespace detail {
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and
 /// `maxFullwaveRange_ns` are one-way times of light and count twice; `binSize_ns` is two-way time.
-/// Echoes are timed by true ranges, but by their peaks with the library's physics or multi-bounce light:
-/// a mean range between water and its bottom is meaningless. The library's threshold replaces that of
+/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks: a
+/// mean range between water and its bottom is meaningless. The library's threshold replaces that of
 /// HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
@@ -119,8 +119,8 @@ struct ReceiverGroups {
     }
   }
 
-  /// Receivers for `Survey`: `make(channel)` of one channel of each group. Those of `scanner` may have
-  /// been changed, all of a group in the same way.
+  /// Receivers for `Survey`: `make(channel)` of one channel of each group. Those of `scanner` may
+  /// have been changed, all of a group in the same way.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;
@@ -150,8 +150,8 @@ template <EchoWidth Width>
 template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
-/// As above, by the library's physics: the footprint has the second moments of the beam, the receiver
-/// the bandwidth of the pulse. Noise is a sixth of the minimum power of an echo: false ones are rare.
+/// The same by the library's physics: the footprint has the second moments of the beam, the receiver
+/// the bandwidth of the pulse. Noise is a sixth of the minimum power: false echoes are rare.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

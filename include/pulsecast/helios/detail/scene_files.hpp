@@ -109,7 +109,7 @@ inline bool declares_ground(const std::filesystem::path& file) {
   return folders;
 }
 
-/// True if an MTL file declares a ground material, in any run, or cannot be read: `onGround` needs one.
+/// True if an MTL file, of any run, declares a ground material for `onGround`, or cannot be read.
 [[nodiscard]] inline bool has_ground(const SceneSettings& scene) {
   SceneFiles files(scene);
   for (const std::filesystem::path& obj : files.objs) add_libraries(files.mtls, obj);

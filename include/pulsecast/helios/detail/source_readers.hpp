@@ -171,7 +171,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoT
   return loaded;
 }
 
-/// Reads a raster by the extension of its file. Missing heights, scale and pixels are those of `source`.
+/// Reads a raster by the extension of its file; missing heights, scale and pixels are of `source`.
 PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::filesystem::path& file,
                                                                  const GeoTiffSource& source) {
   add_files({file});

@@ -31,8 +31,8 @@ concept TellsAngle = requires(const O optic, Tick t) {
   static_cast<double>(optic.angle(t));
 };
 
-/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type,
-/// so that a program with scanners from files compiles one pipeline.
+/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One
+/// type, so that a program with scanners from files compiles one pipeline.
 struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
@@ -43,12 +43,12 @@ struct SurveyOptic {
   std::shared_ptr<const Formula> deflection_error{};  ///< of the deflection, by it [rad]
   std::shared_ptr<const Formula> head_error{};        ///< of the head, by the deflection [rad]
   std::shared_ptr<const Formula> range_error{};       ///< of the range, by the deflection [m]
-  double head_zero_threshold = 0;                     ///< of the argument of `head_error` from multiples of pi [rad]
+  double head_zero_threshold = 0;                     ///< of `head_error`'s argument, from k pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
     RotatingHead{.angular_rate = head.angular_rate, .axis = head.axis}.validate();
-    require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // documents have many turns
+    require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // some have many turns
   }
 
   [[nodiscard]] bool open(Tick t) const noexcept {

@@ -22,8 +22,8 @@ struct SurveyBuildOptions {
   std::uint64_t seed = 0;      ///< seed of leg offsets and noise
   bool platform_noise = true;  ///< true: platform noise as in the survey; false: none
   bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
-  /// Place of each leg in its document, as in `survey.xml:12:5`. If empty, as for settings of a program,
-  /// the notes of `read_survey` are given with the others.
+  /// Place of each leg in its document, as in `survey.xml:12:5`. If empty, as for settings of a
+  /// program, the notes of `read_survey` are given with the others.
   std::vector<std::string> leg_places{};
 
   /// Name of a leg for messages.

@@ -26,7 +26,7 @@ class SurveyDetector {
  public:
   using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser, tag::PreparesForLasers>;
   using Workspace = std::variant<typename Plain::Workspace, typename Fitting::Workspace>;
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< of `Receiver`
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;
 
   explicit SurveyDetector(Plain detector) : detector_(std::move(detector)) {}
   explicit SurveyDetector(Fitting detector) : detector_(std::move(detector)) {}

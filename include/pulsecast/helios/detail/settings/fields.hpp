@@ -21,7 +21,7 @@
 #include <pulsecast/helios/detail/xml/number.hpp>
 
 /// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name, unit
-/// and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit these.
+/// and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit them.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Words of documents with their values.
@@ -46,9 +46,9 @@ class FieldIo {
   [[nodiscard]] virtual bool knows(std::string_view) const { return true; }     ///< named before
 
   /// Number with its limits, in the unit of documents.
-  virtual void number(const char*, double& /*value*/, const XmlUnit&, double /*low*/, double /*high*/) {}
-  virtual void number(const char* name, std::optional<double>& value, const XmlUnit& unit, double low, double high) {
-    optional(value, [&](double& v) { number(name, v, unit, low, high); });
+  virtual void number(const char*, double&, const XmlUnit&, double /*low*/, double /*high*/) {}
+  virtual void number(const char* name, std::optional<double>& v, const XmlUnit& unit, double low, double high) {
+    optional(v, [&](double& found) { number(name, found, unit, low, high); });
   }
   virtual void whole(const char* /*name*/, int& /*value*/, int /*low*/, int /*high*/) {}
   virtual void flag(const char* /*name*/, bool& /*value*/) {}
@@ -61,7 +61,7 @@ class FieldIo {
     optional(value, [&](Vec3& v) { vector(name, v, size_max); });
   }
   /// Index of a word; of none, that of another value.
-  virtual void word(const char*, std::size_t& /*index*/, std::span<const std::string_view>, const void* /*member*/) {}
+  virtual void word(const char*, std::size_t&, std::span<const std::string_view>, const void* /*member*/) {}
 
   /// Child element, if there is one; true then.
   virtual bool element(const char* /*name*/, const Fields&) { return false; }
@@ -72,7 +72,7 @@ class FieldIo {
   virtual void fault(std::string_view /*name*/, std::string /*problem*/) const {}
   virtual void warn(std::string_view /*name*/, const std::string& /*problem*/) const {}
   virtual void require(std::initializer_list<const char*> /*names*/) {}
-  virtual void without_effect(std::initializer_list<const char*>, const char* /*why*/ = "has no effect") {}
+  virtual void without_effect(std::initializer_list<const char*>, const char* = "has no effect") {}
 
   /// One of several words.
   template <class Value>
@@ -93,8 +93,8 @@ class FieldIo {
   }
   template <class Settings, class Fields>
   void children(const char* name, std::vector<Settings>& values, const Fields& fields) {
-    const auto one = [&](FieldIo& inner, std::size_t i) { fields(inner, reads() ? values.emplace_back() : values[i]); };
-    each(name, values.size(), one);
+    each(name, values.size(),
+         [&](FieldIo& io, std::size_t i) { fields(io, reads() ? values.emplace_back() : values[i]); });
   }
   /// Attributes `x`, `y` and `z`.
   void components(Vec3& v, double largest = max_coordinate) {

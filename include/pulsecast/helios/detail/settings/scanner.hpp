@@ -201,7 +201,6 @@ struct ChannelSettings {
     check_fields(*this);
     check_limits(FieldCheck());
   }
-
   bool operator==(const ChannelSettings&) const = default;
 };
 
@@ -215,7 +214,6 @@ struct ScannerSettings {
   void validate() const {
     for (const ChannelSettings& channel : channels) channel.validate();
   }
-
   bool operator==(const ScannerSettings&) const = default;
 };
 

@@ -27,7 +27,7 @@ struct TransformSettings {
   double scale = 1;                       ///< `scale`
   std::vector<RotationList> rotations{};  ///< in sequence; `rotation` of each filter
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;                      ///< not 0: by its lowest point; -1: at contact. `onGround`
+  int on_ground = 0;                      ///< not 0: by the lowest point; -1: contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -108,7 +108,6 @@ struct SwapSettings {
     check_fields(*this);
     if (source) std::visit([](const auto& one) { check_fields(one); }, *source);
   }
-
   bool operator==(const SwapSettings&) const = default;
 };
 
@@ -152,7 +151,6 @@ struct PartSettings {
     for (const auto& [name, value] : attributes) all.push_back({name, value});
     return all.empty() ? Attributes() : pulsecast::attributes(std::move(all));
   }
-
   bool operator==(const PartSettings&) const = default;
 };
 
@@ -216,13 +214,9 @@ struct MediumSettings {
     return made;
   }
   void fields(FieldIo& io) {
+    using enum MediumPreset;
     io.choice("preset", preset,
-              {{"fog", MediumPreset::fog},
-               {"haze", MediumPreset::haze},
-               {"dust", MediumPreset::dust},
-               {"smoke", MediumPreset::smoke},
-               {"rain", MediumPreset::rain},
-               {"snow", MediumPreset::snow}});
+              {{"fog", fog}, {"haze", haze}, {"dust", dust}, {"smoke", smoke}, {"rain", rain}, {"snow", snow}});
     io.number("visibility_m", visibility, units::metre, 1, 1e5);
     io.number("rate_mmPerH", rate, units::millimetre_per_hour, 0.1, 300);
     io.number("absorption_perM", absorption, units::per_metre, 0, 1e6);
@@ -282,7 +276,6 @@ struct SceneSettings {
     (void)air(MediumSettings::known_wavelength);
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }
-
   bool operator==(const SceneSettings&) const = default;
 };
 

@@ -41,8 +41,8 @@ struct XmlFault {
   std::string problem{};  ///< the fault and the expectation
 };
 
-/// All faults of a document and of those that it refers to, as a `FileError` about the first. `what()`
-/// has a line for each, `path:line:column: problem`.
+/// All faults of a document and of those that it refers to, as a `FileError` about the first.
+/// `what()` has a line for each, `path:line:column: problem`.
 class XmlFaults : public FileError {
  public:
   static constexpr std::size_t max_listed = 100;  ///< faults in `what()`
@@ -75,7 +75,7 @@ class XmlFaults : public FileError {
 /// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_listed = 1000;  ///< of faults and of warnings; later ones are dropped
+  static constexpr std::size_t max_listed = 1000;  ///< of faults, and of warnings
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -138,9 +138,13 @@ class XmlDocument {
     decode();
     constexpr unsigned options = pugi::parse_default | pugi::parse_doctype;
     const auto status = document_.load_buffer(text_.data(), text_.size(), options, pugi::encoding_utf8);
+    const char* const hint = status.status == pugi::status_end_element_mismatch
+                                 ? " (this end tag does not match the last start tag)"
+                             : status.status == pugi::status_no_document_element ? " (no element)"
+                                                                                 : "";
     if (!status)
       fail_at(static_cast<std::size_t>(status.offset),
-              text::joined({"is not well-formed XML: ", status.description(), hint(status.status)}));
+              text::joined({"is not well-formed XML: ", status.description(), hint}));
     for (const pugi::xml_node node : document_.children()) {
       if (node.type() == pugi::node_doctype && std::string_view(node.value()).find('[') != text_.npos)
         fail_at(text_.find("<!DOCTYPE"), "declares entities: expected a document without a DOCTYPE of its own");
@@ -193,11 +197,6 @@ class XmlDocument {
     line_ends_.clear();
     for (std::size_t i = 0; i < text_.size(); ++i)
       if (text_[i] == '\n') line_ends_.push_back(i);
-  }
-
-  [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
-    if (status == pugi::status_end_element_mismatch) return " (this end tag does not match the last start tag)";
-    return status == pugi::status_no_document_element ? " (no element)" : "";
   }
 
   /// Offset of the byte after the `<` of an element.

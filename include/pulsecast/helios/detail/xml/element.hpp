@@ -46,10 +46,8 @@ class XmlInput final : public FieldIo {
   [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
   [[nodiscard]] XmlReport& report() const noexcept { return report_; }
   [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
-  [[nodiscard]] XmlPlace place() const { return document_.place(node_); }
-
-  /// Position of an attribute; that of the element if it is missing.
-  [[nodiscard]] XmlPlace place(std::string_view name) const {
+  /// Position of an attribute; that of the element for none.
+  [[nodiscard]] XmlPlace place(std::string_view name = {}) const {
     if (!params_ || name.empty()) return document_.place(node_, name);
     const pugi::xml_node given = param(name);
     return given ? document_.place(given, "value") : place();
@@ -67,8 +65,6 @@ class XmlInput final : public FieldIo {
   [[nodiscard]] bool has(const char* name) const override {
     return params_ ? !param(name).empty() : !node_.attribute(name).empty();
   }
-
-  /// True if a name was requested before.
   [[nodiscard]] bool knows(std::string_view name) const override { return is_among(known_, name); }
 
   /// Reports missing attributes that are mandatory.
@@ -96,11 +92,11 @@ class XmlInput final : public FieldIo {
   }
 
   using FieldIo::number, FieldIo::vector;
-  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) override {
+  void number(const char* name, double& v, const XmlUnit& unit, double low, double high) override {
     const auto text = value(name);
     if (!text) return;
     const auto found = number_of(*text);
-    if (found && *found >= low && *found <= high) return void(number = unit.si(*found));
+    if (found && *found >= low && *found <= high) return void(v = unit.si(*found));
     std::string allowed = low == -any ? "" : " from " + xml_number(low);
     if (high < std::numeric_limits<double>::max()) allowed += " to " + xml_number(high);
     fault(name, said(name, *text) + ": expected a number" + allowed + (*unit.symbol == 0 ? "" : " ") + unit.symbol);
@@ -274,7 +270,7 @@ class XmlInput final : public FieldIo {
           report_.fault(document_.place(child, "key"), name + " is given twice, with another value");
       }
       keys.push_back(key);
-      if (keys.size() == max_params) report_.fault(document_.place(child), "too many <param> in a filter");
+      if (keys.size() == max_params) fault("", "too many <param> in a filter");
       if (!is_among(known_, key))
         warn_at(child, "key",
                 name + " of filter " + text::quoted(node_.attribute("type").value()) + " is not known" +

@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give no
-/// pulse, or exceed the device.
+/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give
+/// no pulse, or exceed the device.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
@@ -104,8 +104,8 @@ class LegChecks {
                              brief(angle * frequency / s.scan_rate), ", for the scanner's ", name, " is ",
                              hertz(frequency)}));
     };
-    if (scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
-    if (scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
+    if (s.scan_rate < device.scan_rate_min) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
+    if (scans_too_fast(device, s.scan_rate)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
     if (s.scan_rate == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
     if (s.scan_rate >= pulse_rate)

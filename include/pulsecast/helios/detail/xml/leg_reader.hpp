@@ -74,7 +74,7 @@ class LegReader {
     return places;
   }
 
-  /// Reads the templates of the survey's document, also without a leg: their faults become warnings.
+  /// Reads the templates of the survey's document, also without a leg; their faults are warnings.
   void read_unused_templates() {
     const auto all = [&](const char* element, const XmlInput::Read& read) {
       for (const pugi::xml_node node : document_.document().root().children(element))

@@ -81,9 +81,9 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
   const double number = unit.number(value), limit = std::clamp(number, low, high);
   if (number >= low && number <= high) return number;
   if (std::fabs(number - limit) <= 1e-12 * std::fabs(limit)) return limit;
-  const std::string bound = high < std::numeric_limits<double>::max() ? " to " + xml_number(high) : "";
-  const std::string allowed =
-      low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
+  using limits = std::numeric_limits<double>;
+  const std::string bound = high < limits::max() ? " to " + xml_number(high) : "";
+  const std::string allowed = low > limits::lowest() ? "from " + xml_number(low) + bound : "a number";
   const bool in_degrees = std::string_view(unit.symbol).starts_with("deg") && looks_like_degrees(value);
   throw SettingError(std::string(name), number, unit.symbol,
                      allowed + (in_degrees ? ": given in degrees, not radians?" : ""));
@@ -100,7 +100,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
   for (int i = 0; i < 3; ++i) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
     const std::size_t end = i < 2 ? text.find(separator) : text.size();
-    const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
+    const auto component = end == text.npos ? std::nullopt : number_of(text.substr(0, end));
     if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
     found[i] = *component;
     text.remove_prefix(std::min(end + 1, text.size()));

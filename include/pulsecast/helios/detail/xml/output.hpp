@@ -40,7 +40,7 @@ class XmlOutput final : public FieldCheck {
     FieldCheck::whole(name, value, low, high);
     put(name, std::to_string(value), "integer");
   }
-  void flag(const char* name, bool& value) override { put(name, value ? "true" : "false", "boolean"); }
+  void flag(const char* name, bool& v) override { put(name, v ? "true" : "false", "boolean"); }
   void text(const char* name, std::string& value) override { put(name, value); }
   void text(const char* name, std::optional<std::string>& value) override {
     if (value) put(name, *value);
@@ -49,9 +49,9 @@ class XmlOutput final : public FieldCheck {
             const void* /*member*/) override {
     if (index < words.size()) put(name, std::string(words[index]));
   }
-  void vector(const char* name, Vec3& value, double size_max) override {
-    FieldCheck::vector(name, value, size_max);
-    put(name, text::joined({xml_number(value.x), ";", xml_number(value.y), ";", xml_number(value.z)}), "vec3");
+  void vector(const char* name, Vec3& v, double size_max) override {
+    FieldCheck::vector(name, v, size_max);
+    put(name, xml_number(v.x) + ";" + xml_number(v.y) + ";" + xml_number(v.z), "vec3");
   }
   void file(const char* name, std::filesystem::path& value) override {
     if (!value.empty()) put(name, std::filesystem::absolute(value).string());

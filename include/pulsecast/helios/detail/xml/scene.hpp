@@ -60,8 +60,8 @@ inline void fields(FieldIo& io, PartSource& source) {
 }
 
 /// Types of filters; the first are loading filters, in the order of `PartSource`.
-inline const std::vector<std::string> filter_types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
-                                                   "meshloader", "scale",         "rotate",    "translate"};
+inline constexpr std::array filter_types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
+                                         "meshloader", "scale",         "rotate",    "translate"};
 
 inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part
 inline constexpr int most_on_ground = 1'000'000;                ///< `onGround` of a part
@@ -74,7 +74,7 @@ inline void filters(XmlOutput& io, PartSource* source, TransformSettings& transf
     return XmlOutput(node, true);
   };
   if (source) {
-    XmlOutput loader = filter(filter_types[source->index()].c_str());
+    XmlOutput loader = filter(filter_types[source->index()]);
     fields(loader, *source);
   }
   if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, least_scale, most_scale);
@@ -136,7 +136,8 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
     } else {
       io.report().fault(io.document().place(node, "type"),
-                        said("type", type) + " of a filter is not known" + text::suggestion(type, filter_types));
+                        said("type", type) + " of a filter is not known" +
+                            text::suggestion(type, std::vector<std::string>(filter_types.begin(), filter_types.end())));
       filter.check_attributes(node, {"type"});
       continue;
     }
@@ -159,7 +160,7 @@ inline void fields(FieldIo& io, SwapSettings& swap) {
 
 /// True if the successor of a sequence is not one of its part.
 inline bool lacks_next(const PartSettings& part, const MotionSequenceSettings& sequence) {
-  const auto is_next = [&](const MotionSequenceSettings& other) { return other.id == sequence.next; };
+  const auto is_next = [&](const auto& other) { return other.id == sequence.next; };
   return sequence.next && std::ranges::none_of(part.motions, is_next);
 }
 

@@ -159,11 +159,11 @@ class SurveyReader {
   void read_platform(XmlInput& io) {
     const auto text = io.given("platform");
     if (text != "interpolated") {
-      io.without_effect({"basePlatform", "rotationSpec"}, "has no effect unless platform=\"interpolated\"");
+      const char* const unless = "has no effect unless platform=\"interpolated\"";
+      io.without_effect({"basePlatform", "rotationSpec"}, unless);
       read_reference(io, "platform", survey_.platform);
       const auto ignore = [](XmlInput& inner) { MountSettings{}.fields(inner); };
-      if (io.child("scannerMount", ignore))
-        io.warn("platform", "<scannerMount> of a survey has no effect unless platform=\"interpolated\"");
+      if (io.child("scannerMount", ignore)) io.warn("platform", std::string("<scannerMount> of a survey ") + unless);
       return;
     }
     survey_.platform.id = "interpolated";

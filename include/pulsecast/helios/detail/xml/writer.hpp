@@ -90,8 +90,8 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-/// Document of a survey; `leg_name(i)` begins the messages about a leg. @throws SettingError for what
-/// `read_survey` would refuse, except files and ground
+/// Document of a survey; `leg_name(i)` begins the messages about a leg. @throws SettingError for
+/// what `read_survey` would refuse, except files and ground
 inline DocumentWriter document_of(const SurveySettings& survey, const auto& leg_name) {
   DocumentWriter document;
   if (survey.scanner.channels.empty()) throw SettingError("scanner: channels (number)", 0, "", "at least 1");
