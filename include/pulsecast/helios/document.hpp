@@ -58,18 +58,6 @@ void write_assets(const std::filesystem::path& path, const AssetDocument& assets
 
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-
-inline DocumentWriter document_of(const AssetDocument& assets) {
-  DocumentWriter document;
-  for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
-  for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
-  for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
-  return document;
-}
-
-}  // namespace detail
-
 PULSECAST_INLINE SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options) {
   detail::SurveyReader reader(path, options.assets, options.channel_files);
   SurveyDocument document{.survey = reader.read()};
@@ -91,14 +79,20 @@ PULSECAST_INLINE AssetDocument read_assets(const std::filesystem::path& path, co
 }
 
 PULSECAST_INLINE void write_survey(const std::filesystem::path& path, const SurveySettings& survey) {
-  detail::document_of(survey).write(path);
+  detail::write_text(path, xml_text(survey));
 }
 PULSECAST_INLINE std::string xml_text(const SurveySettings& survey) { return detail::document_of(survey).text(); }
 
 PULSECAST_INLINE void write_assets(const std::filesystem::path& path, const AssetDocument& assets) {
-  detail::document_of(assets).write(path);
+  detail::write_text(path, xml_text(assets));
 }
-PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
+PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) {
+  detail::DocumentWriter document;
+  for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
+  for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
+  for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
+  return document.text();
+}
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>

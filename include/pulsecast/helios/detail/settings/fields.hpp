@@ -24,10 +24,6 @@
 /// and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit them.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Words of documents with their values.
-template <class Value>
-using FieldWords = std::initializer_list<std::pair<std::string_view, Value>>;
-
 /// Visitor of the members of settings, in the order of documents; sets them only if it `reads`. This
 /// one does nothing.
 class FieldIo {
@@ -76,7 +72,7 @@ class FieldIo {
 
   /// One of several words.
   template <class Value>
-  void choice(const char* name, Value& value, FieldWords<Value> words) {
+  void choice(const char* name, Value& value, std::initializer_list<std::pair<std::string_view, Value>> words) {
     std::vector<std::string_view> names;
     std::size_t index = words.size();
     for (const auto& [word, meaning] : words) {

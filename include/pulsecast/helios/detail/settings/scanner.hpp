@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>

@@ -106,7 +106,6 @@ class XmlReport {
   [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< their number
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
-  /// Throws `XmlFaults` if there is a fault.
   void require_clean() const {
     if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
   }

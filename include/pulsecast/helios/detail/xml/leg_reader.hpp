@@ -25,7 +25,6 @@
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 
-/// True if a character is forbidden in a file name.
 [[nodiscard]] inline bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
 
 /// Replaces forbidden characters in a part of a file or folder name, with a warning.

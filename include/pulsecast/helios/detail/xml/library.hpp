@@ -50,7 +50,6 @@ class XmlLibraryDocument {
     }
   }
 
-  /// Reads an element of it.
   void read(pugi::xml_node node, XmlReport& report, const XmlInput::Read& read) const {
     XmlInput(document_, node, report, search_).inside(node, read);
   }
@@ -64,7 +63,6 @@ class XmlLibraryDocument {
     return found == by_id_.end() ? pugi::xml_node() : found->second;
   }
 
-  /// Ids of all elements of a name.
   [[nodiscard]] std::vector<std::string> ids(const char* element) const {
     std::vector<std::string> all;
     for (const pugi::xml_node node : document_.root().children(element)) all.emplace_back(node.attribute("id").value());

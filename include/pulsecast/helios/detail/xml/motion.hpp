@@ -17,7 +17,6 @@
 /// `<dmotion>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
-/// True if an axis or normal has a direction.
 [[nodiscard]] inline bool has_direction(const Vec3& v) { return length(v) > 1e-9; }
 
 /// Axis or normal of a motion.

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -120,7 +119,6 @@ inline void pulse_rates(XmlInput& io, std::vector<double>& rates) {
       rates.push_back(*rate);
   }
 }
-/// Writes them.
 inline void pulse_rates(XmlOutput& io, const std::vector<double>& rates) {
   std::string text;
   require_within("pulseFreqs_Hz (number)", static_cast<double>(rates.size()), 0, most_rates, "");

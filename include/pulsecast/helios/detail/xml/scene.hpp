@@ -229,7 +229,6 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
   if (scene.parts.empty()) io.fault("", "<scene> holds no <part> with a loading filter");
 }
 
-/// Writes a scene.
 inline void fields(XmlOutput& io, SceneSettings& scene) {
   scene_fields(io, scene);
   for (PartSettings& part : scene.parts)

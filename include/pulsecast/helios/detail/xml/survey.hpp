@@ -12,7 +12,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
@@ -52,7 +51,6 @@ class SurveyReader {
     return survey_;
   }
 
-  /// Reads all elements of a name in the document.
   template <class Settings>
   void read_all(const char* element, std::vector<Settings>& values) {
     for (const pugi::xml_node node : document_.document().root().children(element))

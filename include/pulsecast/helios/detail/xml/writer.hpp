@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -49,18 +49,9 @@ class DocumentWriter {
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   [[nodiscard]] std::string text() const {
-    struct Writer : pugi::xml_writer {
-      void write(const void* data, std::size_t size) override { all.append(static_cast<const char*>(data), size); }
-      std::string all;
-    } writer;
-    document_.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
-    return std::move(writer.all);
-  }
-
-  void write(const std::filesystem::path& path) const {
-    io::OutputFile file(path);
-    file.write(text());
-    file.commit();
+    std::ostringstream all;
+    document_.save(all, "  ", pugi::format_indent, pugi::encoding_utf8);
+    return all.str();
   }
 
  private:
@@ -68,6 +59,12 @@ class DocumentWriter {
   pugi::xml_node root_;
   std::vector<std::string> notes_;
 };
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+  io::OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
 
 inline void write_leg(XmlOutput& io, const SurveySettings& survey, std::size_t i) {
   LegSettings leg = survey.legs[i];
