@@ -35,7 +35,7 @@ struct AssetDocument {
 };
 
 /// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's
-/// files. Scanner and platform have the survey's overrides. @throws XmlFaults with all faults, FileError
+/// files. Scanner and platform have the survey's overrides. @throws XmlFaults (all faults), FileError
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
 /// Writes a survey with scanner, platform and scene as one document. Reading it gives equal

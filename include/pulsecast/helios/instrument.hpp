@@ -28,9 +28,9 @@ struct InstrumentOptions {
   double optic_time = 0;             ///< earlier running time of the optic [s]
 };
 
-/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels, which
-/// fire together, with optics, head and error formulas, for any trajectory: `Platform{trajectory, mount,
-/// Instrument{scanner, settings, 60}}`. If inactive, only size, duration and emitters have a meaning.
+/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels,
+/// which fire together, with optics, head and error formulas. For any trajectory: `Platform{
+/// trajectory, mount, Instrument{scanner, settings, 60}}`. If inactive, it has no pulses.
 class Instrument {
  public:
   using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
@@ -51,7 +51,7 @@ class Instrument {
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without errors of deflection and head, and shifted by that of range;
+  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range;
   /// empty without errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();

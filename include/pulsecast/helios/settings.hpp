@@ -20,8 +20,8 @@
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// Settings of a survey document, in SI units and radians; templates, references and inheritance are
-/// resolved. The comment of a member names its attribute or element, `fields` its limits, which
+/// Settings of a survey document, in SI units and radians; templates, references and inheritance
+/// are resolved. The comment of a member names its attribute or element, `fields` its limits, which
 /// `check_fields` checks. A 0 may mean a default or none.
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -54,10 +54,10 @@ struct TrajectorySettings {
   std::optional<TrajectoryIndices> columns{};  ///< default: by the file's header; `tIndex`...
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
-  bool sync_clock = false;                     ///< the clock is that of the file; `syncGPSTime`
-  bool teleports = false;                      ///< the optic restarts; `teleportToStart`
-  std::optional<double> start{};               ///< on the file's clock; `tStart` [s]
-  std::optional<double> end{};                 ///< on the file's clock; `tEnd` [s]
+  bool sync_clock = false;                     ///< clock starts at the file's time; `syncGPSTime`
+  bool teleports = false;                      ///< jump to the start; the optic restarts. `teleportToStart`
+  std::optional<double> start{};               ///< on the file's clock, default its first; `tStart` [s]
+  std::optional<double> end{};                 ///< on that clock, default its last; `tEnd` [s]
 
   void fields(FieldIo& io) {
     io.file("trajectory", file);
@@ -99,11 +99,11 @@ struct TrajectorySettings {
 
 /// `<platformSettings>` of a leg
 struct LegPlatformSettings {
-  Vec3 position{};                                 ///< start of the leg, in the scene; `x`, `y`, `z` [m]
-  bool on_ground = false;                          ///< take z from the ground; `onGround`
-  double speed = 70;                               ///< `movePerSec_m` [m/s]
-  bool smooth_turn = false;                        ///< multicopter; `smoothTurn`, `stopAndTurn="false"`
-  std::optional<double> yaw_at_departure{};        ///< from +y to -x; `yawAtDeparture_deg` [rad]
+  Vec3 position{};                           ///< start of the leg, in the scene; `x`, `y`, `z` [m]
+  bool on_ground = false;                    ///< take z from the ground; `onGround`
+  double speed = 70;                         ///< `movePerSec_m` [m/s]
+  bool smooth_turn = false;                  ///< turn without a stop; `smoothTurn`, `stopAndTurn="false"`
+  std::optional<double> yaw_at_departure{};  ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
   void fields(FieldIo& io) {
@@ -135,15 +135,15 @@ struct LegScannerSettings {
   bool active = true;                          ///< `active`
   double pulse_rate = 0;                       ///< 0: the scanner's first; `pulseFreq_hz` [Hz]
   double scan_rate = 0;                        ///< `scanFreq_hz` [Hz]
-  std::optional<double> scan_angle{};          ///< half angle, default all; `scanAngle_deg` [rad]
+  std::optional<double> scan_angle{};          ///< half, default the maximum; `scanAngle_deg` [rad]
   std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
   std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
   double head_rate = 0;                        ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double> divergence{};          ///< default: by channel; `beamDivergence_rad` [rad]
-  double trajectory_interval = 0;              ///< 0: no records. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;                          ///< before the pulses; `opticsWarmupPhase_s` [s]
+  std::optional<double> divergence{};          ///< default: channels'; `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;              ///< of records; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;                          ///< run before the first pulse; `opticsWarmupPhase_s` [s]
 
   void fields(FieldIo& io) {
     io.flag("active", active);
@@ -252,9 +252,9 @@ struct PlatformSettings {
   std::string id{};                                              ///< `id`
   std::string name{};                                            ///< `name`
   PlatformKind kind = PlatformKind::stationary;                  ///< `type`
-  MountSettings mount{};                                         ///< `<scannerMount>`
+  MountSettings mount{};                                         ///< on the body; `<scannerMount>`
   MulticopterDynamics multicopter{};                             ///< multicopter only
-  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< `rotationSpec`
+  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`... [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`... [rad]
 
@@ -297,7 +297,7 @@ struct SurveySettings {
   return legs_connect(survey.platform.kind) && stays_in_place(survey.legs, leg);
 }
 
-/// True if a leg only ends the one before it: the last of several of a moving platform.
+/// True if a leg only ends the one before it, without pulses: a moving platform's last of several.
 [[nodiscard]] inline bool only_ends(const SurveySettings& survey, std::size_t leg) {
   return legs_connect(survey.platform.kind) && leg > 0 && leg + 1 == survey.legs.size();
 }

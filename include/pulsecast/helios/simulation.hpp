@@ -55,20 +55,20 @@ class Simulation {
     bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
     bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
     bool platform_noise = true;                   ///< as in the survey; false: none
-    bool leg_noise = true;                        ///< random leg offsets as in the survey
+    bool leg_noise = true;                        ///< random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< their folders `spectra` describe materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
-    std::vector<std::string> leg_places{};        ///< of the legs in their document, for messages
-    std::string place{};                          ///< of the survey in its document, for messages
+    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages
+    std::string place{};                          ///< place of the survey in its document, for messages
     unsigned threads = 0;                         ///< threads that build the scene; 0: all
     CityReader city_models{};                     ///< empty: CityGML files are an error
   };
 
   /// Size of a loaded scene.
   struct Scene {
-    Vec3 min{}, max{};                                 ///< bounding box in the world [m]
-    std::size_t parts = 0, moving = 0, triangles = 0;  ///< numbers of them; some parts move
-    std::size_t memory = 0;                            ///< shared data counts once [byte]
+    Vec3 min{}, max{};                                 ///< corners of its bounding box, in the world [m]
+    std::size_t parts = 0, moving = 0, triangles = 0;  ///< numbers; `moving` of the parts move
+    std::size_t memory = 0;                            ///< memory held; shared data counts once [byte]
     bool empty = true;                                 ///< true: no bounding box
   };
 

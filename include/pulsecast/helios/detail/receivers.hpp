@@ -25,7 +25,7 @@ namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-/// Bins of a channel, at most a pulse long; a pulse has `WaveformSettings::max_samples` at most [s].
+/// Bins of a channel, of at most a pulse; that has `WaveformSettings::max_samples` at most [s].
 [[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
   constexpr double most = WaveformSettings::max_samples;
   const double bin = channel.waveform.bin_size, length = channel.pulse_length;
@@ -76,8 +76,8 @@ namespace detail {
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and
 /// `maxFullwaveRange_ns` are one-way times of light and count twice; `binSize_ns` is two-way time.
-/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks: a
-/// mean range between water and its bottom is meaningless. The library's threshold replaces that of
+/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks:
+/// a mean range between water and its bottom is meaningless. The library's threshold replaces that of
 /// HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
@@ -150,8 +150,8 @@ template <EchoWidth Width>
 template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
-/// The same by the library's physics: the footprint has the second moments of the beam, the receiver
-/// the bandwidth of the pulse. Noise is a sixth of the minimum power: false echoes are rare.
+/// The same by the library's physics: the footprint has the second moments of the beam, the
+/// receiver the bandwidth of the pulse. Noise is a sixth of the minimum power: false echoes are rare.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

@@ -37,13 +37,13 @@ struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
   AnyOptic optic{};
-  Tick ahead{};                                          ///< of the optic's clock
-  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< before the head turns it
+  Tick ahead{};                                          ///< lead of the optic's clock
+  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< channel, before the head turns it
   RotatingHead head{.angular_rate = 0};
   std::shared_ptr<const Formula> deflection_error{};  ///< of the deflection, by it [rad]
   std::shared_ptr<const Formula> head_error{};        ///< of the head, by the deflection [rad]
   std::shared_ptr<const Formula> range_error{};       ///< of the range, by the deflection [m]
-  double head_zero_threshold = 0;                     ///< of `head_error`'s argument, from k pi [rad]
+  double head_zero_threshold = 0;                     ///< minimum distance of its argument from k pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);

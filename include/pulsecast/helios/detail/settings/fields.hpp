@@ -20,12 +20,12 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
-/// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name, unit
-/// and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit them.
+/// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name,
+/// unit and limits in documents. Validation, XML, Python and the tables of docs/surveys.md visit them.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Visitor of the members of settings, in the order of documents; sets them only if it `reads`. This
-/// one does nothing.
+/// Visitor of the members of settings, in the order of documents; sets them only if it `reads`.
+/// This one does nothing.
 class FieldIo {
  public:
   using Fields = std::function<void(FieldIo&)>;

@@ -22,7 +22,7 @@ using pulsecast::KeptReturns;
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
-  double scan_product_max = radians(1e6);  ///< half angle by rate; `scanProduct` in deg Hz [rad/s]
+  double scan_product_max = radians(1e6);  ///< half angle times rate; `scanProduct` in deg Hz [rad/s]
 
   void fields(FieldIo& io) { io.number("scanProduct", scan_product_max, units::degree_hertz, 1e-3, 1e12); }
   bool operator==(const OscillatingOptic&) const = default;
@@ -53,7 +53,7 @@ struct LineOptic {
 
 /// One rotating glass wedge.
 struct RisleyPrism {
-  double angle = 0;             ///< of the entry face; negative: exit face. `angle1_deg`... [rad]
+  double angle = 0;             ///< wedge: entry face; negative: exit face. `angle1_deg`... [rad]
   double rotation_rate = 0;     ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
   double refractive_index = 1;  ///< `refrIndex1`...
 
@@ -89,7 +89,7 @@ inline constexpr std::array<OpticSettings, 5> default_optics{OscillatingOptic{},
 /// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
   double bin_size = 0.25e-9;       ///< `binSize_ns` [s]
-  std::optional<double> window{};  ///< half width, default a quarter of the pulse; `winSize_ns` [s]
+  std::optional<double> window{};  ///< half width at peaks, default a quarter pulse; `winSize_ns` [s]
   int rings = 3;                   ///< of subrays, with the centre; `beamSampleQuality`
   double duration_max = 0;         ///< 0: no limit; `maxFullwaveRange_ns` [s]
 
@@ -104,13 +104,13 @@ struct FullWaveformSettings {
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
-/// Formulas of errors, of the deflection THETA: `<deflectionError>`, `<headError>`, `<rangeError>`.
+/// Formulas of errors, by the deflection: `<deflectionError>`, `<headError>`, `<rangeError>`.
 struct ErrorFormulas {
-  std::string deflection{};        ///< of the deflection; `expr` [rad]
-  std::string head{};              ///< of the head angle; `expr` [rad]
-  double head_zero_threshold = 0;  ///< kept from 0 and pi in `head`; `zeroSinThreshold_deg` [rad]
-  std::string range{};             ///< of the range; `expr` [m]
-  std::string range_noise{};       ///< factor, in t, the range [m]; `distanceMeasurementError`
+  std::string deflection{};        ///< error of the deflection [rad]; `expr` in THETA
+  std::string head{};              ///< error of the head angle [rad]; `expr` in THETA
+  double head_zero_threshold = 0;  ///< distance kept from 0 and pi; `zeroSinThreshold_deg` [rad]
+  std::string range{};             ///< error of the range [m]; `expr` in THETA
+  std::string range_noise{};       ///< noise factor, by the range t [m]; `distanceMeasurementError`
 
   bool operator==(const ErrorFormulas&) const = default;
 };
@@ -129,7 +129,7 @@ struct ChannelSettings {
   double divergence = 0.3e-3;            ///< full angle at 1/e^2; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;            ///< full width at half maximum; `pulseLength_ns` [s]
   double average_power = 4;              ///< `averagePower_w` [W]
-  std::optional<double> beam_quality{};  ///< M^2, default a point; `beamQualityFactor`
+  std::optional<double> beam_quality{};  ///< M^2, default a point source; `beamQualityFactor`
   double wavelength = 1064e-9;           ///< `wavelength_nm` [m]
   double efficiency = 0.99;              ///< `opticalEfficiency`
   double receiver_diameter = 0.15;       ///< `receiverDiameter_m` [m]
@@ -138,8 +138,8 @@ struct ChannelSettings {
   double range_min = 0;                  ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
   int returns_max = 0;                                         ///< per pulse; 0: no limit. `maxNOR`
-  KeptReturns returns_kept = KeptReturns::first;               ///< of more; `keptReturns`
-  double received_power_min = 1e-4 / 1e9;                      ///< `receivedEnergyMin_W` in nW [W]
+  KeptReturns returns_kept = KeptReturns::first;               ///< which, of more; `keptReturns`
+  double received_power_min = 1e-4 / 1e9;                      ///< per echo; `receivedEnergyMin_W` in nW [W]
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
@@ -207,7 +207,7 @@ struct ChannelSettings {
 struct ScannerSettings {
   std::string id{};                         ///< `id`
   std::string name{};                       ///< `name`
-  std::vector<double> pulse_rates{};        ///< default first; `pulseFreqs_Hz` [Hz]
+  std::vector<double> pulse_rates{};        ///< supported, default first; `pulseFreqs_Hz` [Hz]
   std::vector<ChannelSettings> channels{};  ///< at least one; they fire together, in order
 
   void validate() const {

@@ -22,12 +22,12 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Filters `rotate`, `scale`, `translate`: `translation + scale * (rotations * vertex)`.
+/// Placement: `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
-  std::vector<RotationList> rotations{};  ///< in sequence; `rotation` of each filter
+  std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation`
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;                      ///< not 0: by the lowest point; -1: contact. `onGround`
+  int on_ground = 0;                      ///< not 0: by its lowest point; -1: at first contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -49,14 +49,14 @@ struct RotationMotion {
   Vec3 axis = axis::up;           ///< non-zero, any length; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};   ///< point on the axis, default the origin; `center` [m]
-  std::optional<double> glide{};  ///< helical only: shift, in lengths of `axis`; `glide`
+  std::optional<double> glide{};  ///< helical only: shift along it, in its lengths; `glide`
 
   bool operator==(const RotationMotion&) const = default;
 };
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = axis::up;       ///< of a plane through the origin, any length; `ortho`
+  Vec3 normal = axis::up;       ///< of a plane through the origin; non-zero, any length. `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
@@ -75,7 +75,7 @@ struct RotoreflectionMotion {
 struct MotionSettings {
   std::variant<NoMotion, TranslationMotion, RotationMotion, ReflectionMotion, RotoreflectionMotion> kind{};
   bool about_itself = false;  ///< in a frame at the part's centre; `selfMode`
-  double shift_factor = 0;    ///< times the scene's centre is added; `autoCRS`
+  double shift_factor = 0;    ///< multiple of the scene's centre that is added; `autoCRS`
 
   bool operator==(const MotionSettings&) const = default;
 };
@@ -125,10 +125,10 @@ struct AttributeSettings {
 
 /// `<part>`
 struct PartSettings {
-  std::string id{};                               ///< `id`, default its number
+  std::string id{};                               ///< `id`; default: number of files before it
   PartSource source{};                            ///< loading filter
   TransformSettings transform{};                  ///< placing filters
-  int dynamic_step = 1;                           ///< updates per motion step; `dynStep`
+  int dynamic_step = 1;                           ///< scene updates per motion step; `dynStep`
   std::optional<double> dynamic_interval{};       ///< if the scene has one; `dynTimeStep` [s]
   std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: at rest
   std::vector<SwapSettings> swaps{};              ///< in sequence
@@ -160,7 +160,7 @@ struct LightSettings {
   double share_min = 1e-4;      ///< minimum share of a subray that is followed; `leastShare`
   int orders = 1;               ///< maximum number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
-  double field_of_view = 2e-3;  ///< full angle, for more than one order; `fieldOfView_deg` [rad]
+  double field_of_view = 2e-3;  ///< receiver's full angle, if orders > 1; `fieldOfView_deg` [rad]
 
   void fields(FieldIo& io) {
     io.whole("passages", passages, 0, 32);
@@ -248,9 +248,9 @@ struct SceneSettings {
   std::string id{};                          ///< `id`
   std::string name{};                        ///< `name`
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
-  std::optional<double> dynamic_interval{};  ///< instead of `dynStep`; `dynTimeStep` [s]
+  std::optional<double> dynamic_interval{};  ///< of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
-  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; none: rays end at surfaces
+  std::vector<LightSettings> light{};   ///< `<light>`: the first; without it and media, rays end at surfaces
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
   void fields(FieldIo& io) {

@@ -24,7 +24,7 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text::lower(line.substr(open + 1, line.find(line[open], open + 1) - open - 1));
 }
 
-/// Place of the first byte that is no part of a character in UTF-8, or the end. Source: RFC 3629, 4.
+/// Place of the first byte that is not in a UTF-8 character, or the end. Source: RFC 3629, 4.
 [[nodiscard]] inline std::size_t first_not_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   for (std::size_t i = 0; i < text.size();) {
