@@ -14,15 +14,15 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path> assets{};  ///< first search folders; those of survey and document follow
-  bool channel_files = false;                   ///< each channel gets a file named by its id: ambiguous ids are refused
+  std::vector<std::filesystem::path> assets{};  ///< searched before those of the documents
+  bool channel_files = false;                   ///< for files named by channel ids: unique ones
 };
 
 /// Content of a survey document.
 struct SurveyDocument {
   SurveySettings survey{};                ///< settings of the survey
-  std::vector<std::string> warnings{};    ///< warnings, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
-  std::vector<std::string> leg_places{};  ///< position of each leg, as in `survey.xml:12:5`, for `SurveyBuildOptions`
+  std::vector<std::string> warnings{};    ///< as in `survey.xml:3:10: 'numRuns' has no effect`
+  std::vector<std::string> leg_places{};  ///< position of each leg, as in `survey.xml:12:5`
   std::string place{};                    ///< position of the survey
 };
 
@@ -34,13 +34,12 @@ struct AssetDocument {
   std::vector<std::string> warnings{};        ///< as in `SurveyDocument`
 };
 
-/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. The settings are
-/// resolved: overrides of the survey are in scanner and platform, for every channel. Throws `XmlFaults` with all
-/// faults, or another `FileError` if the file cannot be read.
+/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's
+/// files. Scanner and platform have the survey's overrides. @throws XmlFaults (all faults), FileError
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
-/// Writes a survey with its scanner, platform and scene as one document. Reading it gives equal settings. Exception:
-/// values from a program may differ in the last digit where the document's unit is not SI.
+/// Writes a survey with scanner, platform and scene as one document. Reading it gives equal
+/// settings, but for the last digit of a program's values where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
 [[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< text of that document
 
@@ -58,18 +57,6 @@ void write_assets(const std::filesystem::path& path, const AssetDocument& assets
 #include <pulsecast/helios/detail/xml/writer.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
-
-namespace detail {
-
-inline DocumentWriter document_of(const AssetDocument& assets) {
-  DocumentWriter document;
-  for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
-  for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
-  for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
-  return document;
-}
-
-}  // namespace detail
 
 PULSECAST_INLINE SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options) {
   detail::SurveyReader reader(path, options.assets, options.channel_files);
@@ -92,16 +79,20 @@ PULSECAST_INLINE AssetDocument read_assets(const std::filesystem::path& path, co
 }
 
 PULSECAST_INLINE void write_survey(const std::filesystem::path& path, const SurveySettings& survey) {
-  detail::document_of(survey).write(path);
+  detail::write_text(path, xml_text(survey));
 }
-
 PULSECAST_INLINE std::string xml_text(const SurveySettings& survey) { return detail::document_of(survey).text(); }
 
 PULSECAST_INLINE void write_assets(const std::filesystem::path& path, const AssetDocument& assets) {
-  detail::document_of(assets).write(path);
+  detail::write_text(path, xml_text(assets));
 }
-
-PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
+PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) {
+  detail::DocumentWriter document;
+  for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
+  for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
+  for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
+  return document.text();
+}
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -24,19 +24,17 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// State of an instrument beside its settings.
 struct InstrumentOptions {
-  Rotation boresight = no_rotation;  ///< that of its `Mount`: the beam origins are along the axes of the body
-  double optic_time = 0;             ///< running time of the optic before, for a scan that continues another [s]
+  Rotation boresight = no_rotation;  ///< of its `Mount`: beam origins are along the body's axes
+  double optic_time = 0;             ///< earlier running time of the optic [s]
 };
 
-/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: all of its channels, which fire
-/// together, with their optics, head and error formulas. Put it on any trajectory: `Platform{trajectory, mount,
-/// Instrument{scanner, settings, 60}}`. XML surveys consist of it, too. `settings.active` is for `Leg::active`; without
-/// it, only size, duration and emitters have a meaning.
+/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: its channels,
+/// which fire together, with optics, head and error formulas. For any trajectory: `Platform{
+/// trajectory, mount, Instrument{scanner, settings, 60}}`. If inactive, it has no pulses.
 class Instrument {
  public:
   using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
-  /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at
-  /// fault
+  /// `duration` is rounded up to whole slots [s]. @throws SettingError with the attribute at fault
   Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,
              const InstrumentOptions& options = {});
 
@@ -48,15 +46,13 @@ class Instrument {
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
     return channels_.pulse(i);
   }
-
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return channels_.pulse_lanes(i, count);
   }
-
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty
-  /// without such errors.
+  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range;
+  /// empty without errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
@@ -75,12 +71,11 @@ static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument> && SkipsB
 /// Options of the receivers of a scanner.
 struct ReceiverOptions {
   double record_length = 0;  ///< length of the waveforms that are kept; 0: none [s]
-  bool noise = false;        ///< adds noise: a quarter of the minimum power of an echo, as its standard deviation
+  bool noise = false;        ///< adds noise: a quarter of the minimum power of an echo
 };
 
-/// Receivers of a scanner for `Survey`, each distinct one of its channels once: footprint, aperture and detector. All
-/// sample waveforms by the smallest bins of the channels. Throws a `SettingError`, or a `std::invalid_argument` if a
-/// noise formula is invalid.
+/// Receivers of a scanner for `Survey`, each distinct one once, with the smallest bins of all.
+/// @throws SettingError, or std::invalid_argument for an invalid noise formula
 template <EchoWidth Width = NoWidth>
 [[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(
     const ScannerSettings& scanner, const ReceiverOptions& options = {}) {
@@ -101,38 +96,29 @@ template <EchoWidth Width = NoWidth>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-
-[[nodiscard]] inline std::vector<SurveyChannel> instrument_channels(const ScannerSettings& scanner,
-                                                                    const LegScannerSettings& settings, double duration,
-                                                                    const InstrumentOptions& options) {
-  if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
-  scanner.validate();
-  settings.validate();
-  const double rate = pulse_rate_of(scanner, settings);
-  require_within("Instrument::duration", duration, 0, 1e15, "s");
-  require_within("Instrument::duration (pulses)", duration * rate, 0, 1e15, "");
-  const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
-  const bool fires = slots > 0 && settings.active;  // otherwise, optics are never called
-  const ReceiverGroups receivers(scanner);
-  std::vector<SurveyChannel> channels;
-  for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
-    const ChannelSettings& channel = scanner.channels[c];
-    SurveyOptic optic;
-    if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
-    channels.emplace_back(std::move(optic), Scanner{.pulse_rate = rate,
-                                                    .pulses = slots,
-                                                    .laser = survey_laser(channel, settings),
-                                                    .receiver = receivers.of_channel[c]});
-  }
-  return channels;
-}
-
-}  // namespace detail
-
 PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings,
                                         double duration, const InstrumentOptions& options)
-    : channels_(detail::instrument_channels(scanner, settings, duration, options)) {}
+    : channels_([&] {
+        if (scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
+        scanner.validate();
+        settings.validate();
+        const double rate = pulse_rate_of(scanner, settings);
+        require_within("Instrument::duration", duration, 0, 1e15, "s");
+        require_within("Instrument::duration (pulses)", duration * rate, 0, 1e15, "");
+        const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
+        const bool fires = slots > 0 && settings.active;  // otherwise, optics are never called
+        const ReceiverGroups receivers(scanner);
+        std::vector<SurveyChannel> channels;
+        for (std::size_t c = 0; c < scanner.channels.size(); ++c) {
+          const ChannelSettings& channel = scanner.channels[c];
+          SurveyOptic optic;
+          if (fires) optic = survey_optic(channel, settings, rate, options.boresight, options.optic_time);
+          const Laser laser = survey_laser(channel, settings);
+          const Scanner fired{.pulse_rate = rate, .pulses = slots, .laser = laser, .receiver = receivers.of_channel[c]};
+          channels.emplace_back(std::move(optic), fired);
+        }
+        return channels;
+      }()) {}
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -9,19 +9,17 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
-/// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it in one source file of a
-/// program.
+/// Loading of surveys: slow to compile, unless `pulsecast::compiled` is linked. Include it once.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct BuiltParts;
 struct SurveySettings;
 
-/// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one. Parts:
-/// helios/scene.hpp.
+/// Gives the parts of a repetition's scene: the result of `build`, or an equal earlier one.
 using PartProvider = std::function<BuiltParts(int repetition, const std::function<BuiltParts()>& build)>;
 
-/// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` with leg or part
-/// and attribute, or a `FileError`.
+/// Loads the scene of a survey and plans its legs, for the first repetition.
+/// @throws SettingError with leg or part and attribute, or FileError
 [[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
                                                           const Simulation::Settings& settings = {},
                                                           const PartProvider& provider = {});

@@ -40,8 +40,8 @@ struct SceneBuildOptions {
   double pulse_rate = 100e3;      ///< pulse rate of the first leg, for motions per pulse [Hz]
   std::uint64_t seed = 0;         ///< seed of random properties of the scene
   bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
-  bool tilted_leaves = false;     ///< leaves of voxels send back as tilted surfaces do, see `TransmissiveVoxels`
-  unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
+  bool tilted_leaves = false;     ///< as in `TransmissiveVoxels`
+  unsigned threads = 0;           ///< for reading and building, at most `max_threads`; 0: all
   CityReader city_models{};       ///< reader of CityGML files; empty: they are an error
 
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
@@ -51,7 +51,7 @@ struct SceneBuildOptions {
 struct BuiltParts {
   std::vector<SurveyPart> parts{};          ///< parts of the scene
   std::vector<std::string> warnings{};      ///< warnings of the construction
-  std::set<std::filesystem::path> files{};  ///< files that were looked for, those that are missing, too
+  std::set<std::filesystem::path> files{};  ///< files that were looked for, also missing ones
 };
 
 /// Raster of heights in the world.
@@ -60,8 +60,7 @@ struct PlacedRaster {
   Placement placement{};  ///< from there to the world
 };
 
-/// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the
-/// same files costs little.
+/// Builds the parts of a scene, with warnings about its files, which are kept for other runs.
 class SceneBuilder {
  public:
   /// Keeps the settings; `parts` reads the files. @throws SettingError for settings out of range
@@ -74,13 +73,13 @@ class SceneBuilder {
   /// Parts in a run, from 0.
   [[nodiscard]] std::vector<SurveyPart> parts(int run = 0);
 
-  /// Reads the rasters of heights alone, placed as in the first run; those that stand on other ground are not lifted.
+  /// Reads the rasters of heights alone, placed as in the first run, but without `onGround`.
   [[nodiscard]] std::vector<PlacedRaster> rasters();
 
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// Files that `parts` has looked for so far, those that are missing, too; without the folders of spectra.
+  /// Files that `parts` has looked for, also missing ones; without the folders of spectra.
   [[nodiscard]] const std::set<std::filesystem::path>& files() const noexcept { return files_; }
 
  private:
@@ -102,12 +101,13 @@ class SceneBuilder {
     std::optional<Raster> codes;
     std::vector<CodeMaterial> listed;
   };
+  using Files = std::vector<std::filesystem::path>;
   using Load = std::function<void(const std::filesystem::path&, std::vector<Loaded>&)>;
 
   void warn(const std::vector<std::string>& what);
-  void add_files(const std::vector<std::filesystem::path>& looked_for);
-  const std::vector<Loaded>& load(const PartSource& source);  // each source once
-  std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load);
+  void add_files(const Files& looked_for) { files_.insert(looked_for.begin(), looked_for.end()); }
+  const std::vector<Loaded>& load(const PartSource& source);
+  std::vector<Loaded> each(const Files& files, const Load& load);
   std::vector<Loaded> read(const ObjSource& source);
   std::vector<Loaded> read(const GeoTiffSource& source);
   std::vector<Loaded> read(const XyzSource& source);
@@ -127,7 +127,6 @@ class SceneBuilder {
   static Box box_of(const SurveyPart& part);
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);
   void move(std::vector<SurveyPart>& all);
-  [[nodiscard]] double step_of(const PartSettings& part) const;
 
   SceneSettings settings_;
   SceneBuildOptions options_;

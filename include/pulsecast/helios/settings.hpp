@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
@@ -21,10 +20,9 @@
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds
-/// the survey. Templates, references and inheritance are resolved: each struct is complete. The comment of a member
-/// names its attribute or element, the function `fields` its limits, which `check_fields` checks. A 0 may mean a
-/// default or none.
+/// Settings of a survey document, in SI units and radians; templates, references and inheritance
+/// are resolved. The comment of a member names its attribute or element, `fields` its limits, which
+/// `check_fields` checks. A 0 may mean a default or none.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Column of each quantity, from 0.
@@ -52,14 +50,14 @@ struct TrajectoryIndices {
 /// Trajectory of an interpolated platform: attributes of `<platformSettings>`.
 struct TrajectorySettings {
   std::filesystem::path file{};                ///< `trajectory`
-  std::optional<char> separator{};             ///< default: detected; `trajectory_separator`, or `trajectory_seperator`
-  std::optional<TrajectoryIndices> columns{};  ///< default: from the header of the file; `tIndex`...
+  std::optional<char> separator{};             ///< default: detected; `trajectory_separator`
+  std::optional<TrajectoryIndices> columns{};  ///< default: by the file's header; `tIndex`...
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
-  bool sync_clock = false;                     ///< start the clock at the time in the file; `syncGPSTime`
-  bool teleports = false;  ///< jump to the start, like a leg without pulses: the optic restarts. `teleportToStart`
-  std::optional<double> start{};  ///< on the clock of the file, default its first sample; `tStart` [s]
-  std::optional<double> end{};    ///< on the clock of the file, default its last sample; `tEnd` [s]
+  bool sync_clock = false;                     ///< clock starts at the file's time; `syncGPSTime`
+  bool teleports = false;                      ///< jump to the start; the optic restarts. `teleportToStart`
+  std::optional<double> start{};               ///< on the file's clock, default its first; `tStart` [s]
+  std::optional<double> end{};                 ///< on that clock, default its last; `tEnd` [s]
 
   void fields(FieldIo& io) {
     io.file("trajectory", file);
@@ -88,12 +86,12 @@ struct TrajectorySettings {
       if (!io.reads() && separator) given.emplace(1, *separator);
       io.text(name, given);
       if (!io.reads()) return;
-      const bool is_one =
-          given && given->size() == 1 && std::string_view(",;\t ").find(*given) != std::string_view::npos;
-      if (is_one) separator = given->front();
-      if (given && !is_one)
-        io.warn(name, FieldIo::said(name, *given) +
-                          " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
+      if (!given) continue;
+      if (given->size() == 1 && std::string_view(",;\t ").find(*given) != given->npos)
+        separator = given->front();
+      else
+        io.warn(name,
+                said(name, *given) + " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
     }
   }
   bool operator==(const TrajectorySettings&) const = default;
@@ -101,10 +99,10 @@ struct TrajectorySettings {
 
 /// `<platformSettings>` of a leg
 struct LegPlatformSettings {
-  Vec3 position{};           ///< start of the leg, in the coordinates of the scene; `x`, `y`, `z` [m]
-  bool on_ground = false;    ///< take z from the ground; `onGround`
-  double speed = 70;         ///< `movePerSec_m` [m/s]
-  bool smooth_turn = false;  ///< multicopter: turn without a stop; `smoothTurn`, or `stopAndTurn="false"`
+  Vec3 position{};                           ///< start of the leg, in the scene; `x`, `y`, `z` [m]
+  bool on_ground = false;                    ///< take z from the ground; `onGround`
+  double speed = 70;                         ///< `movePerSec_m` [m/s]
+  bool smooth_turn = false;                  ///< turn without a stop; `smoothTurn`, `stopAndTurn="false"`
   std::optional<double> yaw_at_departure{};  ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
@@ -124,12 +122,10 @@ struct LegPlatformSettings {
       io.warn("slowdownEnabled",
               "slowdownEnabled of false has no effect: a multicopter slows down as it must to turn and to stop");
     io.number("yawAtDeparture_deg", yaw_at_departure, units::degree, -3600, 3600);
-    if (!io.reads() && trajectory) return trajectory->fields(io);
-    if (!io.reads()) return;
-    const TrajectorySettings before = trajectory.value_or(TrajectorySettings{});
-    TrajectorySettings read = before;
-    read.fields(io);
-    if (read != before || io.has("trajectory")) trajectory = std::move(read);
+    TrajectorySettings changed = trajectory.value_or(TrajectorySettings{});
+    const TrajectorySettings before = changed;
+    if (io.reads() || trajectory) changed.fields(io);
+    if (changed != before || io.has("trajectory")) trajectory = std::move(changed);
   }
   bool operator==(const LegPlatformSettings&) const = default;
 };
@@ -137,17 +133,17 @@ struct LegPlatformSettings {
 /// `<scannerSettings>` of a leg
 struct LegScannerSettings {
   bool active = true;                          ///< `active`
-  double pulse_rate = 0;                       ///< default: the scanner's first; `pulseFreq_hz` [Hz]
+  double pulse_rate = 0;                       ///< 0: the scanner's first; `pulseFreq_hz` [Hz]
   double scan_rate = 0;                        ///< `scanFreq_hz` [Hz]
-  std::optional<double> scan_angle{};          ///< half angle, default the device's limit; `scanAngle_deg` [rad]
+  std::optional<double> scan_angle{};          ///< half, default the maximum; `scanAngle_deg` [rad]
   std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
   std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
   double head_rate = 0;                        ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double> divergence{};  ///< of all channels; by default each one's own. `beamDivergence_rad` [rad]
-  double trajectory_interval = 0;      ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;  ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
+  std::optional<double> divergence{};          ///< default: channels'; `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;              ///< of records; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;                          ///< run before the first pulse; `opticsWarmupPhase_s` [s]
 
   void fields(FieldIo& io) {
     io.flag("active", active);
@@ -170,7 +166,7 @@ struct LegScannerSettings {
 /// `<leg>`
 struct LegSettings {
   std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
-  std::optional<double> duration_max{};  ///< upper limit of its duration; `maxDuration_s` of leg or scannerSettings [s]
+  std::optional<double> duration_max{};  ///< `maxDuration_s` of leg or scannerSettings [s]
   LegPlatformSettings platform{};        ///< `platformSettings` of the leg
   LegScannerSettings scanner{};          ///< `scannerSettings` of the leg
 
@@ -181,7 +177,7 @@ struct LegSettings {
   bool operator==(const LegSettings&) const = default;
 };
 
-/// True if a leg of a moving platform stays in place: the next one begins there, too, or there is none.
+/// True if a leg of a moving platform stays in place: the next one begins there, or there is none.
 [[nodiscard]] inline bool stays_in_place(const std::vector<LegSettings>& legs, std::size_t k) {
   if (k + 1 >= legs.size()) return legs.size() == 1;
   const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;
@@ -225,17 +221,18 @@ enum class NoiseDistribution : std::uint8_t {
 /// Random number added at each pulse: `<positionXNoise>`...
 struct NoiseSettings {
   NoiseDistribution distribution = NoiseDistribution::normal;  ///< `type`
-  double mean = 0;                                             ///< normal distribution; `mean` [m] or [rad]
-  double deviation = 1;                                        ///< normal distribution; `stdev` [m] or [rad]
-  double low = 0;                                              ///< uniform distribution; `min` [m] or [rad]
-  double high = 1;                                             ///< uniform distribution; `max` [m] or [rad]
+  double mean = 0;                                             ///< of `normal`; `mean` [m or rad]
+  double deviation = 1;                                        ///< of `normal`; `stdev` [m or rad]
+  double low = 0;                                              ///< of `uniform`; `min` [m or rad]
+  double high = 1;                                             ///< of `uniform`; `max` [m or rad]
   bool clipped = false;                                        ///< `clipEnabled`
   double clip_low = 0;                                         ///< `clipMin` [m] or [rad]
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
   int lifespan = 1;  ///< number of pulses per random number, 0 for all; `fixedLifespan`
 
   void fields(FieldIo& io) {
-    io.choice("type", distribution, {{"NORMAL", NoiseDistribution::normal}, {"UNIFORM", NoiseDistribution::uniform}});
+    using enum NoiseDistribution;
+    io.choice("type", distribution, {{"NORMAL", normal}, {"UNIFORM", uniform}});
     io.number("mean", mean, units::one, -1e6, 1e6);
     io.number("stdev", deviation, units::one, 0, 1e6);
     io.number("min", low, units::one, -1e6, 1e6);
@@ -244,7 +241,7 @@ struct NoiseSettings {
     io.number("clipMin", clip_low, units::one, -1e6, 1e6);
     io.number("clipMax", clip_high, units::one, -1e6, 1e6);
     io.whole("fixedLifespan", lifespan, 0, 1'000'000'000);
-    if (distribution == NoiseDistribution::uniform && !(low <= high)) io.fault("max", "max is below min");
+    if (distribution == uniform && !(low <= high)) io.fault("max", "max is below min");
     if (clipped && !(clip_low <= clip_high)) io.fault("clipMax", "clipMax is below clipMin");
   }
   bool operator==(const NoiseSettings&) const = default;
@@ -252,14 +249,14 @@ struct NoiseSettings {
 
 /// `<platform>`, with the overrides of the survey.
 struct PlatformSettings {
-  std::string id{};                                      ///< `id`
-  std::string name{};                                    ///< `name`
-  PlatformKind kind = PlatformKind::stationary;          ///< `type`
-  MountSettings mount{};                                 ///< pose of the instrument on the body; `<scannerMount>`
-  MulticopterDynamics multicopter{};                     ///< multicopter only
-  RotationSpec rotation_spec = RotationSpec::arinc_705;  ///< interpolated only; `rotationSpec`
-  std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
-  std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
+  std::string id{};                                              ///< `id`
+  std::string name{};                                            ///< `name`
+  PlatformKind kind = PlatformKind::stationary;                  ///< `type`
+  MountSettings mount{};                                         ///< on the body; `<scannerMount>`
+  MulticopterDynamics multicopter{};                             ///< multicopter only
+  RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated; `rotationSpec`
+  std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`... [m]
+  std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`... [rad]
 
   bool operator==(const PlatformSettings&) const = default;
 };
@@ -276,14 +273,14 @@ struct LegOffsetSettings {
   bool operator==(const LegOffsetSettings&) const = default;
 };
 
-/// `<survey>`. Its overrides of the scanner (`<FWFSettings>`, `<detectorSettings>`) and the platform (`<scannerMount>`,
-/// noise) are stored there.
+/// `<survey>`. Its overrides of scanner and platform (`<FWFSettings>`, `<detectorSettings>`,
+/// `<scannerMount>`, noise) are stored there.
 struct SurveySettings {
   std::string name{};                             ///< default: that of the file; `name`
   std::optional<std::uint64_t> seed{};            ///< `seed`
   std::optional<LegOffsetSettings> leg_offset{};  ///< `legRandomOffset`...
   ScannerSettings scanner{};                      ///< `scanner`
-  PlatformSettings platform{};                    ///< `platform`, or `basePlatform` if that is interpolated
+  PlatformSettings platform{};                    ///< `platform`, or `basePlatform` if interpolated
   SceneSettings scene{};                          ///< `scene`
   std::vector<LegSettings> legs{};                ///< `<leg>`, in this order
 
@@ -300,7 +297,7 @@ struct SurveySettings {
   return legs_connect(survey.platform.kind) && stays_in_place(survey.legs, leg);
 }
 
-/// True if a leg only ends the one before it, without pulses: the last of several of a moving platform.
+/// True if a leg only ends the one before it, without pulses: a moving platform's last of several.
 [[nodiscard]] inline bool only_ends(const SurveySettings& survey, std::size_t leg) {
   return legs_connect(survey.platform.kind) && leg > 0 && leg + 1 == survey.legs.size();
 }

@@ -19,7 +19,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
-/// Surveys of XML documents, ready to run. `make_simulation` makes them, and `run` of run.hpp runs them.
+/// Surveys of XML documents, ready to run: `make_simulation` makes them, `run` runs them.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;
@@ -33,8 +33,8 @@ struct ReceiverOverrides {
   bool operator==(const ReceiverOverrides&) const = default;
 };
 
-/// Survey with its scene loaded and its legs planned: one of its repetitions. Immutable; other repetitions and
-/// receivers give other simulations. All functions may be called by several threads at once.
+/// Survey with its scene loaded and its legs planned: one of its repetitions. Immutable, and safe
+/// for several threads; other repetitions and receivers give other simulations.
 class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
@@ -45,30 +45,29 @@ class Simulation {
     Attributes attributes{};  ///< named numbers of its points; empty without
   };
 
-  /// Options of a simulation.
   struct Settings {
-    std::uint64_t seed = 0;        ///< seed of all random numbers
-    bool echo_width = false;       ///< fit echo widths
-    bool waveforms = false;        ///< keep the waveforms of echoes
-    bool las_waveforms = false;    ///< cut and sample waveforms to the limits of LAS
-    bool waveform_noise = false;   ///< add receiver noise
-    bool fixed_incidence = false;  ///< perpendicular incidence on all surfaces, for scattering
-    bool library_physics = false;  ///< true: the library's own physics, not that of HELIOS++: docs/surveys.md
-    bool light_paths = false;  ///< true: multi-bounce light from smooth surfaces, also without `<light>` or `<medium>`
-    bool platform_noise = true;                   ///< true: as in the survey; false: none
-    bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
-    std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
+    std::uint64_t seed = 0;                       ///< seed of all random numbers
+    bool echo_width = false;                      ///< fit echo widths
+    bool waveforms = false;                       ///< keep the waveforms of echoes
+    bool las_waveforms = false;                   ///< cut and sample waveforms to the limits of LAS
+    bool waveform_noise = false;                  ///< add receiver noise
+    bool fixed_incidence = false;                 ///< perpendicular incidence, for scattering
+    bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
+    bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
+    bool platform_noise = true;                   ///< as in the survey; false: none
+    bool leg_noise = true;                        ///< random leg offsets as in the survey; false: none
+    std::vector<std::filesystem::path> assets{};  ///< their folders `spectra` describe materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
-    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
-    std::string place{};                          ///< place of the survey in its document, for messages; may be empty
+    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages
+    std::string place{};                          ///< place of the survey in its document, for messages
     unsigned threads = 0;                         ///< threads that build the scene; 0: all
-    CityReader city_models{};                     ///< reader of CityGML files; empty: they are an error
+    CityReader city_models{};                     ///< empty: CityGML files are an error
   };
 
   /// Size of a loaded scene.
   struct Scene {
-    Vec3 min{}, max{};                                 ///< corners of the bounding box, in the world [m]
-    std::size_t parts = 0, moving = 0, triangles = 0;  ///< number of parts, of moving ones among them, of triangles
+    Vec3 min{}, max{};                                 ///< corners of its bounding box, in the world [m]
+    std::size_t parts = 0, moving = 0, triangles = 0;  ///< numbers; `moving` of the parts move
     std::size_t memory = 0;                            ///< memory held; shared data counts once [byte]
     bool empty = true;                                 ///< true: no bounding box
   };
@@ -84,18 +83,16 @@ class Simulation {
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const noexcept = 0;
   /// Legs and their pulses: helios/survey.hpp.
   [[nodiscard]] virtual const CompiledSurvey& compiled() const noexcept = 0;
-  /// Size of the scene.
   [[nodiscard]] virtual Scene scene() const = 0;
-  /// Surfaces, colours and attributes of points, as `io::points_of`. They may outlive the simulation.
+  /// Surfaces, colours and attributes of points, as `io::points_of`; may outlive the simulation.
   /// @throws SettingError if two parts of one object have different attributes of a name
   [[nodiscard]] virtual io::PointSettings points() const = 0;
 
   /// Number of repetitions of the survey, each with its own scene.
   [[nodiscard]] virtual int repetitions() const = 0;
-  /// Loads the scene of a repetition, from 0, and plans its legs, with the survey's receivers. Throws as
-  /// `make_simulation`.
+  /// Loads a repetition, from 0, with the survey's receivers. Throws as `make_simulation`.
   [[nodiscard]] virtual std::unique_ptr<Simulation> repetition(int number) const = 0;
-  /// The same scene and legs, with the survey's receivers changed. @throws SettingError for overrides out of range
+  /// The same scene and legs with other receivers. @throws SettingError for overrides out of range
   [[nodiscard]] virtual std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const = 0;
 };
 

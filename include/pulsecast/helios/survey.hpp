@@ -19,7 +19,6 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Runnable survey, with data of its legs.
 struct CompiledSurvey {
-  /// Leg of the survey.
   struct Leg {
     std::size_t number = 0;              ///< index in the document, from 0
     bool active = true;                  ///< true if pulses are emitted
@@ -29,18 +28,17 @@ struct CompiledSurvey {
     double trajectory_interval = 0;      ///< interval of trajectory records; 0: none [s]
     double pulse_rate = 0;               ///< pulse rate [Hz]
   };
-  Legs<SurveyLeg> source;  ///< source of all pulses; each distinct receiver of the scanner's channels has an index
-  std::vector<Leg> legs;   ///< legs, in order of the document
-  std::optional<double> clock_start{};  ///< start of its earliest leg by the clock of a trajectory, if any [s]
+  Legs<SurveyLeg> source;               ///< source of all pulses
+  std::vector<Leg> legs;                ///< legs, in order of the document
+  std::optional<double> clock_start{};  ///< start by the clock of a trajectory, if any [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
-/// Pulses of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and
-/// attribute, or a `FileError` of a trajectory.
+/// Pulses of a survey. @throws SettingError with leg and attribute, FileError of a trajectory
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                             const SurveyBuildOptions& options = {});
 
-/// Checks legs and scanner, without loading the scene. Throws a `SettingError` or `FileError`; returns warnings.
+/// Checks legs and scanner without the scene; returns warnings. @throws SettingError, FileError
 [[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey,
                                                            const std::vector<std::string>& leg_places = {});
 
@@ -81,42 +79,43 @@ class SurveyCompiler {
     std::unordered_set<std::string> noted;  // limits that an earlier leg reached
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
-      const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
+      const bool active = leg.scanner.active;
+      const std::string name = paths_.leg_name(k);
+      const double rate = naming(name, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
       if (paths_[k].clock) start = Tick::of_seconds(*paths_[k].clock - *paths_.clock_start());
       const double late = follow(k, path, compiled), way = std::max(0.0, paths_[k].duration - late);
       const double duration = in_whole_slots(duration_of(k, way), rate, paths_[k].rounding);
-      if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
-                           brief(duration - way) +
-                           " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
-      require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
-      require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
-      const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
+      if (way > 0 && duration > 1.1 * way && active)
+        warnings.push_back(text::joined(
+            {name, ": the platform arrives after ", brief(way), " s, and stays for ", brief(duration - way),
+             " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival"}));
+      require_within(name + " (duration)", duration, 0, 1e15, "s");
+      require_within(name + " (pulses)", duration * rate, 0, 1e15, "");
+      const double interval = active ? leg.scanner.trajectory_interval : 0;
       if (interval > 0)
-        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records,
-                       "");
-      for (std::size_t c = 0; c < survey_.scanner.channels.size() && leg.scanner.active && !only_ends(survey_, k); ++c)
+        require_within(name + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
+      for (std::size_t c = 0; c < survey_.scanner.channels.size() && active && !only_ends(survey_, k); ++c)
         for (const std::string& note : limit_notes(survey_.scanner, c, leg.scanner, rate))
-          if (noted.insert(note).second) warnings.push_back(paths_.leg_name(k) + ": " + note);
-      if (!leg.scanner.active || teleports(leg)) optic_time = 0;
-      const Mount mount{.lever_arm = survey_.platform.mount.position,
-                        .boresight = survey_.platform.mount.rotation.rotation()};
-      Instrument instrument = paths_.of_leg(k, [&] {
-        return Instrument(survey_.scanner, leg.scanner, duration, {mount.boresight, optic_time});
-      });
+          if (noted.insert(note).second) warnings.push_back(name + ": " + note);
+      const auto& trajectory = leg.platform.trajectory;
+      const bool follows = survey_.platform.kind == PlatformKind::interpolated && trajectory;
+      if (!active || (follows && trajectory->teleports)) optic_time = 0;
+      const MountSettings& mounted = survey_.platform.mount;
+      const Mount mount{.lever_arm = mounted.position, .boresight = mounted.rotation.rotation()};
+      const InstrumentOptions options{mount.boresight, optic_time};
+      Instrument instrument = naming(name, [&] { return Instrument(survey_.scanner, leg.scanner, duration, options); });
       const Tick time = instrument.duration();
-      if (leg.scanner.active) optic_time += time.seconds();
+      if (active) optic_time += time.seconds();
       SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
       if (options_.platform_noise) {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
       const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
-      legs.push_back(
-          {SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), leg.scanner.active, start});
-      const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
+      legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), active, start});
+      const PulseIndex size = active ? legs.back().platform.size() : 0;
       compiled.push_back(
-          {k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
+          {k, active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
       start = start + time;
     }
@@ -126,13 +125,7 @@ class SurveyCompiler {
  private:
   static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
 
-  [[nodiscard]] bool teleports(const LegSettings& leg) const {
-    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory &&
-           leg.platform.trajectory->teleports;
-  }
-
-  /// Sets the path of a leg. A plan continues where the whole slots of the leg before ended. Returns the delay by that
-  /// [s].
+  /// Sets the path of a leg. A plan continues where the leg before ended. Returns the delay [s].
   [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
     const SurveyPath& planned = paths_[k].path;
     const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
@@ -140,19 +133,18 @@ class SurveyCompiler {
     if (!paths_.continues(k)) return 0;
     const double late =
         static_cast<double>(ended.second - planned.start.second) + (ended.fraction - planned.start.fraction);
-    if (std::fabs(late) * before[k - 1].pulse_rate >= 1) return 0;  // cut by `duration_max`, or waiting for the head
+    if (std::fabs(late) * before[k - 1].pulse_rate >= 1) return 0;  // cut, or waiting for the head
     path.start = ended;
     return late;
   }
 
-  /// A duration that is whole slots but for its rounding, without that [s].
+  /// Duration without its rounding, if that makes it whole slots [s].
   [[nodiscard]] static double in_whole_slots(double duration, double rate, double rounding) noexcept {
     const double slots = std::round(duration * rate);
     return std::fabs(duration - slots / rate) <= rounding ? slots / rate : duration;
   }
 
-  /// Duration of a leg of a path that takes `way` [s]: until the platform has arrived and the head has turned, but at
-  /// most `duration_max` [s].
+  /// Duration of a leg: until platform, in `way` [s], and head have arrived, or `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k, double way) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
@@ -181,12 +173,11 @@ class SurveyCompiler {
 
 PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                                const SurveyBuildOptions& options) {
-  const std::vector<std::string> notes =
-      detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); }).notes();
+  const auto document = detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); });
   const LegPaths paths(survey, ground, options);
   CompiledSurvey compiled = detail::SurveyCompiler(survey, paths, options).compile();
-  if (options.leg_places.empty())
-    compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else reported by the reader
+  if (options.leg_places.empty())  // else reported by the reader
+    compiled.warnings.insert(compiled.warnings.begin(), document.notes().begin(), document.notes().end());
   return compiled;
 }
 
@@ -198,7 +189,7 @@ PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettin
     const Receiver receiver = survey_receiver(channel);
     receiver.validate();
     const std::string odd = air_warning(channel.wavelength, receiver);
-    if (!odd.empty() && std::find(warnings.begin(), warnings.end(), odd) == warnings.end()) warnings.push_back(odd);
+    if (!odd.empty() && std::ranges::find(warnings, odd) == warnings.end()) warnings.push_back(odd);
     survey_waveform(channel).validate();
     (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
   }

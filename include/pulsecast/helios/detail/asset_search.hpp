@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include <pulsecast/base/namespace.hpp>
+#include <pulsecast/base/text.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -20,18 +20,17 @@ namespace PULSECAST_NAMESPACE::helios {
 struct AssetMatch {
   std::vector<std::filesystem::path> files{};  ///< absolute, sorted by path
   std::string problem{};                       ///< empty if there are files
-  std::string warning{};                       ///< unusual place of the files; empty if there is none
+  std::string warning{};                       ///< unusual place of the files; empty for others
 };
 
-/// Finds the files that documents name, in the folders of a program. An absolute path is taken as it is. The first
-/// folder that contains a relative one wins. A path that leads out of all folders ranks after the others and gives a
-/// warning.
+/// Finds the files that documents name: absolute, or in the first folder that has them. A path that
+/// leads out of all folders ranks after the others and gives a warning.
 class AssetSearch {
  public:
   explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {
     for (const std::filesystem::path& folder : folders) {
-      std::filesystem::path whole = normal(folder);
-      if (std::find(folders_.begin(), folders_.end(), whole) == folders_.end()) folders_.push_back(std::move(whole));
+      const std::filesystem::path whole = normal(folder);
+      if (std::ranges::find(folders_, whole) == folders_.end()) folders_.push_back(whole);
     }
   }
 
@@ -44,7 +43,7 @@ class AssetSearch {
     const std::vector<std::filesystem::path> places = candidates(name);
     std::error_code ignored;
     for (const std::filesystem::path& place : places)
-      if (std::filesystem::is_regular_file(place, ignored)) return {.files = {place}, .warning = warning(name, place)};
+      if (is_regular_file(place, ignored)) return {.files = {place}, .warning = warning(name, place)};
     return {.problem = problem(name, places, "does not exist")};
   }
 
@@ -129,11 +128,11 @@ class AssetSearch {
 
   [[nodiscard]] bool is_inside(const std::filesystem::path& place) const {
     return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) {
-      return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
+      return std::ranges::mismatch(folder, place).in1 == folder.end();
     });
   }
 
-  /// Warning if the file of a name lies outside the folders; empty otherwise.
+  /// Warning about a file outside the folders; empty for others.
   [[nodiscard]] std::string warning(const std::string& name, const std::filesystem::path& place) const {
     if (std::filesystem::path(name).is_absolute() || is_inside(place)) return "";
     return "is outside the assets folders: " + place.string();
@@ -142,13 +141,9 @@ class AssetSearch {
   [[nodiscard]] std::string problem(const std::string& name, const std::vector<std::filesystem::path>& places,
                                     const char* missing) const {
     if (name.empty()) return "is empty: expected a path";
-    return missing + std::string(": looked for ") + listed(places);
-  }
-
-  [[nodiscard]] static std::string listed(const std::vector<std::filesystem::path>& paths) {
-    std::string text;
-    for (const std::filesystem::path& path : paths) text += (text.empty() ? "" : ", ") + path.string();
-    return text.empty() ? "no folder" : text;
+    std::string all;
+    for (const auto& place : places) all += (all.empty() ? "" : ", ") + place.string();
+    return text::joined({missing, ": looked for ", all.empty() ? "no folder" : all});
   }
 
   std::vector<std::filesystem::path> folders_;

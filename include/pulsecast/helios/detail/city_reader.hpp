@@ -15,8 +15,8 @@ struct MeshFileSettings;
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reader of CityGML files, on a number of threads, such as a call of `io::read_citygml`. A program supplies it,
-/// because libcitygml requires GDAL, which few programs need.
+/// Reader of CityGML files, on a number of threads, such as `io::read_citygml`. A program supplies
+/// it, because libcitygml requires GDAL, which few programs need.
 using CityReader = std::function<io::MeshFile(const std::filesystem::path&, const io::MeshFileSettings&, unsigned)>;
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_FORMULA_HPP
 #define PULSECAST_HELIOS_DETAIL_FORMULA_HPP
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -12,25 +13,25 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^`, parentheses and
-/// functions. Operators have their usual precedence; all are left-associative. Functions: `exp ln sqrt abs cos sin tan
-/// acos asin atan cosh sinh tanh atan2(y, x)`. Angles in radians.
+/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, parentheses,
+/// `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`, and `+ - * / ^`, which
+/// are left-associative, with their usual precedence. Angles in radians.
 class Formula {
  public:
-  /// Throws a `std::invalid_argument` with the error and its position. Limits: 10,000 characters, parentheses 100 deep.
+  /// At most 10,000 characters, parentheses 100 deep. @throws std::invalid_argument with position
   Formula(std::string_view text, std::string_view variable) : text_(text), variable_(variable) {
     if (text.size() > 10'000) fail("is longer than 10000 characters");
     sum(0);
     skip();
     if (at_ != text_.size()) fail("has unexpected text");
-    text_ = {};
-    variable_ = {};
+    text_ = variable_ = {};
   }
 
   [[nodiscard]] double operator()(double value) const noexcept {
@@ -60,8 +61,8 @@ class Formula {
   };
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw std::invalid_argument("formula '" + std::string(text_.substr(0, 80)) + "' " + what + " at character " +
-                                std::to_string(at_ + 1));
+    throw std::invalid_argument(
+        text::joined({"formula '", text_.substr(0, 80), "' ", what, " at character ", std::to_string(at_ + 1)}));
   }
 
   void push(std::optional<double> number) {
@@ -73,8 +74,9 @@ class Formula {
     --height_;
     steps_.push_back({.binary = binary});
   }
-
-  static double negated(double x) noexcept { return -x; }
+  void negate() {
+    apply([](double x) { return -x; });
+  }
 
   void skip() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -111,10 +113,10 @@ class Formula {
     while (take('^')) {
       const bool minus = take('-');
       value(deep);
-      if (minus) apply(negated);
+      if (minus) negate();
       apply([](double a, double b) { return std::pow(a, b); });
     }
-    if (negative) apply(negated);
+    if (negative) negate();
   }
 
   void value(int deep) {
@@ -124,56 +126,55 @@ class Formula {
       if (!take(')')) fail("lacks a closing parenthesis");
       return;
     }
-    const auto is_digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
-    if (is_digit(at_) || (at_ < text_.size() && text_[at_] == '.' && is_digit(at_ + 1))) {
-      std::string_view rest = text_.substr(at_);
+    constexpr std::string_view digits = "0123456789",
+                               letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+    std::string_view rest = text_.substr(at_);
+    const std::size_t digit = rest.find_first_not_of('.');
+    if (digit < 2 && digits.find(rest[digit]) != digits.npos) {
       const auto number = text::take_number<double>(rest, std::chars_format::fixed);
       if (!number) fail("has a number out of range");
       at_ = text_.size() - rest.size();
       return push(number);
     }
-    std::size_t end = at_;
-    while (end < text_.size() && ((text_[end] >= 'a' && text_[end] <= 'z') ||
-                                  (text_[end] >= 'A' && text_[end] <= 'Z') || (end > at_ && is_digit(end))))
-      ++end;
-    const std::string_view name = text_.substr(at_, end - at_);
+    const std::string_view name = rest.substr(0, rest.find_first_not_of(letters));
     if (name.empty()) fail("lacks a number, the variable or a function");
     const bool is_pi = name == "pi";
-    if (name != variable_ && !is_pi && name != "e") return call(name, deep, end);
-    at_ = end;
+    if (name != variable_ && !is_pi && name != "e") return call(name, deep);
+    at_ += name.size();
     push(name == variable_ ? std::nullopt : std::optional(is_pi ? std::numbers::pi : std::numbers::e));
   }
 
-  void call(std::string_view name, int deep, std::size_t end) {
-    struct Named {
-      std::string_view name;
-      double (*function)(double);
-    };
-    static constexpr Named functions[] = {
-        {"exp", [](double x) { return std::exp(x); }},   {"ln", [](double x) { return std::log(x); }},
-        {"sqrt", [](double x) { return std::sqrt(x); }}, {"abs", [](double x) { return std::fabs(x); }},
-        {"cos", [](double x) { return std::cos(x); }},   {"sin", [](double x) { return std::sin(x); }},
-        {"tan", [](double x) { return std::tan(x); }},   {"acos", [](double x) { return std::acos(x); }},
-        {"asin", [](double x) { return std::asin(x); }}, {"atan", [](double x) { return std::atan(x); }},
-        {"cosh", [](double x) { return std::cosh(x); }}, {"sinh", [](double x) { return std::sinh(x); }},
-        {"tanh", [](double x) { return std::tanh(x); }}};
-    const bool two = name == "atan2";
-    double (*function)(double) = nullptr;
-    for (const Named& f : functions)
-      if (f.name == name) function = f.function;
-    if (!two && function == nullptr) fail("has the unknown word '" + std::string(name) + "'");
-    at_ = end;
+  void call(std::string_view name, int deep) {
+    using Function = double (*)(double);
+    static constexpr std::array<std::pair<std::string_view, Function>, 14> functions{
+        {{"exp", [](double x) { return std::exp(x); }},
+         {"ln", [](double x) { return std::log(x); }},
+         {"sqrt", [](double x) { return std::sqrt(x); }},
+         {"abs", [](double x) { return std::fabs(x); }},
+         {"cos", [](double x) { return std::cos(x); }},
+         {"sin", [](double x) { return std::sin(x); }},
+         {"tan", [](double x) { return std::tan(x); }},
+         {"acos", [](double x) { return std::acos(x); }},
+         {"asin", [](double x) { return std::asin(x); }},
+         {"atan", [](double x) { return std::atan(x); }},
+         {"cosh", [](double x) { return std::cosh(x); }},
+         {"sinh", [](double x) { return std::sinh(x); }},
+         {"tanh", [](double x) { return std::tanh(x); }},
+         {"atan2", nullptr}}};
+    const auto named = [&](const auto& function) { return function.first == name; };
+    const auto function = std::find_if(functions.begin(), functions.end(), named);
+    if (function == functions.end()) fail("has the unknown word '" + std::string(name) + "'");
+    at_ += name.size();
     if (!take('(')) fail("lacks the argument of the function");
     sum(deep + 1);
-    if (two) {
+    if (function->second != nullptr) {
+      apply(function->second);
+    } else {
       if (!take(',')) fail("lacks the second argument of atan2");
       sum(deep + 1);
+      apply([](double y, double x) { return std::atan2(y, x); });
     }
     if (!take(')')) fail("lacks a closing parenthesis");
-    if (two)
-      apply([](double y, double x) { return std::atan2(y, x); });
-    else
-      apply(function);
   }
 
   std::string_view text_, variable_;  // views for the parser; empty afterwards

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -26,23 +25,17 @@
 #include <pulsecast/platform/waypoints.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
-/// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-/// Calls a function with a path, own or shared.
-template <class AnyPath, class Function>
-auto visit_path(const AnyPath& path, const Function& function) noexcept {
-  const auto call = [&](const auto& p) noexcept {
-    if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
-      return function(p);
-    else
-      return function(*p);
-  };
-  return std::visit(call, path);
+/// Path, own or shared.
+template <class Path>
+[[nodiscard]] const Path& path_of(const Path& path) noexcept {
+  return path;
 }
-}  // namespace detail
-
+template <class Path>
+[[nodiscard]] const Path& path_of(const std::shared_ptr<const Path>& path) noexcept {
+  return *path;
+}
 /// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
   using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>,
@@ -51,12 +44,12 @@ struct SurveyPath {
   Tick start{};  ///< start time on the clock of the plan
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return detail::visit_path(path, [&](const auto& p) noexcept { return p.at(start + t); });
+    return std::visit([&](const auto& p) noexcept { return path_of(p).at(start + t); }, path);
   }
 
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
-    return detail::visit_path(path,
-                              [&](const auto& p) noexcept { return find_poses(p, t + start, all_lanes(), poses); });
+    const auto find = [&](const auto& p) noexcept { return find_poses(path_of(p), t + start, all_lanes(), poses); };
+    return std::visit(find, path);
   }
 };
 
@@ -64,34 +57,30 @@ static_assert(Trajectory<SurveyPath>);
 
 /// Noise of a platform's pose: reported pose minus true pose.
 struct SurveyNoise {
-  std::array<std::optional<NoiseSettings>, 3> position{};  ///< along x, y and z of the world [m]
-  std::array<std::optional<NoiseSettings>, 3> attitude{};  ///< about right, forward and up of the beam [rad]
+  using AxisNoise = std::array<std::optional<NoiseSettings>, 3>;
+  AxisNoise position{};  ///< along x, y and z of the world [m]
+  AxisNoise attitude{};  ///< about right, forward and up of the beam [rad]
   std::uint64_t seed = 0;
 
-  [[nodiscard]] bool none() const noexcept {
-    return std::none_of(position.begin(), position.end(), [](const auto& n) { return n.has_value(); }) &&
-           std::none_of(attitude.begin(), attitude.end(), [](const auto& n) { return n.has_value(); });
-  }
+  [[nodiscard]] bool none() const { return position == AxisNoise{} && attitude == AxisNoise{}; }
 
-  [[nodiscard]] Vec3 draw(const std::array<std::optional<NoiseSettings>, 3>& noise, PulseIndex slot,
-                          Purpose purpose) const noexcept {
+  [[nodiscard]] Vec3 draw(const AxisNoise& noise, PulseIndex slot, Purpose purpose) const noexcept {
     Vec3 out{};
-    for (int k = 0; k < 3; ++k) {
-      const std::optional<NoiseSettings>& n = noise[static_cast<std::size_t>(k)];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::optional<NoiseSettings>& n = noise[k];
       if (!n) continue;
       const PulseIndex moment = n->lifespan > 0 ? slot / static_cast<PulseIndex>(n->lifespan) : 0;
-      const RandomKey key{.seed = seed, .pulse = moment, .subray = static_cast<std::uint32_t>(k), .purpose = purpose};
-      double value = n->distribution == NoiseDistribution::normal ? n->mean + n->deviation * normal(key)
-                                                                  : n->low + (n->high - n->low) * uniform(key);
+      const RandomKey key{.seed = seed, .pulse = moment, .subray = k, .purpose = purpose};
+      const bool is_normal = n->distribution == NoiseDistribution::normal;
+      double value = is_normal ? n->mean + n->deviation * normal(key) : n->low + (n->high - n->low) * uniform(key);
       if (n->clipped) value = std::clamp(value, n->clip_low, std::max(n->clip_low, n->clip_high));
-      out[k] = value;
+      out[static_cast<int>(k)] = value;
     }
     return out;
   }
 };
 
-/// One leg of a survey: an instrument on a platform. Where the platform errs, it reports poses as documents define
-/// them: by noise of each slot, which `PoseErrors` has not.
+/// One leg of a survey: an instrument on a platform, whose reported poses may have noise.
 class SurveyLeg {
  public:
   /// `known` is the end of the known path, if that is within the last slot.
@@ -126,7 +115,7 @@ class SurveyLeg {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
-  [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the records of its path
+  [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the known path
 
  private:
   Platform<SurveyPath, Instrument> truth_;

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <pulsecast/base/random.hpp>
@@ -21,7 +21,6 @@
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 #include <pulsecast/helios/detail/survey_options.hpp>
-#include <pulsecast/helios/detail/trajectory_format.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
@@ -31,19 +30,42 @@
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-/// Paths of the legs of a survey document.
 namespace PULSECAST_NAMESPACE::helios {
+
+/// Format of the trajectory file of a leg.
+[[nodiscard]] inline io::TrajectoryFormat trajectory_format(const TrajectorySettings& t, RotationSpec spec) {
+  io::TrajectoryFormat format = io::helios_format();
+  format.angles = spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;
+  format.separator = t.separator.value_or(format.separator);
+  format.fixed_separator = t.separator.has_value();
+  format.angle_unit = t.angles_in_degrees ? io::AngleUnit::degree : io::AngleUnit::radian;
+  if (t.position_only) format.columns = {"t", "x", "y", "z"};
+  if (!t.columns) return format;
+  const TrajectoryIndices& at = *t.columns;
+  std::vector<std::pair<int, const char*>> columns{{at.time, "t"}, {at.x, "x"}, {at.y, "y"}, {at.z, "z"}};
+  if (!t.position_only) columns.insert(columns.end(), {{at.roll, "roll"}, {at.pitch, "pitch"}, {at.yaw, "yaw"}});
+  int most = 0;
+  for (const auto& [place, name] : columns) most = std::max(most, place);
+  format.names = io::ColumnNames::nowhere;
+  format.columns.clear();
+  for (int i = 0; i <= most; ++i) format.columns.push_back("column_" + std::to_string(i));
+  format.left_out = format.columns;
+  for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
+  const auto is_taken = [&](const std::string& column) { return std::ranges::count(format.columns, column) == 0; };
+  std::erase_if(format.left_out, is_taken);
+  return format;
+}
 
 /// Path and duration of a leg.
 struct LegPath {
   SurveyPath path{};
   double duration = 0;            ///< travel time [s]
-  double rounding = 0;            ///< maximum error of the duration as a difference of two times [s]
-  std::optional<double> clock{};  ///< start time by the clock of a trajectory that sets that of the survey [s]
+  double rounding = 0;            ///< maximum error of the duration [s]
+  std::optional<double> clock{};  ///< start by the clock of a trajectory, if it counts [s]
 };
 
-/// Paths of all legs of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg
-/// and attribute, or a `FileError` of a trajectory. Settings and options must outlive it.
+/// Paths of all legs of a survey on a ground. Settings and options must outlive it.
+/// @throws SettingError with leg and attribute, FileError of a trajectory
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)
@@ -57,7 +79,7 @@ class LegPaths {
   [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// True if a leg continues the plan of the leg before.
+  /// True if a leg continues the flight or drive of the leg before.
   [[nodiscard]] bool continues(std::size_t k) const {
     const auto shared = [&]<class Plan>(const std::shared_ptr<const Plan>* plan) {
       const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);
@@ -67,16 +89,8 @@ class LegPaths {
                      shared(std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path)));
   }
 
-  /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const { return options_.leg_name(k); }
 
-  /// Calls a function; prefixes the name of the leg to a `SettingError` of it.
-  template <class Function>
-  auto of_leg(std::size_t k, const Function& function) const {
-    return naming(leg_name(k), function);
-  }
-
-  /// True if a moving platform stays in place in this leg.
   [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
@@ -87,51 +101,41 @@ class LegPaths {
       if (p.on_ground && survey_.platform.kind != PlatformKind::interpolated) {
         const std::optional<double> height = ground(Vec2{at.x, at.y});
         if (!height)
-          throw SettingError(leg_name(k) + ": onGround at x = " + text::to_text(at.x) + ", y", at.y, "m",
+          throw SettingError(text::joined({leg_name(k), ": onGround at x = ", text::to_text(at.x), ", y"}), at.y, "m",
                              "over ground of the scene: a material with helios_isGround");
         at.z = *height;
       }
       require_finite(leg_name(k) + ": position (length)", length(at), "m");
-      if (survey_.leg_offset && options_.leg_noise)
-        for (int axis = 0; axis < 3; ++axis)
-          at[axis] += survey_.leg_offset->mean +
-                      survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,
-                                                              .pulse = k,
-                                                              .subray = static_cast<std::uint32_t>(axis),
-                                                              .purpose = Purpose::position_noise});
+      const std::optional<LegOffsetSettings>& offset = survey_.leg_offset;
+      RandomKey key{.seed = options_.seed + 1, .pulse = k, .purpose = Purpose::position_noise};
+      for (; offset && options_.leg_noise && key.subray < 3; ++key.subray)
+        at[static_cast<int>(key.subray)] += offset->mean + offset->deviation * normal(key);
       places_.push_back(k > 0 && is_stationary(k - 1) ? places_.back() : at);
     }
   }
 
   void plan_paths(const GroundHeight& ground) {
-    const std::size_t n = survey_.legs.size();
-    paths_.resize(n);
+    paths_.resize(places_.size());
     switch (survey_.platform.kind) {
       case PlatformKind::stationary:
-        for (std::size_t k = 0; k < n; ++k) paths_[k].path.path = Tripod{places_[k]};
-        break;
+        for (std::size_t k = 0; k < places_.size(); ++k) paths_[k].path.path = Tripod{places_[k]};
+        return;
       case PlatformKind::linear_path:
-        fly_straight();
-        break;
+        return fly_straight();
       case PlatformKind::multicopter:
-        fly();
-        break;
+        return fly();
       case PlatformKind::ground_vehicle:
-        drive(ground);
-        break;
+        return drive(ground);
       case PlatformKind::interpolated:
-        follow();
-        break;
+        return follow();
     }
   }
 
   [[nodiscard]] double speed_of(std::size_t k) const {
     const double speed = survey_.legs[k].platform.speed;
-    if (!(speed > 0))
-      throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s",
-                         "greater than 0, as the leg would never end otherwise");
-    if (survey_.platform.kind != PlatformKind::linear_path)
-      require_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
+    const std::string name = leg_name(k) + ": movePerSec_m";
+    if (!(speed > 0)) throw SettingError(name, speed, "m/s", "greater than 0, as the leg would never end otherwise");
+    if (survey_.platform.kind != PlatformKind::linear_path) require_within(name, speed, 1e-3, 1e3, "m/s");
     return speed;
   }
 
@@ -149,7 +153,7 @@ class LegPaths {
       const double least = length(way) / max_duration;
       if (line.speed < least)
         throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
-                           "at least " + text::to_text(least) + ", for a leg that ends within 1e15 s");
+                           "at least " + text::to_text(least) + ", for an end within 1e15 s");
       heading = heading_of(way, heading);
       paths_[k] = {{line, {}}, line.duration().seconds()};
     }
@@ -173,18 +177,17 @@ class LegPaths {
     return !yaw ? otherwise : std::fabs(*yaw) > max_angle ? std::remainder(-*yaw, 2 * pi) : -*yaw;
   }
 
-  /// Plans one flight for each run of legs that the multicopter flies without a stop.
+  /// Plans one flight for each run of legs without a stop.
   void fly() {
     const std::size_t last = places_.size() - 1;
     double heading = departure_of(0, heading_from(0, 0));
-    for (std::size_t k = 0; k < last;) {
+    for (std::size_t k = 0, end = 0; k < last; k = end) {
+      end = k + 1;
       heading = departure_of(k, heading);
       if (is_stationary(k)) {
         paths_[k].path.path = Tripod{places_[k], heading};
-        ++k;
         continue;
       }
-      std::size_t end = k + 1;
       while (end < last && !stops_after(end - 1) && !is_stationary(end)) ++end;
       std::vector<FlightPoint> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i], 0});
@@ -194,8 +197,8 @@ class LegPaths {
       s.turn = p.smooth_turn ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn;
       s.yaw_rate = std::clamp(d.yaw_speed, 1e-3, 1e3);
       s.bank_max = std::clamp(d.pitch_offset, 1e-3, 1.5);
-      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + detail::brief(degrees(s.yaw_rate)));
-      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + detail::brief(degrees(s.bank_max)));
+      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + brief(degrees(s.yaw_rate)));
+      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + brief(degrees(s.bank_max)));
       s.departure_heading = heading;
       heading = heading_from(end - 1, heading);
       s.arrival_heading = heading_from(end, heading);
@@ -203,7 +206,6 @@ class LegPaths {
       const auto flight = std::make_shared<const MulticopterFlight>(detail::flight_over(points, s));
       split(k, end, flight, flight->duration().seconds());
       heading = *s.arrival_heading;
-      k = end;
     }
     paths_.back().path.path = Tripod{places_.back(), heading};
   }
@@ -211,26 +213,22 @@ class LegPaths {
   void drive(const GroundHeight& ground) {
     const std::size_t last = places_.size() - 1;
     double height = std::numeric_limits<double>::infinity();  // that of the last drive's end
-    for (std::size_t k = 0; k < last;) {
-      if (is_stationary(k)) {
-        ++k;
-        continue;
-      }
-      std::size_t end = k + 1;
-      while (end < last && !is_stationary(end) &&
-             survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed)
-        ++end;
-      if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only gives the end of the path
+    for (std::size_t k = 0, end = 0; k < last; k = end) {
+      end = k + 1;
+      if (is_stationary(k)) continue;
+      const auto speed = [&](std::size_t i) { return survey_.legs[i].platform.speed; };
+      while (end < last && !is_stationary(end) && speed(end - 1) == speed(end)) ++end;
+      if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only ends the path
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
       const GroundVehicleSettings settings{
           .speed = speed_of(k), .start_height = height, .height_without_ground = places_[k].z};
-      const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, ground, settings));
+      auto plan = plan_ground_vehicle(points, ground, settings);
+      const auto way = std::make_shared<const GroundVehicleDrive>(std::move(plan));
       for (const std::string& warning : way->warnings()) warn(leg_name(k) + ": " + warning);
       height = way->at(way->duration()).position.z;
       split(k, end, way, way->duration().seconds());
       for (std::size_t i = k; i < end; ++i) note_slowness(i, settings);
-      k = end;
     }
     park(ground);
     if (last == 0) return;
@@ -238,13 +236,13 @@ class LegPaths {
     paths_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
   }
 
-  /// Notes a leg that takes twice as long as its way at its speed, with that for speeding up and braking.
+  /// Notes a leg that takes twice as long as its way at its speed, with speeding up and braking.
   void note_slowness(std::size_t k, const GroundVehicleSettings& s) {
     const double way = std::hypot(places_[k + 1].x - places_[k].x, places_[k + 1].y - places_[k].y);
     const double expected = way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
     if (paths_[k].duration > 2 * expected)
-      warn(leg_name(k) + ": the vehicle takes " + detail::brief(paths_[k].duration) + " s for " + detail::brief(way) +
-           " m at up to " + detail::brief(s.speed) + " m/s; turns and steep ground take time");
+      warn(text::joined({leg_name(k), ": the vehicle takes ", brief(paths_[k].duration), " s for ", brief(way),
+                         " m at up to ", brief(s.speed), " m/s; turns and steep ground take time"}));
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
@@ -255,17 +253,18 @@ class LegPaths {
       while (next + 1 < paths_.size() && is_stationary(next)) ++next;
       Vec3 at = places_[k];
       at.z = ground(Vec2{at.x, at.y}).value_or(at.z);
-      const bool ever_drives = k > 0 || next + 1 < paths_.size();
-      const auto pose = !ever_drives ? Tripod{at}.at({})
-                        : k > 0      ? paths_[k - 1].path.at(Tick::of_seconds(paths_[k - 1].duration))
-                                     : paths_[next].path.at({});
-      paths_[k].path.path =
-          std::make_shared<const Waypoints>(std::vector<TimedPose>{{0, pose.position, pose.rotation}});
+      auto pose = Tripod{at}.at({});
+      if (k > 0)
+        pose = paths_[k - 1].path.at(Tick::of_seconds(paths_[k - 1].duration));
+      else if (next + 1 < paths_.size())
+        pose = paths_[next].path.at({});
+      const std::vector<TimedPose> poses{{0, pose.position, pose.rotation}};
+      paths_[k].path.path = std::make_shared<const Waypoints>(poses);
     }
   }
 
-  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start of the next
-  /// one. A flight also completes its turn towards the following waypoint.
+  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the
+  /// start of the next; a flight also completes its turn towards the waypoint after that.
   template <class Plan>
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
@@ -285,7 +284,7 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings> formats;  // columns and separator of each file, from its first leg
+    std::map<std::string, TrajectorySettings> formats;  // columns and separator by file
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");
@@ -294,10 +293,10 @@ class LegPaths {
       if (!of_file.separator) of_file.separator = t->separator;
       t->columns = of_file.columns;
       t->separator = of_file.separator;
-      const io::TrajectoryFormat format = detail::trajectory_format(*t, survey_.platform.rotation_spec);
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
-        io::TrajectoryTable table = of_leg(k, [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
+        const auto format = trajectory_format(*t, survey_.platform.rotation_spec);
+        auto table = naming(leg_name(k), [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
         for (const std::string& warning : table.warnings) warn(warning);
         if (t->position_only) table.poses = with_headings(std::move(table.poses));
         tables.emplace(key, std::move(table));
@@ -314,7 +313,7 @@ class LegPaths {
   }
 
   void warn(std::string text) {
-    if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+    if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(std::move(text));
   }
 
   const SurveySettings& survey_;

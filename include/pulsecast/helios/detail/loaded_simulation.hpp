@@ -28,13 +28,11 @@
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 
-/// Surveys with their scenes, ready to run.
 namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-/// Spectra in folders, for the wavelengths of the channels. An unreadable folder gives a warning, as no part may need
-/// it.
+/// Spectra in folders, for the wavelengths of the channels. An unreadable folder gives a warning.
 [[nodiscard]] inline io::SpectralLibrary spectra_of(const SurveySettings& survey,
                                                     const std::vector<std::filesystem::path>& folders) {
   io::SpectralLibrary all;
@@ -53,8 +51,7 @@ namespace detail {
   return all;
 }
 
-/// Detectors of a survey: waveform settings of its channels within the limits of batches and files, with a warning for
-/// each change.
+/// Waveform settings within the limits of batches and files, with a warning for each change.
 class WaveformLimits {
  public:
   WaveformLimits(const SurveySettings& survey, const Simulation::Settings& settings)
@@ -83,8 +80,7 @@ class WaveformLimits {
   }
 
  private:
-  /// Bin size for LAS, whose sample interval is in whole picoseconds [s]. Source: LAS 1.4 R15, Waveform Packet
-  /// Descriptor.
+  /// Bin size for LAS, in whole picoseconds [s]. Source: LAS 1.4 R15, Waveform Packet Descriptor.
   [[nodiscard]] double las_bins(double bin, std::vector<std::string>& warnings) const {
     constexpr double rounding = 1e-6;  // [ps]
     const double picoseconds = bin * 1e12;
@@ -99,7 +95,7 @@ class WaveformLimits {
   bool las_;
 };
 
-/// Wavelength of all channels, for media that are by it [m]. @throws SettingError if there are several
+/// Wavelength of all channels, for media [m]. @throws SettingError if there are several
 [[nodiscard]] inline double wavelength_of(const SurveySettings& survey) {
   const std::vector<ChannelSettings>& channels = survey.scanner.channels;
   for (const ChannelSettings& channel : channels)
@@ -110,8 +106,8 @@ class WaveformLimits {
   return channels.front().wavelength;
 }
 
-/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one. @throws SettingError for boxes of
-/// media that overlap, and presets beyond the wavelength
+/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one.
+/// @throws SettingError for boxes of media that overlap, and presets beyond the wavelength
 [[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, bool follows_light, bool library_physics) {
   if (!follows_light) return SurveyLight(DirectLight{.spread_planes = library_physics});
   const SceneSettings& scene = survey.scene;
@@ -243,7 +239,6 @@ template <class Receiver>
           loaded.scene};
 }
 
-/// Only implementation of `Simulation`.
 class LoadedSimulation final : public Simulation {
  public:
   explicit LoadedSimulation(std::shared_ptr<const LoadedRepetition> loaded, const ReceiverOverrides& overrides = {})

@@ -19,7 +19,6 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 
-/// Rigid motions of a survey document.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Proper or improper rigid motion: each point p goes to `position + sign * rotation * p`.
@@ -29,19 +28,21 @@ struct MotionStep {
   int mirrors = 0;  ///< number of reflections in it
 
   [[nodiscard]] MotionStep after(const MotionStep& first) const {
-    return {{move.rotation * first.move.rotation, move.position + sign * (move.rotation * first.move.position)},
+    const auto& [rotation, position] = first.move;
+    return {{move.rotation * rotation, move.position + sign * (move.rotation * position)},
             sign * first.sign,
             mirrors + first.mirrors};
   }
 
   /// Pose without the rounding errors of reflections that cancel.
   [[nodiscard]] Pose<frame::World, frame::World> settled() const {
-    const bool turns = mirrors == 0 || length(Vec3{move.rotation.x, move.rotation.y, move.rotation.z}) > 1e-14;
-    return {turns ? move.rotation : no_rotation, move.position};
+    const auto& [rotation, position] = move;
+    const bool turns = mirrors == 0 || length(Vec3{rotation.x, rotation.y, rotation.z}) > 1e-14;
+    return {turns ? rotation : no_rotation, position};
   }
 };
 
-/// Converts a motion. Coordinates are relative to the centre of the scene, unless `shift_factor` corrects them.
+/// Converts a motion. Coordinates are relative to the scene's centre, unless `shift_factor` is 1.
 [[nodiscard]] inline MotionStep motion_step(const MotionSettings& m, const Vec3& scene_centre) {
   MotionStep out;
   Vec3 centre = m.about_itself ? Vec3{} : (1 - m.shift_factor) * scene_centre, shift{};
@@ -54,9 +55,8 @@ struct MotionStep {
     about(r->center);
     out.move.rotation = rotation_about(r->axis, r->angle);
     shift = r->glide.value_or(0) * r->axis;
-  } else if (const auto* f =
-                 std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal and a point reflection
-    out = {{rotation_about(f->normal, pi), {}}, -1, 1};
+  } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {
+    out = {{rotation_about(f->normal, pi), {}}, -1, 1};  // half a turn and a point reflection
     shift = f->shift.value_or(Vec3{});
   } else if (const auto* s = std::get_if<RotoreflectionMotion>(&m.kind)) {
     about(s->center);
@@ -66,13 +66,12 @@ struct MotionStep {
   return out;
 }
 
-/// Composition of the motions of a sequence in one step.
+/// Composition of the motions of a sequence, in their order.
 struct MotionSteps {
   std::optional<MotionStep> all{};  ///< motions in the frame of the scene
   std::optional<MotionStep> own{};  ///< motions of a part about itself
 };
 
-/// Composes the motions of a sequence, in their order.
 [[nodiscard]] inline MotionSteps motion_steps(const MotionSequenceSettings& sequence, const Vec3& scene_centre) {
   MotionSteps out;
   for (const MotionSettings& m : sequence.motions) {
@@ -88,12 +87,10 @@ struct MotionSteps {
   for (const auto& s : {steps.all, steps.own})
     if (s && s->sign < 0) return "an even number of reflections, since an odd number is no rigid motion";
   const Rotation turn = steps.all.value_or(MotionStep{}).settled().rotation;
-  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // a bad axis is reported elsewhere
+  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // else reported
     return "rotations about a point or about its own centre, not both in one sequence";
   return "";
 }
-
-namespace detail {
 
 /// Motion at constant rates that equals all motions of a sequence, once per `step` [s].
 [[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence,
@@ -109,8 +106,7 @@ namespace detail {
   return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .angular_rate = turn.angular_rate};
 }
 
-/// Motion of a part that has at least one sequence, with a step in each `step` [s]. Throws a `SettingError` with part
-/// and sequence.
+/// Motion of a part, with a step in each `step` [s]. @throws SettingError with part and sequence
 [[nodiscard]] inline std::shared_ptr<const PartMotion> part_motion(const PartSettings& part, const Vec3& scene_centre,
                                                                    double step) {
   std::vector<MotionSequence> sequences;
@@ -122,7 +118,7 @@ namespace detail {
     if (s->loop > 0) steady.duration = step * s->loop;
     sequences.push_back({.motions = {steady}});
     if (s->loop == 0 || !s->next) break;
-    const auto next = std::ranges::find_if(part.motions, [&](const auto& m) { return m.id == *s->next; });
+    const auto next = std::ranges::find(part.motions, *s->next, &MotionSequenceSettings::id);
     if (next == part.motions.end()) break;
     if (const auto back = seen.find(next->id); back != seen.end()) {
       again = back->second;
@@ -132,8 +128,6 @@ namespace detail {
   }
   return std::make_shared<const PartMotion>(sequences, again);
 }
-
-}  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
+#include <variant>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -25,12 +25,12 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
-/// Converts the instrument of a survey document to stages of the library.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Pulse rate of a leg; by default the scanner's first [Hz]. Throws a `SettingError` if there is none.
+/// Pulse rate of a leg; by default the scanner's first [Hz]. @throws SettingError if there is none
 [[nodiscard]] inline double pulse_rate_of(const ScannerSettings& scanner, const LegScannerSettings& leg) {
-  const double rate = leg.pulse_rate > 0 || scanner.pulse_rates.empty() ? leg.pulse_rate : scanner.pulse_rates.front();
+  const bool by_default = !(leg.pulse_rate > 0) && !scanner.pulse_rates.empty();
+  const double rate = by_default ? scanner.pulse_rates.front() : leg.pulse_rate;
   require_positive("pulseFreq_hz", rate, "Hz");
   return rate;
 }
@@ -42,15 +42,8 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// True if the head turns away from its stop angle.
 [[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
-  return (leg.head_rate > 0 && leg.head_stop < leg.head_start) || (leg.head_rate < 0 && leg.head_stop > leg.head_start);
+  return leg.head_rate * (leg.head_stop - leg.head_start) < 0;
 }
-
-/// True if a leg waits for a head that does not turn.
-[[nodiscard]] inline bool head_never_stops(const ChannelSettings& channel, const LegSettings& leg) noexcept {
-  return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
-}
-
-namespace detail {
 
 [[nodiscard]] inline double scan_angle_of(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double angle = leg.scan_angle.value_or(channel.scan_angle_max);
@@ -64,8 +57,8 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the
-/// width of the device about the same centre.
+/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of
+/// the device about the same centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
                                             const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
@@ -84,28 +77,23 @@ struct MirrorGate {
   return gate;
 }
 
-[[nodiscard]] inline bool scans_too_slowly(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return leg.scan_rate < channel.scan_rate_min;
+[[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, double rate) {
+  return channel.scan_rate_max > 0 && rate > channel.scan_rate_max;
 }
 
-[[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return channel.scan_rate_max > 0 && leg.scan_rate > channel.scan_rate_max;
+inline void require_scan_rate(const ChannelSettings& channel, double rate) {
+  const double least = channel.scan_rate_min, most = channel.scan_rate_max;
+  if (rate < least || scans_too_fast(channel, rate))
+    throw SettingError("scanFreq_hz", rate, "Hz",
+                       text::joined({"within the limits of the device, ", text::to_text(least), " to ",
+                                     most > 0 ? text::to_text(most) : "any", " Hz"}));
 }
 
-inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  const double f = leg.scan_rate, most = channel.scan_rate_max;
-  if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
-    throw SettingError("scanFreq_hz", f, "Hz",
-                       "within the limits of the device, " + text::to_text(channel.scan_rate_min) + " to " +
-                           (most > 0 ? text::to_text(most) : "any") + " Hz");
-}
-
-/// Rate of an oscillating mirror: within the device's product of angle and rate, and then in cycles of whole pulses
-/// [Hz].
+/// Rate of an oscillating mirror, within `scan_product_max` and in cycles of whole pulses [Hz].
 [[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic,
                                              const LegScannerSettings& leg, double pulse_rate) {
-  const double angle = scan_angle_of(channel, leg);
-  const double f = angle * leg.scan_rate > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_rate;
+  const double angle = scan_angle_of(channel, leg), most = optic.scan_product_max;
+  const double f = angle * leg.scan_rate > most ? most / angle : leg.scan_rate;
   const double pulses = std::floor(pulse_rate / f);
   return pulses >= 2 ? pulse_rate / pulses : f;
 }
@@ -113,8 +101,7 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
 /// Number for messages, rounded to three digits after the point.
 [[nodiscard]] inline std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
-/// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are
-/// those of the document.
+/// Notes on rates and angles that channel `c` rounds or cuts, without plain limits of the first.
 [[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
                                                           const LegScannerSettings& leg, double pulse_rate) {
   const ChannelSettings& channel = scanner.channels[c];
@@ -122,31 +109,30 @@ inline void require_scan_rate(const ChannelSettings& channel, const LegScannerSe
   const auto note = [&](const std::string& text) {
     notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text);
   };
-  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_rate > 0) {
-    const double asked = leg.scan_rate, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
+  const auto deg = [](double angle) { return brief(degrees(angle)); };
+  const double sweep = channel.scan_angle_max, asked = leg.scan_rate;
+  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && asked > 0) {
+    const double f = oscillation_rate(channel, *mirror, leg, pulse_rate);
+    const bool by_product = scan_angle_of(channel, leg) * asked > mirror->scan_product_max;
     if (std::fabs(f - asked) > 1e-4 * asked)
-      note("scanFreq_hz of " + brief(asked) + " is taken as " + brief(f) +
-           (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and"
-                                                                           : ",") +
-           " for a cycle is a whole number of pulses, here " + brief(pulse_rate / f));
+      note(text::joined({"scanFreq_hz of ", brief(asked), " is taken as ", brief(f),
+                         by_product ? ", for the scanner's scanProduct, and" : ",",
+                         " for a cycle is a whole number of pulses, here ", brief(pulse_rate / f)}));
   }
-  if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic);
-      mirror && leg.scan_rate > 0 && channel.scan_angle_max > 0) {
+  if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic); mirror && asked > 0 && sweep > 0) {
     const MirrorGate gate = mirror_gate(channel, *mirror, leg);
-    const double sweep = channel.scan_angle_max;
-    const std::string within =
-        brief(degrees(std::max(gate.low, -sweep))) + " to " + brief(degrees(std::min(gate.high, sweep))) + " deg";
+    const std::string angles = "verticalAngleMin_deg and verticalAngleMax_deg ",
+                      within = deg(std::max(gate.low, -sweep)) + " to " + deg(std::min(gate.high, sweep)) + " deg";
     if (gate.is_cut && !gate.is_limited)
-      note("verticalAngleMin_deg and verticalAngleMax_deg reach beyond the mirror's sweep, -" + brief(degrees(sweep)) +
-           " to " + brief(degrees(sweep)) + " deg: pulses leave from " + within);
-    if (gate.is_limited && c > 0) note("verticalAngleMin_deg and verticalAngleMax_deg are limited to " + within);
+      note(text::joined({angles, "reach beyond the mirror's sweep, -", deg(sweep), " to ", deg(sweep),
+                         " deg: pulses leave from ", within}));
+    if (gate.is_limited && c > 0) note(angles + "are limited to " + within);
   }
   if (c == 0) return notes;
   if (leg.scan_angle && scan_angle_of(channel, leg) < *leg.scan_angle)
-    note("scanAngle_deg is limited to " + brief(degrees(channel.scan_angle_max)));
+    note("scanAngle_deg is limited to " + deg(sweep));
   if (head_rate(channel, leg) != head_rate(scanner.channels[0], leg))
-    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_rate_max)) +
-         ", unlike that of the first channel");
+    note("headRotatePerSec_deg is limited to " + deg(channel.head_rate_max) + ", unlike that of the first channel");
   return notes;
 }
 
@@ -155,7 +141,7 @@ struct OpticBuilder {
   const ChannelSettings& channel;
   const LegScannerSettings& leg;
   double pulse_rate;
-  double active;          ///< running time since the last start; optics that run on between legs continue from it [s]
+  double active;          ///< running time since the last start [s]
   double ahead = active;  ///< result [s]
   double tilt = 0;        ///< result [rad]
 
@@ -163,10 +149,9 @@ struct OpticBuilder {
     if (!(leg.scan_rate > 0))
       throw SettingError("scanFreq_hz", leg.scan_rate, "Hz", "greater than 0 for an oscillating mirror");
     const double f = oscillation_rate(channel, optic, leg, pulse_rate);
-    return OscillatingMirror{// that turns round in 100 pulses at most
-                             .cycle_rate = f,
+    return OscillatingMirror{.cycle_rate = f,
                              .half_angle = scan_angle_of(channel, leg),
-                             .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
+                             .turning_time = std::min(100 / pulse_rate, 0.5 / f)};  // 100 pulses
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
@@ -208,57 +193,47 @@ struct OpticBuilder {
   }
 };
 
-/// Minimum and maximum upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
-[[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
-  const auto* const mirror = std::get_if<PolygonMirror>(&optic);
-  return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
-}
-
-/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass,
-/// because no beam reaches them.
-inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
+/// Error formula; none if the text is empty. @throws SettingError if it is not finite at one of 64
+/// angles of the optic: poles between pass, as no beam reaches them
+[[nodiscard]] inline std::shared_ptr<const Formula> error_formula(const char* field, const std::string& text,
+                                                                  const SurveyOptic::AnyOptic& optic) {
+  if (text.empty()) return nullptr;
+  const auto error = std::make_shared<const Formula>(text, "THETA");
+  const auto* const mirror = std::get_if<PolygonMirror>(&optic);  // others have no deflection angle
+  const double low = mirror ? mirror->angle_min : 0, high = mirror ? mirror->angle_max : 0;
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
-    const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
-    const double value = error(angle);
+    const double angle = low + (high - low) * (i + 0.518) / places, value = (*error)(angle);
     if (!std::isfinite(value))  // drops the sign that some platforms give NaN
       throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
                          "a formula with a finite value, also for a THETA of " + text::to_text(angle));
   }
+  return error;
 }
 
-}  // namespace detail
-
-/// Optic of a channel in a leg. Documents give the beam origin along the axes of the platform, like that of the mount:
-/// the two add up. `boresight` (rotation of the instrument on the body) does not turn it; heading and head do. Throws a
-/// `SettingError` with the attribute at fault.
+/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the
+/// mount: they add up, and `boresight` (instrument on the body) does not turn it.
+/// @throws SettingError with the attribute at fault
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {
-  if (leg.active) detail::require_scan_rate(channel, leg);
-  detail::OpticBuilder build{channel, leg, pulse_rate, active};
+  if (leg.active) require_scan_rate(channel, leg.scan_rate);
+  OpticBuilder build{channel, leg, pulse_rate, active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
   out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
                  conjugate(boresight) * channel.beam_origin.position};
-  const double rate = head_rate(channel, leg);
-  out.head = {.angular_rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
-  const auto formula = [](const std::string& text) {
-    return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA");
-  };
-  out.deflection_error = formula(channel.errors.deflection);
-  out.head_error = formula(channel.errors.head);
-  out.range_error = formula(channel.errors.range);
-  out.head_zero_threshold = channel.errors.head_zero_threshold;
-  const std::pair<double, double> angles = detail::deflections(out.optic);
-  if (out.deflection_error) detail::require_finite("deflectionError", *out.deflection_error, angles);
-  if (out.head_error) detail::require_finite("headError", *out.head_error, angles);
-  if (out.range_error) detail::require_finite("rangeError", *out.range_error, angles);
+  const double rate = head_rate(channel, leg), start = leg.head_start + rate * leg.warm_up;
+  out.head = {.angular_rate = rate, .start = start, .axis = channel.head_axis};
+  const ErrorFormulas& errors = channel.errors;
+  out.deflection_error = error_formula("deflectionError", errors.deflection, out.optic);
+  out.head_error = error_formula("headError", errors.head, out.optic);
+  out.range_error = error_formula("rangeError", errors.range, out.optic);
+  out.head_zero_threshold = errors.head_zero_threshold;
   return out;
 }
 
-/// Laser of a channel in a leg. A given beam quality puts the waist at the exit; quality and divergence give its
-/// diameter.
+/// Laser of a channel in a leg. A beam quality puts the waist at the exit.
 [[nodiscard]] inline Laser survey_laser(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double divergence = leg.divergence.value_or(channel.divergence);
   Laser laser{.wavelength = channel.wavelength,

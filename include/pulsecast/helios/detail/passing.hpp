@@ -60,8 +60,8 @@ template <class Plan>
   return 0.5 * (low + high);
 }
 
-/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are
-/// below 1 cm.
+/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards,
+/// until all misses are below 1 cm.
 [[nodiscard]] inline MulticopterFlight flight_over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
   const std::vector<FlightPoint> wanted = points;
   MulticopterFlight flight = plan_multicopter(points, s);
@@ -81,7 +81,7 @@ template <class Plan>
   return flight;
 }
 
-/// First time in `from` to `until` at which a flight heads for `place` within 1 degree; `from` if there is none [s].
+/// First time at which a flight heads for `place` within 1 degree; `from` if there is none [s].
 [[nodiscard]] inline double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
   for (double t = from; t < until; t += 0.01) {
     const auto state = flight.motion().at(Tick::of_seconds(t));

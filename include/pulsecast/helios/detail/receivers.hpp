@@ -21,21 +21,18 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
-/// Receivers of a scanner's channels.
 namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
-/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to
-/// `WaveformSettings::max_samples` of them [s].
+/// Bins of a channel, of at most a pulse; that has `WaveformSettings::max_samples` at most [s].
 [[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
   constexpr double most = WaveformSettings::max_samples;
   const double bin = channel.waveform.bin_size, length = channel.pulse_length;
   return bin > length ? length : length > most * bin ? std::nextafter(length / most, length) : bin;
 }
 
-/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of
-/// the factor has no effect, as noise is symmetric.
+/// Range noise by a formula, as a table: for powers of the range, it errs by less than 1e-4.
 [[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
   const Formula times(channel.errors.range_noise, "t");
   const double first = std::max(channel.range_min, 0.01),
@@ -55,8 +52,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a
-/// `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
+/// Receiver of a channel. @throws SettingError, std::invalid_argument for an invalid noise formula
 [[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
   const bool by_formula = !channel.errors.range_noise.empty();
   const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
@@ -69,8 +65,7 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about light of a wavelength [m] in the air before a receiver, beyond the range in which its extinction was
-/// measured; empty if there is none.
+/// Warning about light of a wavelength [m] for which extinction was not measured; or empty.
 [[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
   if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
   return "light of " + text::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
@@ -79,11 +74,11 @@ namespace detail {
                                                  : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }
 
-/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
-/// one-way times of light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true
-/// ranges. By the library's physics, and with multi-bounce light, they are timed by their peaks: a mean range between
-/// the surface of water and its bottom is meaningless. The library's threshold is that of `WaveformSettings`, unless
-/// the scanner has another than that of HELIOS++, which is less than a photon.
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and
+/// `maxFullwaveRange_ns` are one-way times of light and count twice; `binSize_ns` is two-way time.
+/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks:
+/// a mean range between water and its bottom is meaningless. The library's threshold replaces that of
+/// HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
@@ -124,8 +119,8 @@ struct ReceiverGroups {
     }
   }
 
-  /// Receivers for `Survey`: `make(channel)` of one channel of each group. `scanner` is that of the groups; all
-  /// channels of a group may have been changed in the same way.
+  /// Receivers for `Survey`: `make(channel)` of one channel of each group. Those of `scanner` may
+  /// have been changed, all of a group in the same way.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;
@@ -152,13 +147,11 @@ template <EchoWidth Width>
           FullWaveform<Width>(waveform, {}, noise)};
 }
 
-/// Detector of the library's physics.
 template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
-/// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth
-/// of the pulse. Noise is a sixth of the minimum power of an echo, so that false echoes are rare although the whole
-/// gate is sampled.
+/// The same by the library's physics: the footprint has the second moments of the beam, the
+/// receiver the bandwidth of the pulse. Noise is a sixth of the minimum power: false echoes are rare.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,16 +24,13 @@
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
 
-/// Conversion of the scene of a survey document to parts of the library.
 namespace PULSECAST_NAMESPACE::helios {
 
 PULSECAST_INLINE int SceneBuilder::runs() const {
+  const auto later = [](int all, const SwapSettings& swap) { return all + swap.step; };
   int most = 1;
-  for (const PartSettings& part : settings_.parts) {
-    int all = 1;
-    for (const SwapSettings& swap : part.swaps) all += swap.step;
-    most = std::max(most, all);
-  }
+  for (const PartSettings& part : settings_.parts)
+    most = std::max(most, std::accumulate(part.swaps.begin(), part.swaps.end(), 1, later));
   return most;
 }
 
@@ -72,12 +70,8 @@ PULSECAST_INLINE void SceneBuilder::warn(const std::vector<std::string>& what) {
     if (warned_.insert(text).second) warnings_.push_back(text);
 }
 
-PULSECAST_INLINE void SceneBuilder::add_files(const std::vector<std::filesystem::path>& looked_for) {
-  files_.insert(looked_for.begin(), looked_for.end());
-}
-
 /// Reads each source once.
-PULSECAST_INLINE const std::vector<SceneBuilder::Loaded>& SceneBuilder::load(const PartSource& source) {
+PULSECAST_INLINE auto SceneBuilder::load(const PartSource& source) -> const std::vector<Loaded>& {
   for (const auto& [known, loaded] : loaded_)
     if (known == source) return loaded;
   auto made = std::visit([&](const auto& s) { return read(s); }, source);
@@ -85,8 +79,7 @@ PULSECAST_INLINE const std::vector<SceneBuilder::Loaded>& SceneBuilder::load(con
 }
 
 /// Loads files in order. A `SettingError` becomes a `FileError` of that file.
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std::vector<std::filesystem::path>& files,
-                                                                      const Load& load) {
+PULSECAST_INLINE auto SceneBuilder::each(const Files& files, const Load& load) -> std::vector<Loaded> {
   std::vector<Loaded> all;
   add_files(files);
   for (const std::filesystem::path& file : files) try {
@@ -124,11 +117,10 @@ PULSECAST_INLINE MaterialTable SceneBuilder::table(std::vector<Material> materia
 PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSource& source, VoxelData& voxels) {
   std::vector<Material> all{material(source)};
   if (source.random > 0) {
-    const std::vector<Material> variants = vary_reflectance(all[0], static_cast<std::size_t>(source.random),
-                                                            std::min(1.0, source.random_range), options_.seed);
+    const auto count = static_cast<std::size_t>(source.random);
+    const auto variants = vary_reflectance(all[0], count, std::min(1.0, source.random_range), options_.seed);
     all.insert(all.end(), variants.begin(), variants.end());
-    const std::vector<std::uint32_t> turns =
-        assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
+    const auto turns = assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
     voxels.materials.assign(turns.begin(), turns.end());
   }
   return table(std::move(all));
@@ -149,18 +141,17 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
   const auto number = text::number_in<ObjectId>(part.id);
   ObjectId object = number.value_or(static_cast<ObjectId>(place));
   if (!number && !part.id.empty())
-    warn({"part '" + part.id + "': its id is not a number; the object id of its points is its place in the scene, " +
-          std::to_string(place)});
+    warn({text::joined({"part '", part.id, "': its id is not a number; the object id of its points is its place in ",
+                        "the scene, ", std::to_string(place)})});
   const Attributes numbers = part.named_numbers();
   for (const Loaded& loaded : load(source)) {
     const Placement& inner = loaded.placement;
-    const Placement placed = inner.identity()
-                                 ? placement
-                                 : Placement{normalize(placement.rotation * inner.rotation),
-                                             placement.scale * inner.scale, placement.point(inner.translation)};
-    const std::string name = loaded.name.empty() ? part.id
-                             : part.id.empty()   ? loaded.name
-                                                 : part.id + "/" + loaded.name;
+    Placement placed = placement;
+    if (!inner.identity())
+      placed = {normalize(placement.rotation * inner.rotation), placement.scale * inner.scale,
+                placement.point(inner.translation)};
+    const bool has_both = !loaded.name.empty() && !part.id.empty();
+    const std::string name = part.id + (has_both ? "/" : "") + loaded.name;
     all.push_back({loaded.geometry, loaded.materials, placed, object++, name, {}, numbers});
     const Box box = box_of(all.back());
     const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
@@ -177,8 +168,8 @@ PULSECAST_INLINE void SceneBuilder::warn_of_shared_objects(const std::vector<Sur
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);
     if (is_new) continue;
-    warn({"the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' have the same object id, " +
-          std::to_string(all[i].object) + ": their points cannot be distinguished"});
+    warn({text::joined({"the parts '", at->second->id, "' and '", settings_of_[i]->id, "' have the same object id, ",
+                        std::to_string(all[i].object), ": their points cannot be distinguished"})});
     return;
   }
 }
@@ -188,7 +179,7 @@ PULSECAST_INLINE Box SceneBuilder::box_of(const SurveyPart& part) {
 }
 
 PULSECAST_INLINE void SceneBuilder::stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted) {
-  if (std::all_of(lifted.begin(), lifted.end(), [](int l) { return l == 0; })) return;
+  if (std::ranges::count(lifted, 0) == std::ssize(lifted)) return;
   std::vector<SurveyPart> fixed;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (lifted[i] == 0) fixed.push_back(all[i]);
@@ -196,8 +187,8 @@ PULSECAST_INLINE void SceneBuilder::stand_on_ground(std::vector<SurveyPart>& all
   const auto ground = [&](const Vec2& at) { return carriers.ground_height(at); };
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (lifted[i] == 0) continue;
-    auto stood = on_ground(all[i], ground, lifted[i] == -1 ? GroundPlacement::touching : GroundPlacement::lowest_point);
-    if (stood)
+    const auto how = lifted[i] == -1 ? GroundPlacement::touching : GroundPlacement::lowest_point;
+    if (auto stood = on_ground(all[i], ground, how))
       all[i] = std::move(*stood);
     else
       warn({"part '" + all[i].name + "': there is no ground under it: it is not moved"});
@@ -207,18 +198,13 @@ PULSECAST_INLINE void SceneBuilder::stand_on_ground(std::vector<SurveyPart>& all
 PULSECAST_INLINE void SceneBuilder::move(std::vector<SurveyPart>& all) {
   Box box;
   for (const SurveyPart& part : all) box.extend(box_of(part));
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (!settings_of_[i]->motions.empty())
-      all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
-}
-
-/// Time between two steps of a part [s].
-PULSECAST_INLINE double SceneBuilder::step_of(const PartSettings& part) const {
-  if (settings_.dynamic_interval) {
-    const double scene = *settings_.dynamic_interval;
-    return part.dynamic_interval ? scene * std::max(1.0, std::floor(*part.dynamic_interval / scene)) : scene;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const PartSettings& part = *settings_of_[i];
+    double step = settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;  // [s]
+    if (const auto scene = settings_.dynamic_interval)
+      step = *scene * std::max(1.0, std::floor(part.dynamic_interval.value_or(0) / *scene));
+    if (!part.motions.empty()) all[i].motion = part_motion(part, box.centre(), step);
   }
-  return settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

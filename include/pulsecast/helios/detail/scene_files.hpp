@@ -20,51 +20,36 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-namespace detail {
-
-/// Files in the settings of scenes.
-class SceneFiles {
+class SceneFiles final : public FieldIo {
  public:
-  void add(const PartSource& source) {
-    for (const std::filesystem::path& file : std::visit([](const auto& s) { return s.files; }, source)) {
-      add(file);
-      if (std::holds_alternative<ObjSource>(source) || text::lower(file.extension().string()) == ".obj")
-        objs.insert(file);
+  explicit SceneFiles(const SceneSettings& scene) {
+    for (const PartSettings& part : scene.parts) {
+      add(part.source);
+      for (const SwapSettings& swap : part.swaps)
+        if (swap.source) add(*swap.source);
     }
-    if (const auto* const raster = std::get_if<GeoTiffSource>(&source)) {
-      add_material(raster->material.file);
-      add(raster->classes);
-    } else if (const auto* const cloud = std::get_if<XyzSource>(&source)) {
-      add_material(cloud->material.file);
-    } else if (const auto* const voxels = std::get_if<VoxelSource>(&source)) {
-      add_material(voxels->material.file);
-      add(voxels->leaf_angles);
-    } else if (const auto* const mesh = std::get_if<MeshSource>(&source)) {
-      add_material(mesh->materials);
-    }
+  }
+  void file(const char* name, std::filesystem::path& file) override {
+    if (file.empty()) return;
+    all.insert(file);
+    if (std::string_view(name).starts_with("mat")) mtls.insert(file);  // `matfile`, `materials`
   }
 
   std::set<std::filesystem::path> all{}, objs{}, mtls{};  ///< OBJ and MTL files are among them
 
  private:
-  void add(const std::filesystem::path& file) {
-    if (!file.empty()) all.insert(file);
-  }
-  void add_material(const std::filesystem::path& file) {
-    add(file);
-    if (!file.empty()) mtls.insert(file);
+  void add(PartSource source) {
+    const auto add_fields = [&](auto& of_kind) {
+      of_kind.fields(*this);
+      for (std::filesystem::path& path : of_kind.files) {
+        file("", path);
+        if (std::holds_alternative<ObjSource>(source) || text::lower(path.extension().string()) == ".obj")
+          objs.insert(path);
+      }
+    };
+    std::visit(add_fields, source);
   }
 };
-
-[[nodiscard]] inline SceneFiles files_of(const SceneSettings& scene) {
-  SceneFiles files;
-  for (const PartSettings& part : scene.parts) {
-    files.add(part.source);
-    for (const SwapSettings& swap : part.swaps)
-      if (swap.source) files.add(*swap.source);
-  }
-  return files;
-}
 
 /// Adds the files of names separated by blanks, and of the whole as one name with blanks.
 inline void add_named(std::set<std::filesystem::path>& files, const std::filesystem::path& folder, std::string names) {
@@ -86,12 +71,14 @@ inline void add_libraries(std::set<std::filesystem::path>& files, const std::fil
     const io::MappedFile file(obj);
     const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()),
         keyword = "mtllib";
+    const auto is_continued = [&](std::size_t at, std::size_t end) {
+      const std::size_t last = text.substr(at, end - at).find_last_not_of(" \t\r");
+      return last != text.npos && text[at + last] == '\\';
+    };
     for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at)) {
       at += keyword.size();
       std::size_t end = std::min(text.find('\n', at), text.size());
-      while (end < text.size() && text.substr(at, end - at).find_last_of('\\') != text.npos &&
-             text.substr(at, end - at).find_last_not_of(" \t\r") == text.substr(at, end - at).find_last_of('\\'))
-        end = std::min(text.find('\n', end + 1), text.size());  // continued line
+      while (end < text.size() && is_continued(at, end)) end = std::min(text.find('\n', end + 1), text.size());
       add_named(files, obj.parent_path(), std::string(text.substr(at, end - at)));
     }
   } catch (const FileError&) {  // unreadable
@@ -103,19 +90,15 @@ inline bool declares_ground(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return false;
   try {
-    const auto materials = io::read_mtl(file).materials;
-    return std::any_of(materials.begin(), materials.end(), [](const auto& named) { return named.second.ground; });
+    return std::ranges::any_of(io::read_mtl(file).materials, [](const auto& named) { return named.second.ground; });
   } catch (const FileError&) {
     return true;
   }
 }
 
-}  // namespace detail
-
-/// Files in the settings of a scene, in all runs, existing or not. `SceneBuilder::files` returns those that these files
-/// name.
+/// Files in the settings of a scene, in all runs, existing or not.
 [[nodiscard]] inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) {
-  return detail::files_of(scene).all;
+  return SceneFiles(scene).all;
 }
 
 /// Folders of spectra, there or not: `spectra` in each folder of assets.
@@ -126,12 +109,11 @@ inline bool declares_ground(const std::filesystem::path& file) {
   return folders;
 }
 
-/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for
-/// `onGround`.
+/// True if an MTL file, of any run, declares a ground material for `onGround`, or cannot be read.
 [[nodiscard]] inline bool has_ground(const SceneSettings& scene) {
-  detail::SceneFiles files = detail::files_of(scene);
-  for (const std::filesystem::path& obj : files.objs) detail::add_libraries(files.mtls, obj);
-  return std::any_of(files.mtls.begin(), files.mtls.end(), detail::declares_ground);
+  SceneFiles files(scene);
+  for (const std::filesystem::path& obj : files.objs) add_libraries(files.mtls, obj);
+  return std::ranges::any_of(files.mtls, declares_ground);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

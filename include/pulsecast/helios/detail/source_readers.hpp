@@ -114,7 +114,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
     warn(voxels.warnings);
     if (voxels.voxels.cells.empty()) return warn({file.string() + ": holds no occupied voxel, and is left out"});
     MaterialTable materials = assign_materials(source.material, voxels.voxels);
-    if (!source.leaf_angles.empty())  // convention: a `ladlut` gives 2 pi times the extinction of unit density
+    if (!source.leaf_angles.empty())  // a `ladlut` has 2 pi times the extinction
       for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
     if (source.mode == VoxelMode::transmittive)
       all.push_back(
@@ -171,8 +171,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoT
   return loaded;
 }
 
-/// Reads a raster by the extension of its file. Numbers of missing heights, scale and size of pixels are those of
-/// `source`.
+/// Reads a raster by the extension of its file; missing heights, scale and pixels are of `source`.
 PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::filesystem::path& file,
                                                                  const GeoTiffSource& source) {
   add_files({file});
@@ -219,7 +218,7 @@ PULSECAST_INLINE Raster SceneBuilder::ground(const std::filesystem::path& file, 
   return raster;
 }
 
-/// The material of pixels without a class, and then of each class the first, by name, with this number.
+/// Material of pixels without a class, and then, of each class, the first by name.
 PULSECAST_INLINE SceneBuilder::GroundMaterials SceneBuilder::ground_materials(const GeoTiffSource& source) {
   ClassMaterials classes{.materials = {material(source.material)}};
   GroundMaterials made;

@@ -31,24 +31,24 @@ concept TellsAngle = requires(const O optic, Tick t) {
   static_cast<double>(optic.angle(t));
 };
 
-/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type for all optics,
-/// so that a program with scanners from files compiles one pipeline.
+/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One
+/// type, so that a program with scanners from files compiles one pipeline.
 struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
   AnyOptic optic{};
-  Tick ahead{};                                          ///< lead of the optic's clock over that of the leg
-  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< of the channel, before the head turns it
+  Tick ahead{};                                          ///< lead of the optic's clock
+  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< channel, before the head turns it
   RotatingHead head{.angular_rate = 0};
-  std::shared_ptr<const Formula> deflection_error{};  ///< error of the deflection, by the deflection; or none [rad]
-  std::shared_ptr<const Formula> head_error{};   ///< error of the head angle, as a function of the deflection [rad]
-  std::shared_ptr<const Formula> range_error{};  ///< error of the reported range, as a function of the deflection [m]
-  double head_zero_threshold = 0;  ///< minimum distance of the argument of `head_error` from multiples of pi [rad]
+  std::shared_ptr<const Formula> deflection_error{};  ///< of the deflection, by it [rad]
+  std::shared_ptr<const Formula> head_error{};        ///< of the head, by the deflection [rad]
+  std::shared_ptr<const Formula> range_error{};       ///< of the range, by the deflection [m]
+  double head_zero_threshold = 0;                     ///< minimum distance of its argument from k pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
     RotatingHead{.angular_rate = head.angular_rate, .axis = head.axis}.validate();
-    require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // many turns in some documents
+    require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // some have many turns
   }
 
   [[nodiscard]] bool open(Tick t) const noexcept {

@@ -22,8 +22,8 @@ struct SurveyBuildOptions {
   std::uint64_t seed = 0;      ///< seed of leg offsets and noise
   bool platform_noise = true;  ///< true: platform noise as in the survey; false: none
   bool leg_noise = true;       ///< true: random leg offsets as in the survey; false: none
-  /// Place of each leg in its document, for messages: `survey.xml:12:5`. May be empty, for settings of a program: then
-  /// the notes of `read_survey` are given with the others.
+  /// Place of each leg in its document, as in `survey.xml:12:5`. If empty, as for settings of a
+  /// program, the notes of `read_survey` are given with the others.
   std::vector<std::string> leg_places{};
 
   /// Name of a leg for messages.
@@ -32,8 +32,7 @@ struct SurveyBuildOptions {
   }
 };
 
-/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` returns the level
-/// nearest to a height.
+/// Height of any `Ground` [m]; of a `LevelledGround`, the level nearest to a height.
 class GroundHeight {
  public:
   template <Ground G>

@@ -14,7 +14,7 @@
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
-/// Stages that an XML document chooses, as one type each: the pipeline of its survey is then compiled once.
+/// Stages that an XML document chooses, as one type each: the pipeline is then compiled once.
 namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// `FullWaveform` with or without echo widths.
@@ -26,7 +26,7 @@ class SurveyDetector {
  public:
   using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser, tag::PreparesForLasers>;
   using Workspace = std::variant<typename Plain::Workspace, typename Fitting::Workspace>;
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< that of the receiver
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;
 
   explicit SurveyDetector(Plain detector) : detector_(std::move(detector)) {}
   explicit SurveyDetector(Fitting detector) : detector_(std::move(detector)) {}

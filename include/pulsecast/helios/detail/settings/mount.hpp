@@ -3,6 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,11 +38,11 @@ struct RotationList {
 
   /// Product of all rotations.
   [[nodiscard]] Rotation rotation() const {
-    Rotation all = no_rotation;  // as `extrinsic` and `intrinsic` do, but documents may have many turns
+    Rotation all = no_rotation;  // not `extrinsic`: documents may have many turns
+    constexpr std::array axes{axis::right, axis::forward, axis::up};
     for (const AxisTurn& turn : turns) {
       require_finite("angle_deg", degrees(turn.angle), "deg");
-      const Vec3 about = turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up;
-      const Rotation next = rotation_about(about, turn.angle);
+      const Rotation next = rotation_about(axes[static_cast<std::size_t>(turn.axis)], turn.angle);
       all = local ? all * next : next * all;
     }
     return normalize(all);

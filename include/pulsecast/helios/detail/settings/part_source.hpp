@@ -14,7 +14,6 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
 
-/// Sources of the geometry of parts: loading filters.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Materials of geometry files without any.
@@ -47,15 +46,15 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, `efilepath`; `.asc` and `.png` tell other formats
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, `efilepath`; also `.asc`, `.png`
   MaterialSource material{};                   ///< that of pixels without a class
-  bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
-  std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
-  bool class_colours = false;                  ///< true: its colour table colours the materials. `classcolours`
-  std::optional<double> height_scale{};  ///< metres per unit of height; by default that of the file [m]. `heightScale`
-  double height_offset = 0;              ///< added to the heights [m]. `heightOffset`
-  std::optional<double> missing{};       ///< number of missing heights; by default that of the file. `noDataValue`
-  std::optional<double> pixel_size{};    ///< of PNG files without a world file [m]. `pixelSize`
+  bool mosaic = false;                         ///< the files are tiles of one raster; `mosaic`
+  std::filesystem::path classes{};             ///< raster of classes, for materials; `classfile`
+  bool class_colours = false;                  ///< coloured by its colour table; `classcolours`
+  std::optional<double> height_scale{};        ///< height unit, default: the file's; `heightScale` [m]
+  double height_offset = 0;                    ///< added to the heights; `heightOffset` [m]
+  std::optional<double> missing{};             ///< no-data height, default: the file's; `noDataValue`
+  std::optional<double> pixel_size{};          ///< of PNG without world file; `pixelSize` [m]
 
   void fields(FieldIo& io) {
     material.fields(io);
@@ -74,11 +73,11 @@ struct GeoTiffSource {
 struct XyzSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
-  std::string separator{};               ///< set of column separators, default detected; `separator`
-  double voxel_size = 1;                 ///< edge length; `voxelSize` [m]
-  std::optional<Vec3> default_normal{};  ///< non-zero, any length; `defaultNormal`
-  int estimate_normals = 0;              ///< 0: from the file, else fitted to a plane in each voxel; `estimateNormals`
-  bool snap_neighbor_normal = false;  ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
+  std::string separator{};                     ///< of columns, default detected; `separator`
+  double voxel_size = 1;                       ///< edge length; `voxelSize` [m]
+  std::optional<Vec3> default_normal{};        ///< non-zero, any length; `defaultNormal`
+  int estimate_normals = 0;                    ///< 0: from the file, else fitted; `estimateNormals`
+  bool snap_neighbor_normal = false;           ///< of the most central point; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
   void fields(FieldIo& io) {
@@ -119,7 +118,7 @@ struct VoxelSource {
   MaterialSource material{};
   VoxelMode mode = VoxelMode::transmittive;  ///< `intersectionMode`
   double scaling_exponent = 0.5;             ///< scaled mode only; `intersectionArgument`
-  bool random_shift = false;                 ///< scaled mode: random place of each cube in its cell; `randomShift`
+  bool random_shift = false;                 ///< scaled mode: cubes at random places; `randomShift`
   double leaf_area = 0;                      ///< 0: leaves without a size. `leafArea_m2` [m^2]
   double clumping = 1;                       ///< factor of the extinction. `clumping`
   std::filesystem::path leaf_angles{};       ///< look-up table; empty: none. `ladlut`
@@ -149,7 +148,7 @@ struct MeshSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MeshUp up = MeshUp::file;                    ///< `up`
   std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
-  std::filesystem::path materials{};  ///< MTL file whose materials replace those of the same names. `materials`
+  std::filesystem::path materials{};           ///< MTL file for materials by name; `materials`
 
   void fields(FieldIo& io) {
     io.choice("up", up, {{"file", MeshUp::file}, {"z", MeshUp::z}, {"y", MeshUp::y}});

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
@@ -23,14 +22,13 @@ using pulsecast::KeptReturns;
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
-  double scan_product_max = radians(1e6);  ///< of half scan angle times frequency; `scanProduct` in deg Hz [rad/s]
+  double scan_product_max = radians(1e6);  ///< half angle times rate; `scanProduct` in deg Hz [rad/s]
 
   void fields(FieldIo& io) { io.number("scanProduct", scan_product_max, units::degree_hertz, 1e-3, 1e12); }
   bool operator==(const OscillatingOptic&) const = default;
 };
 
-/// Rotating polygon mirror: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of
-/// that.
+/// Rotating polygon mirror: `optics="rotating"`. It sweeps `scan_angle_max` to either side.
 struct RotatingOptic {
   /// Maximum half angle of measurement, default `scan_angle_max`; `scanAngleEffectiveMax_deg` [rad]
   std::optional<double> effective_angle_max{};
@@ -55,7 +53,7 @@ struct LineOptic {
 
 /// One rotating glass wedge.
 struct RisleyPrism {
-  double angle = 0;             ///< wedge; inclined entry face if positive, else exit face. `angle1_deg`... [rad]
+  double angle = 0;             ///< wedge: entry face; negative: exit face. `angle1_deg`... [rad]
   double rotation_rate = 0;     ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
   double refractive_index = 1;  ///< `refrIndex1`...
 
@@ -83,25 +81,16 @@ struct RisleyOptic {
   bool operator==(const RisleyOptic&) const = default;
 };
 
-/// Any optic.
+/// Any optic, and the default of each.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
-
-namespace detail {
-
-/// Default optic of a kind.
-[[nodiscard]] inline OpticSettings optic_of(std::size_t kind) {
-  static const std::array<OpticSettings, 5> all{OscillatingOptic{}, RotatingOptic{}, ConicOptic{}, LineOptic{},
-                                                RisleyOptic{}};
-  return all[kind];
-}
-
-}  // namespace detail
+inline constexpr std::array<OpticSettings, 5> default_optics{OscillatingOptic{}, RotatingOptic{}, ConicOptic{},
+                                                             LineOptic{}, RisleyOptic{}};
 
 /// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
   double bin_size = 0.25e-9;       ///< `binSize_ns` [s]
-  std::optional<double> window{};  ///< half width about a peak, default a quarter of the pulse length; `winSize_ns` [s]
-  int rings = 3;                   ///< number of subray rings, including the centre; `beamSampleQuality`
+  std::optional<double> window{};  ///< half width at peaks, default a quarter pulse; `winSize_ns` [s]
+  int rings = 3;                   ///< of subrays, with the centre; `beamSampleQuality`
   double duration_max = 0;         ///< 0: no limit; `maxFullwaveRange_ns` [s]
 
   void fields(FieldIo& io) {
@@ -115,33 +104,32 @@ struct FullWaveformSettings {
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
-/// Errors of a scanner, as formulas of an angle or range: `<deflectionError>`, `<headError>`, `<rangeError>`.
+/// Formulas of errors, by the deflection: `<deflectionError>`, `<headError>`, `<rangeError>`.
 struct ErrorFormulas {
-  std::string deflection{};        ///< error of the deflection, as a function of it [rad]; `expr` in THETA
-  std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
-  double head_zero_threshold = 0;  ///< minimum distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
-  std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
-  std::string range_noise{};       ///< factor of range noise, by the range [m]; `distanceMeasurementError` in t
+  std::string deflection{};        ///< error of the deflection [rad]; `expr` in THETA
+  std::string head{};              ///< error of the head angle [rad]; `expr` in THETA
+  double head_zero_threshold = 0;  ///< distance kept from 0 and pi; `zeroSinThreshold_deg` [rad]
+  std::string range{};             ///< error of the range [m]; `expr` in THETA
+  std::string range_noise{};       ///< noise factor, by the range t [m]; `distanceMeasurementError`
 
   bool operator==(const ErrorFormulas&) const = default;
 };
 
-/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of
-/// `beam_origin` is along the axes of the platform, like that of the mount. The rotation of the mount does not turn it;
-/// heading and head do.
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The
+/// position of `beam_origin` is along the axes of the platform: the mount does not turn it.
 struct ChannelSettings {
   std::string id{};                      ///< `id` of the channel; empty for the only channel
   OpticSettings optic{};                 ///< `optics` and its attributes
   double scan_angle_max = 0;             ///< half angle; `scanAngleMax_deg` [rad]
   double scan_rate_min = 0;              ///< `scanFreqMin_Hz` [Hz]
   double scan_rate_max = 0;              ///< 0: no limit; `scanFreqMax_Hz` [Hz]
-  MountSettings beam_origin{};           ///< rotation in the frame of the instrument; `<beamOrigin>`
+  MountSettings beam_origin{};           ///< rotation in the instrument; `<beamOrigin>`
   Vec3 head_axis = axis::up;             ///< non-zero, any length; `<headRotateAxis>`
   double head_rate_max = 0;              ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
-  double divergence = 0.3e-3;            ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
+  double divergence = 0.3e-3;            ///< full angle at 1/e^2; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;            ///< full width at half maximum; `pulseLength_ns` [s]
   double average_power = 4;              ///< `averagePower_w` [W]
-  std::optional<double> beam_quality{};  ///< M^2, default a point source; `beamQualityFactor` other than 1
+  std::optional<double> beam_quality{};  ///< M^2, default a point source; `beamQualityFactor`
   double wavelength = 1064e-9;           ///< `wavelength_nm` [m]
   double efficiency = 0.99;              ///< `opticalEfficiency`
   double receiver_diameter = 0.15;       ///< `receiverDiameter_m` [m]
@@ -150,8 +138,8 @@ struct ChannelSettings {
   double range_min = 0;                  ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
   int returns_max = 0;                                         ///< per pulse; 0: no limit. `maxNOR`
-  KeptReturns returns_kept = KeptReturns::first;               ///< which ones, of more; `keptReturns`
-  double received_power_min = 1e-4 / 1e9;                      ///< per echo; `receivedEnergyMin_W`, which is in nW [W]
+  KeptReturns returns_kept = KeptReturns::first;               ///< which, of more; `keptReturns`
+  double received_power_min = 1e-4 / 1e9;                      ///< per echo; `receivedEnergyMin_W` in nW [W]
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
@@ -167,7 +155,7 @@ struct ChannelSettings {
     io.number("pulseLength_ns", pulse_length, units::nanosecond, 1e-3, 1e4);
     io.number("averagePower_w", average_power, units::watt, 1e-12, 1e9);
     io.number("beamQualityFactor", beam_quality, units::one, 0.1, 1e3);
-    if (io.reads() && beam_quality == 1.0) beam_quality.reset();  // the format's default says nothing
+    if (io.reads() && beam_quality == 1.0) beam_quality.reset();  // the default of the format
     io.number("wavelength_nm", wavelength, units::nanometre, 100, 1e5);
     io.number("opticalEfficiency", efficiency, units::one, 0, 1);
     io.number("receiverDiameter_m", receiver_diameter, units::metre, 1e-6, 1e3);
@@ -182,7 +170,7 @@ struct ChannelSettings {
   void optic_fields(FieldIo& io) {
     std::size_t kind = optic.index();
     io.choice("optics", kind, {{"oscillating", 0}, {"rotating", 1}, {"conic", 2}, {"line", 3}, {"risley", 4}});
-    if (kind != optic.index()) optic = detail::optic_of(kind);
+    if (kind != optic.index()) optic = default_optics[kind];
     std::visit([&](auto& of_kind) { of_kind.fields(io); }, optic);
     for (const char* name :
          {"scanProduct", "scanAngleEffectiveMax_deg", "numFibers", "rotorFreq1_Hz", "rotorFreq2_Hz", "rotorFreq3_Hz",
@@ -212,7 +200,6 @@ struct ChannelSettings {
     check_fields(*this);
     check_limits(FieldCheck());
   }
-
   bool operator==(const ChannelSettings&) const = default;
 };
 
@@ -220,13 +207,12 @@ struct ChannelSettings {
 struct ScannerSettings {
   std::string id{};                         ///< `id`
   std::string name{};                       ///< `name`
-  std::vector<double> pulse_rates{};        ///< supported rates, default first; `pulseFreqs_Hz` [Hz]
-  std::vector<ChannelSettings> channels{};  ///< at least one; they fire at the same time, in this order
+  std::vector<double> pulse_rates{};        ///< supported, default first; `pulseFreqs_Hz` [Hz]
+  std::vector<ChannelSettings> channels{};  ///< at least one; they fire together, in order
 
   void validate() const {
     for (const ChannelSettings& channel : channels) channel.validate();
   }
-
   bool operator==(const ScannerSettings&) const = default;
 };
 

@@ -22,13 +22,12 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Placement of geometry: maps each vertex to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`,
-/// `translate`.
+/// Placement: `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
-  std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation` of each filter
+  std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation`
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;  ///< not 0: moved onto the ground, by its lowest point, or, if -1, at first contact. `onGround`
+  int on_ground = 0;                      ///< not 0: by its lowest point; -1: at first contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -50,14 +49,14 @@ struct RotationMotion {
   Vec3 axis = axis::up;           ///< non-zero, any length; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};   ///< point on the axis, default the origin; `center` [m]
-  std::optional<double> glide{};  ///< shift along the axis, in lengths of `axis`: helical only. `glide`
+  std::optional<double> glide{};  ///< helical only: shift along it, in its lengths; `glide`
 
   bool operator==(const RotationMotion&) const = default;
 };
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = axis::up;       ///< normal of a plane through the origin; non-zero, any length. `ortho`
+  Vec3 normal = axis::up;       ///< of a plane through the origin; non-zero, any length. `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
@@ -76,7 +75,7 @@ struct RotoreflectionMotion {
 struct MotionSettings {
   std::variant<NoMotion, TranslationMotion, RotationMotion, ReflectionMotion, RotoreflectionMotion> kind{};
   bool about_itself = false;  ///< in a frame at the part's centre; `selfMode`
-  double shift_factor = 0;    ///< multiple of the scene centre, added to the coordinates given; `autoCRS`
+  double shift_factor = 0;    ///< multiple of the scene's centre that is added; `autoCRS`
 
   bool operator==(const MotionSettings&) const = default;
 };
@@ -109,7 +108,6 @@ struct SwapSettings {
     check_fields(*this);
     if (source) std::visit([](const auto& one) { check_fields(one); }, *source);
   }
-
   bool operator==(const SwapSettings&) const = default;
 };
 
@@ -127,11 +125,11 @@ struct AttributeSettings {
 
 /// `<part>`
 struct PartSettings {
-  std::string id{};                               ///< `id`, default the number of parts and files before it
+  std::string id{};                               ///< `id`; default: number of files before it
   PartSource source{};                            ///< loading filter
   TransformSettings transform{};                  ///< placing filters
-  int dynamic_step = 1;                           ///< updates of the scene per motion step; `dynStep`
-  std::optional<double> dynamic_interval{};       ///< interval of motion steps, if the scene has one; `dynTimeStep` [s]
+  int dynamic_step = 1;                           ///< scene updates per motion step; `dynStep`
+  std::optional<double> dynamic_interval{};       ///< if the scene has one; `dynTimeStep` [s]
   std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: at rest
   std::vector<SwapSettings> swaps{};              ///< in sequence
   std::vector<AttributeSettings> attributes{};    ///< named numbers, each name once
@@ -147,14 +145,12 @@ struct PartSettings {
     for (const SwapSettings& swap : swaps) swap.validate();
     static_cast<void>(named_numbers());
   }
-  /// The attributes for the parts of a scene; empty without. @throws SettingError for a name that is empty or comes
-  /// twice
+  /// The attributes of a part. @throws SettingError for a name that is empty or comes twice
   [[nodiscard]] Attributes named_numbers() const {
     std::vector<Attribute> all;
     for (const auto& [name, value] : attributes) all.push_back({name, value});
     return all.empty() ? Attributes() : pulsecast::attributes(std::move(all));
   }
-
   bool operator==(const PartSettings&) const = default;
 };
 
@@ -164,7 +160,7 @@ struct LightSettings {
   double share_min = 1e-4;      ///< minimum share of a subray that is followed; `leastShare`
   int orders = 1;               ///< maximum number of surfaces that scatter it; `orders`
   int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
-  double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
+  double field_of_view = 2e-3;  ///< receiver's full angle, if orders > 1; `fieldOfView_deg` [rad]
 
   void fields(FieldIo& io) {
     io.whole("passages", passages, 0, 32);
@@ -179,35 +175,9 @@ struct LightSettings {
 /// Media by visibility or rate: the functions of `material/weather.hpp`.
 enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, snow };
 
-namespace detail {
-
-/// Medium of a preset other than none, by its visibility [m] or rate [mm/h], for light of a wavelength [m].
-/// @throws SettingError for values out of its range
-[[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
-  switch (preset) {
-    case MediumPreset::fog:
-      return {.medium = fog(visibility, wavelength)};
-    case MediumPreset::haze:
-      return {.medium = haze(visibility, wavelength)};
-    case MediumPreset::dust:
-      return {.medium = dust(visibility, wavelength)};
-    case MediumPreset::smoke:
-      return {.medium = smoke(visibility, wavelength)};
-    case MediumPreset::rain:
-      return MediumRegion::of(rain(rate, wavelength));
-    case MediumPreset::snow:
-      return MediumRegion::of(snow(rate, wavelength));
-    case MediumPreset::none:
-      break;
-  }
-  return {};
-}
-
-}  // namespace detail
-
 /// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
 struct MediumSettings {
-  MediumPreset preset = MediumPreset::none;  ///< medium of the light's wavelength, instead of coefficients; `preset`
+  MediumPreset preset = MediumPreset::none;  ///< instead of coefficients; `preset`
   std::optional<double> visibility{};        ///< of fog, haze, dust and smoke; `visibility_m` [m]
   std::optional<double> rate{};              ///< of rain and snow, melted; `rate_mmPerH` [mm/h]
   double absorption = 0;                     ///< `absorption_perM` [1/m]
@@ -216,24 +186,37 @@ struct MediumSettings {
   std::optional<Vec3> min{};                 ///< lower corner of its box, default none; `min` [m]
   std::optional<Vec3> max{};                 ///< upper corner of its box, default none; `max` [m]
 
-  /// The same for `LightPaths`, for light of a wavelength [m]. @throws SettingError for values out of range of a preset
+  /// The same for `LightPaths`, for a wavelength [m]. @throws SettingError for values out of range
   [[nodiscard]] MediumRegion region(double wavelength) const {
+    const double seen = visibility.value_or(0), fallen = rate.value_or(0);
+    const auto unbounded = [&]() -> MediumRegion {
+      switch (preset) {
+        case MediumPreset::fog:
+          return {.medium = fog(seen, wavelength)};
+        case MediumPreset::haze:
+          return {.medium = haze(seen, wavelength)};
+        case MediumPreset::dust:
+          return {.medium = dust(seen, wavelength)};
+        case MediumPreset::smoke:
+          return {.medium = smoke(seen, wavelength)};
+        case MediumPreset::rain:
+          return MediumRegion::of(rain(fallen, wavelength));
+        case MediumPreset::snow:
+          return MediumRegion::of(snow(fallen, wavelength));
+        case MediumPreset::none:
+          break;
+      }
+      return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}};
+    };
+    MediumRegion made = unbounded();
     const Box all = everywhere();
-    MediumRegion made =
-        preset == MediumPreset::none
-            ? MediumRegion{.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}}
-            : detail::medium_of(preset, visibility.value_or(0), rate.value_or(0), wavelength);
     made.bounds = {min.value_or(all.min), max.value_or(all.max)};
     return made;
   }
   void fields(FieldIo& io) {
+    using enum MediumPreset;
     io.choice("preset", preset,
-              {{"fog", MediumPreset::fog},
-               {"haze", MediumPreset::haze},
-               {"dust", MediumPreset::dust},
-               {"smoke", MediumPreset::smoke},
-               {"rain", MediumPreset::rain},
-               {"snow", MediumPreset::snow}});
+              {{"fog", fog}, {"haze", haze}, {"dust", dust}, {"smoke", smoke}, {"rain", rain}, {"snow", snow}});
     io.number("visibility_m", visibility, units::metre, 1, 1e5);
     io.number("rate_mmPerH", rate, units::millimetre_per_hour, 0.1, 300);
     io.number("absorption_perM", absorption, units::per_metre, 0, 1e6);
@@ -244,12 +227,12 @@ struct MediumSettings {
   }
   /// @throws SettingError for values out of range, or that do not go together
   void validate() const {
-    const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow,
-               by_visibility = preset != MediumPreset::none && !drops;
-    if (visibility && !by_visibility)
+    const bool is_preset = preset != MediumPreset::none,
+               drops = preset == MediumPreset::rain || preset == MediumPreset::snow;
+    if (visibility && (drops || !is_preset))
       throw SettingError("visibility_m", *visibility, "m", "left out, but for fog, haze, dust and smoke");
     if (rate && !drops) throw SettingError("rate_mmPerH", *rate, "mm/h", "left out, but for rain and snow");
-    if (preset != MediumPreset::none)
+    if (is_preset)
       require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
     region(known_wavelength).validate();
@@ -265,9 +248,9 @@ struct SceneSettings {
   std::string id{};                          ///< `id`
   std::string name{};                        ///< `name`
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
-  std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
+  std::optional<double> dynamic_interval{};  ///< of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
-  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; without it and media, rays end at surfaces
+  std::vector<LightSettings> light{};   ///< `<light>`: the first; without it and media, rays end at surfaces
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
   void fields(FieldIo& io) {
@@ -277,8 +260,7 @@ struct SceneSettings {
     io.whole("dynStep", dynamic_step, 1, 1'000'000'000);
     io.number("dynTimeStep", dynamic_interval, units::second, 1e-9, 1e6);
   }
-  /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as
-  /// `MediumSettings::region`
+  /// Media in its air, for a wavelength [m]. @throws SettingError also for boxes that overlap
   [[nodiscard]] Media air(double wavelength) const {
     std::vector<MediumRegion> regions;
     for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));
@@ -294,7 +276,6 @@ struct SceneSettings {
     (void)air(MediumSettings::known_wavelength);
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }
-
   bool operator==(const SceneSettings&) const = default;
 };
 

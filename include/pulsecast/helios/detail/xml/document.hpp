@@ -41,8 +41,8 @@ struct XmlFault {
   std::string problem{};  ///< the fault and the expectation
 };
 
-/// All faults of a document and of those that it refers to. `what()` has a line for each, `path:line:column: problem`.
-/// As a `FileError` it is about the first of them. `warnings` are those of the same documents.
+/// All faults of a document and of those that it refers to, as a `FileError` about the first.
+/// `what()` has a line for each, `path:line:column: problem`.
 class XmlFaults : public FileError {
  public:
   static constexpr std::size_t max_listed = 100;  ///< faults in `what()`
@@ -58,7 +58,8 @@ class XmlFaults : public FileError {
   }
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
-  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< in order of detection
+  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }
+  /// Those of the same documents.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
@@ -74,7 +75,7 @@ class XmlFaults : public FileError {
 /// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_listed = 1000;  ///< limit of faults and of warnings; later ones are dropped
+  static constexpr std::size_t max_listed = 1000;  ///< of faults, and of warnings
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -87,7 +88,7 @@ class XmlReport {
   void warn(const XmlPlace& place, const std::string& problem) {
     if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
-    if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+    if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(std::move(text));
     if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_listed) + " are not listed";
   }
 
@@ -101,13 +102,10 @@ class XmlReport {
 
   /// True if no more faults are kept, so that searching can stop.
   [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_listed; }
-
   [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_listed; }
-
-  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< number of faults
+  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< their number
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
-  /// Throws `XmlFaults` if there is a fault.
   void require_clean() const {
     if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
   }
@@ -120,8 +118,7 @@ class XmlReport {
   bool lenient_ = false;
 };
 
-/// XML file in memory, with the position of every element and attribute. External and declared entities are not
-/// supported: a document that declares any is refused.
+/// XML file in memory, with the position of elements and attributes. Entities are refused.
 class XmlDocument {
  public:
   static constexpr std::size_t max_file_size = std::size_t{64} << 20;      ///< [byte]
@@ -135,39 +132,36 @@ class XmlDocument {
       file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
     text_ = file.take_rest();
     find_line_ends();
-    if (const std::size_t zero = text_.find('\0'); zero != std::string::npos)
+    if (const std::size_t zero = text_.find('\0'); zero != text_.npos)
       fail_at(zero, "holds binary data: expected an XML document");
     decode();
-    const auto status = document_.load_buffer(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype,
-                                              pugi::encoding_utf8);
+    constexpr unsigned options = pugi::parse_default | pugi::parse_doctype;
+    const auto status = document_.load_buffer(text_.data(), text_.size(), options, pugi::encoding_utf8);
+    const char* const hint = status.status == pugi::status_end_element_mismatch
+                                 ? " (this end tag does not match the last start tag)"
+                             : status.status == pugi::status_no_document_element ? " (no element)"
+                                                                                 : "";
     if (!status)
       fail_at(static_cast<std::size_t>(status.offset),
-              std::string("is not well-formed XML: ") + status.description() + hint(status.status));
-    for (const pugi::xml_node node : document_.children())
-      if (node.type() == pugi::node_doctype && std::string_view(node.value()).find('[') != std::string_view::npos)
-        fail_at(std::min(text_.find("<!DOCTYPE"), text_.size()),
-                "declares entities: expected a document without a DOCTYPE of its own");
-    root_ = document_.document_element();
-    for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling())
-      if (node.type() == pugi::node_element)
+              text::joined({"is not well-formed XML: ", status.description(), hint}));
+    for (const pugi::xml_node node : document_.children()) {
+      if (node.type() == pugi::node_doctype && std::string_view(node.value()).find('[') != text_.npos)
+        fail_at(text_.find("<!DOCTYPE"), "declares entities: expected a document without a DOCTYPE of its own");
+      if (node.type() == pugi::node_element && node != root())
         fail_at(offset(node), "a second root element: expected the end of the file");
-    check_attributes();
+    }
+    for (const pugi::xpath_node& found : document_.select_nodes("descendant::*")) check_attributes(found.node());
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// Oddity of the encoding and its place; empty without.
   [[nodiscard]] const std::optional<XmlFault>& oddity() const noexcept { return oddity_; }
-  [[nodiscard]] pugi::xml_node root() const noexcept { return root_; }
+  [[nodiscard]] pugi::xml_node root() const noexcept { return document_.document_element(); }
 
-  /// Position of the whole file.
-  [[nodiscard]] XmlPlace place() const { return {.path = path_, .line = 1, .column = 1}; }
-
-  /// Position of an element.
-  [[nodiscard]] XmlPlace place(pugi::xml_node node) const { return place_of(offset(node)); }
-
-  /// Position of an attribute.
-  [[nodiscard]] XmlPlace place(pugi::xml_node node, std::string_view attribute) const {
+  /// Position of an element, or of an attribute of it; that of the file for none.
+  [[nodiscard]] XmlPlace place(pugi::xml_node node = {}, std::string_view attribute = {}) const {
     std::size_t found = offset(node);
+    if (attribute.empty()) return place_of(found);
     each_attribute(found, [&](std::size_t at, std::string_view name, std::string_view) {
       if (name == attribute) found = at;
       return name != attribute;
@@ -179,20 +173,21 @@ class XmlDocument {
   /// Makes the text UTF-8. Lines stay.
   void decode() {
     const std::string declared = xml::declared_encoding(text_);
+    const auto is_one_of = [&](auto... names) { return (... || (declared == names)); };
     const std::size_t odd = xml::first_not_utf8(text_);
-    const bool is_utf8 =
-        declared.empty() || declared == "utf-8" || declared == "utf8" || declared == "us-ascii" || declared == "ascii";
+    const bool is_utf8 = is_one_of("", "utf-8", "utf8", "us-ascii", "ascii");
     const bool is_ascii = std::ranges::none_of(text_, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     if (is_ascii || (is_utf8 && odd == text_.size())) return;
-    if (!is_utf8 && declared != "iso-8859-1" && declared != "latin1" && declared != "windows-1252" &&
-        declared != "cp1252")
+    if (!is_utf8 && !is_one_of("iso-8859-1", "latin1", "windows-1252", "cp1252"))
       fail_at(0, "has the encoding " + text::quoted(declared) + ": expected UTF-8, ISO-8859-1 or windows-1252");
+    if (odd == text_.size()) {
+      oddity_ = {place(), "names the encoding " + text::quoted(declared) + ", and is UTF-8, as which it is taken"};
+      return;
+    }
     if (is_utf8)
       oddity_ = {place_of(odd),
-                 "is no UTF-8, and is taken as windows-1252; the first line may tell, as in encoding=\"windows-1252\""};
-    else if (odd == text_.size())
-      oddity_ = {place(), "names the encoding " + text::quoted(declared) + ", and is UTF-8, as which it is taken"};
-    if (odd == text_.size()) return;
+                 "is no UTF-8, and is taken as windows-1252; the first line may tell, as in "
+                 "encoding=\"windows-1252\""};
     text_ = xml::utf8_of_windows_1252(text_);
     find_line_ends();
   }
@@ -201,11 +196,6 @@ class XmlDocument {
     line_ends_.clear();
     for (std::size_t i = 0; i < text_.size(); ++i)
       if (text_[i] == '\n') line_ends_.push_back(i);
-  }
-
-  [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
-    if (status == pugi::status_end_element_mismatch) return " (this end tag does not match the last start tag)";
-    return status == pugi::status_no_document_element ? " (no element)" : "";
   }
 
   /// Offset of the byte after the `<` of an element.
@@ -225,8 +215,7 @@ class XmlDocument {
     throw XmlFaults({{place_of(std::min(byte, text_.size())), std::move(problem)}});
   }
 
-  /// Calls visit(byte, name, value) for each attribute in the text of a start tag, until it returns false; `at` is the
-  /// element's offset.
+  /// Calls visit(byte, name, value) for each attribute of an element, until it returns false.
   template <class Visit>
   void each_attribute(std::size_t at, Visit visit) const {
     const auto skip = [&](std::string_view set) { at = std::min(text_.find_first_not_of(set, at), text_.size()); };
@@ -247,41 +236,26 @@ class XmlDocument {
     }
   }
 
-  /// Refuses repeated and overlong attributes, which pugixml accepts silently.
-  void check_attributes() const {
-    for (pugi::xml_node node = root_; node; node = next(node)) {
-      std::vector<std::string_view> names;
-      each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
-        if (name.size() + value.size() > max_attribute_size)
-          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) +
-                          " bytes: " + text::quoted(name));
-        if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
-          fail_at(at, "attribute " + text::quoted(name) +
-                          (names.size() == max_attributes ? " exceeds the maximum number of attributes"
-                                                          : " is given twice"));
-        names.push_back(name);
-        return true;
-      });
-    }
-  }
-
-  /// Next element in document order.
-  [[nodiscard]] pugi::xml_node next(pugi::xml_node node) const {
-    const auto element = [](pugi::xml_node found) {
-      while (found && found.type() != pugi::node_element) found = found.next_sibling();
-      return found;
-    };
-    if (const pugi::xml_node child = element(node.first_child())) return child;
-    for (; node && node != root_; node = node.parent())
-      if (const pugi::xml_node sibling = element(node.next_sibling())) return sibling;
-    return {};
+  /// Refuses repeated and overlong attributes of an element, which pugixml accepts silently.
+  void check_attributes(pugi::xml_node node) const {
+    std::vector<std::string_view> names;
+    each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
+      if (name.size() + value.size() > max_attribute_size)
+        fail_at(at, text::joined({"an attribute is longer than ", std::to_string(max_attribute_size),
+                                  " bytes: ", text::quoted(name)}));
+      if (names.size() == max_attributes)
+        fail_at(at, "attribute " + text::quoted(name) + " exceeds the maximum number of attributes");
+      if (std::ranges::find(names, name) != names.end())
+        fail_at(at, "attribute " + text::quoted(name) + " is given twice");
+      names.push_back(name);
+      return true;
+    });
   }
 
   std::string path_, text_;
   std::optional<XmlFault> oddity_;
   std::vector<std::size_t> line_ends_;
   pugi::xml_document document_;
-  pugi::xml_node root_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

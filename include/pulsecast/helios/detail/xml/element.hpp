@@ -31,25 +31,24 @@
 /// Reading of elements. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known;
-/// `finish` reports the others.
+/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. `finish`
+/// reports names that were not requested.
 class XmlInput final : public FieldIo {
  public:
+  using Read = std::function<void(XmlInput&)>;
   XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search,
            bool params = false)
-      : document_(document), node_(node), report_(report), search_(search), params_(params) {
-    if (params) known_ = {"type"};
+      : document_(document), node_(node), report_(report), search_(search), params_(params), takes_text_(params) {
+    if (params) known_children_ = {"param"};
   }
   [[nodiscard]] bool reads() const noexcept override { return true; }
   [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
   [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
   [[nodiscard]] XmlReport& report() const noexcept { return report_; }
   [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
-  [[nodiscard]] XmlPlace place() const { return document_.place(node_); }
-
-  /// Position of an attribute; that of the element if it is missing.
-  [[nodiscard]] XmlPlace place(std::string_view name) const {
-    if (!params_) return document_.place(node_, name);
+  /// Position of an attribute; that of the element for none.
+  [[nodiscard]] XmlPlace place(std::string_view name = {}) const {
+    if (!params_ || name.empty()) return document_.place(node_, name);
     const pugi::xml_node given = param(name);
     return given ? document_.place(given, "value") : place();
   }
@@ -58,21 +57,21 @@ class XmlInput final : public FieldIo {
     report_.fault(place(name), std::move(problem));
   }
   void warn(std::string_view name, const std::string& problem) const override { report_.warn(place(name), problem); }
+  /// Warns at another node, or at its attribute.
+  void warn_at(pugi::xml_node node, std::string_view attribute, const std::string& problem) const {
+    report_.warn(document_.place(node, attribute), problem);
+  }
 
   [[nodiscard]] bool has(const char* name) const override {
     return params_ ? !param(name).empty() : !node_.attribute(name).empty();
   }
-
-  /// True if a name was requested before.
   [[nodiscard]] bool knows(std::string_view name) const override { return is_among(known_, name); }
 
   /// Reports missing attributes that are mandatory.
   void require(std::initializer_list<const char*> names) override {
     for (const char* name : names) {
       required_.emplace_back(name);
-      if (!has(name))
-        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") +
-                                   text::quoted(name));
+      if (!has(name)) fault("", tag(node_) + " has no " + (params_ ? "param " : "attribute ") + text::quoted(name));
     }
   }
 
@@ -86,19 +85,21 @@ class XmlInput final : public FieldIo {
   /// Text of an attribute; none if it is empty.
   [[nodiscard]] std::optional<std::string> value(const char* name) {
     auto text = given(name);
-    if (!text || text->find_first_not_of(" \t\r\n") != std::string::npos) return text;
-    if (is_among(required_, name))
-      fault(name, said(name, *text) + " is empty: expected a value");
-    else
-      warn(name, said(name, *text) + " is empty: it is ignored");
+    if (!text || text->find_first_not_of(" \t\r\n") != text->npos) return text;
+    const std::string problem = said(name, *text) + " is empty: ";
+    is_among(required_, name) ? fault(name, problem + "expected a value") : warn(name, problem + "it is ignored");
     return std::nullopt;
   }
 
   using FieldIo::number, FieldIo::vector;
-  /// Reads a number; `low` and `high` are its limits, in the unit of the document.
-  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) override {
-    if (const auto text = value(name))
-      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
+  void number(const char* name, double& v, const XmlUnit& unit, double low, double high) override {
+    const auto text = value(name);
+    if (!text) return;
+    const auto found = number_of(*text);
+    if (found && *found >= low && *found <= high) return void(v = unit.si(*found));
+    std::string allowed = low == -any ? "" : " from " + xml_number(low);
+    if (high < std::numeric_limits<double>::max()) allowed += " to " + xml_number(high);
+    fault(name, said(name, *text) + ": expected a number" + allowed + (*unit.symbol == 0 ? "" : " ") + unit.symbol);
   }
 
   void whole(const char* name, int& number, int low, int high) override {
@@ -107,22 +108,19 @@ class XmlInput final : public FieldIo {
     if (found && *found == std::floor(*found) && *found >= low && *found <= high)
       number = static_cast<int>(*found);
     else if (text)
-      fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " +
-                      std::to_string(high));
+      fault(name, text::joined({said(name, *text), ": expected a whole number from ", std::to_string(low), " to ",
+                                std::to_string(high)}));
   }
 
   void flag(const char* name, bool& flag) override {
     static constexpr std::array<std::string_view, 8> words{"true", "false", "1", "0", "yes", "no", "on", "off"};
     const std::string text = given(name).value_or("");
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      if (!text::is_same_word(words[i], text)) continue;
-      flag = i % 2 == 0;
-      if (i >= 4)
-        warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
-      return;
-    }
-    std::size_t index = 0;
-    word(name, index, std::span(words).first(4), &flag);
+    const auto same = [&](std::string_view word) { return text::is_same_word(word, text); };
+    std::size_t index = static_cast<std::size_t>(std::ranges::find_if(words, same) - words.begin());
+    if (index == words.size()) return word(name, index, std::span(words).first(4), &flag);
+    flag = index % 2 == 0;
+    if (index >= 4)
+      warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
   }
 
   void text(const char* name, std::string& value) override {
@@ -132,7 +130,7 @@ class XmlInput final : public FieldIo {
     if (auto text = given(name)) value = std::move(text);
   }
 
-  /// Reads one of several words; case is ignored.
+  /// Case is ignored.
   void word(const char* name, std::size_t& index, std::span<const std::string_view> words,
             const void* /*member*/) override {
     const auto text = value(name);
@@ -143,7 +141,7 @@ class XmlInput final : public FieldIo {
     fault(name, said(name, *text) + " is not known" + text::suggestion(*text, known));
   }
 
-  /// Reads three numbers separated by semicolons.
+  /// The numbers are separated by semicolons.
   void vector(const char* name, Vec3& vector, double size_max) override {
     const auto text = value(name);
     if (!text) return;
@@ -157,7 +155,7 @@ class XmlInput final : public FieldIo {
     fault(name, said(name, *text) + ": expected three numbers 'x;y;z' of at most " + xml_number(size_max));
   }
 
-  /// Reads the path of a file that must exist.
+  /// The file must exist.
   void file(const char* name, std::filesystem::path& path) override {
     if (const auto text = value(name)) {
       const AssetMatch match = search_.find(*text);
@@ -173,26 +171,25 @@ class XmlInput final : public FieldIo {
   }
 
   /// Reads an optional child element. Returns true if it exists.
-  bool child(const char* name, const std::function<void(XmlInput&)>& read) {
+  bool child(const char* name, const Read& read) {
     known_children_.emplace_back(name);
     const pugi::xml_node found = node_.child(name);
     if (!found) return false;
     if (const pugi::xml_node second = found.next_sibling(name))
-      report_.warn(document_.place(second),
-                   "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one is used");
-    XmlInput inner(document_, found, report_, search_);
-    read(inner);
-    inner.finish();
+      warn_at(second, "", "a second " + tag(second) + " in " + tag(node_) + ": the first one is used");
+    inside(found, read);
     return true;
   }
-  bool element(const char* name, const std::function<void(FieldIo&)>& fields) override { return child(name, fields); }
-  void each(const char* name, std::size_t i, const std::function<void(FieldIo&, std::size_t)>& fields) override {
+  bool element(const char* name, const Fields& fields) override { return child(name, fields); }
+  void each(const char* name, std::size_t i, const EachFields& fields) override {
     known_children_.emplace_back(name);
-    for (pugi::xml_node node = node_.child(name); node; node = node.next_sibling(name)) {
-      XmlInput inner(document_, node, report_, search_);
-      fields(inner, i++);
-      inner.finish();
-    }
+    for (const pugi::xml_node node : node_.children(name)) inside(node, [&](XmlInput& inner) { fields(inner, i++); });
+  }
+  /// Reads another element of the document.
+  void inside(pugi::xml_node node, const Read& read) const {
+    XmlInput inner(document_, node, report_, search_);
+    read(inner);
+    inner.finish();
   }
 
   /// Warns of attributes that are allowed, but have no effect.
@@ -208,34 +205,30 @@ class XmlInput final : public FieldIo {
   }
 
   /// Reports attributes and children that were not requested.
-  void finish() {
-    if (params_) return finish_params();
-    for (const pugi::xml_attribute attribute : node_.attributes()) {
-      const std::string_view name = attribute.name();
-      if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name))
-        continue;
-      warn(name, "attribute " + text::quoted(name) + " of <" + node_.name() + "> is not known" +
-                     text::suggestion(name, known_));
-    }
+  void finish() const {
+    static const std::vector<std::string> of_filter{"type"};
+    check_attributes(node_, params_ ? of_filter : known_);
     for (const pugi::xml_node child : node_.children()) {
       if (report_.is_full_of_warnings()) return;
-      const bool is_element = child.type() == pugi::node_element;
-      if (is_element && !is_among(known_children_, child.name()))
-        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" +
-                                                 node_.name() + "> is not known" +
-                                                 text::suggestion(child.name(), known_children_));
+      if (child.type() == pugi::node_element && !is_among(known_children_, child.name()))
+        warn_at(child, "",
+                "element " + tag(child) + " in " + tag(node_) + " is not known" +
+                    text::suggestion(child.name(), known_children_));
       if (child.type() == pugi::node_pcdata && !takes_text_)
-        report_.warn(place(), "<" + std::string(node_.name()) + "> holds the text " + text::quoted(child.value()) +
-                                  ": expected elements only");
+        warn("", tag(node_) + " holds the text " + text::quoted(child.value()) + ": expected elements only");
     }
+    if (params_) check_params();
   }
 
-  /// Reports attributes of a filter other than its type.
-  void check_filter() const {
-    for (const pugi::xml_attribute attribute : node_.attributes())
-      if (std::string_view(attribute.name()) != "type")
-        report_.warn(document_.place(node_, attribute.name()),
-                     "attribute " + text::quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
+  /// Reports attributes of a node that are not known.
+  void check_attributes(pugi::xml_node node, const std::vector<std::string>& known) const {
+    for (const pugi::xml_attribute attribute : node.attributes()) {
+      const std::string_view name = attribute.name();
+      if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known, name))
+        continue;
+      warn_at(node, name,
+              "attribute " + text::quoted(name) + " of " + tag(node) + " is not known" + text::suggestion(name, known));
+    }
   }
 
   /// Text between the tags.
@@ -245,78 +238,59 @@ class XmlInput final : public FieldIo {
   }
 
   [[nodiscard]] pugi::xml_node param(std::string_view key) const {
-    for (pugi::xml_node node = node_.child("param"); node; node = node.next_sibling("param"))
+    for (const pugi::xml_node node : node_.children("param"))
       if (node.attribute("key").value() == key) return node;
     return {};
   }
 
-  [[nodiscard]] std::optional<double> within(const char* name, std::string_view text, const XmlUnit& unit, double low,
-                                             double high) const {
-    const auto found = number_of(text);
-    if (found && *found >= low && *found <= high) return found;
-    std::string allowed = low == -std::numeric_limits<double>::infinity() ? "" : " from " + xml_number(low);
-    if (high < std::numeric_limits<double>::max()) allowed += " to " + xml_number(high);
-    fault(name, said(name, text) + ": expected a number" + allowed + (*unit.symbol == 0 ? "" : " ") + unit.symbol);
-    return std::nullopt;
+  /// `<name>`, for messages.
+  [[nodiscard]] static std::string tag(pugi::xml_node node) {
+    return text::joined({"<", std::string_view(node.name()).substr(0, 80), ">"});
   }
 
  private:
   static constexpr std::size_t max_params = 100;
 
   [[nodiscard]] static bool is_among(const std::vector<std::string>& known, std::string_view name) {
-    return std::find(known.begin(), known.end(), name) != known.end();
+    return std::ranges::find(known, name) != known.end();
   }
 
-  void finish_params() {
-    check_filter();
+  void check_params() const {
     std::vector<std::string_view> keys;
-    for (const pugi::xml_node child : node_.children()) {
+    for (const pugi::xml_node child : node_.children("param")) {
       if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == max_params) return;
-      if (child.type() != pugi::node_element) continue;
-      if (std::string_view(child.name()) != "param") {
-        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) +
-                                                 "> in <filter> is not known; did you mean 'param'?");
-        continue;
-      }
       check_param(child);
       const std::string_view key = child.attribute("key").value();
-      if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
-        const bool is_same =
-            std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
-        if (is_same)
-          report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice");
+      const std::string name = "param " + text::quoted(key);
+      if (std::ranges::find(keys, key) != keys.end()) {
+        const std::string_view first = param(key).attribute("value").value();
+        if (first == child.attribute("value").value())
+          warn_at(child, "key", name + " is given twice");
         else
-          report_.fault(document_.place(child, "key"),
-                        "param " + text::quoted(key) + " is given twice, with another value");
+          report_.fault(document_.place(child, "key"), name + " is given twice, with another value");
       }
       keys.push_back(key);
-      if (keys.size() == max_params) report_.fault(document_.place(child), "too many <param> in a filter");
-      if (!is_among(known_, key) || key == "type")
-        report_.warn(document_.place(child, "key"),
-                     "param " + text::quoted(key) + " of filter " + text::quoted(node_.attribute("type").value()) +
-                         " is not known" + text::suggestion(key, std::span(known_).subspan(1)));
+      if (keys.size() == max_params) fault("", "too many <param> in a filter");
+      if (!is_among(known_, key))
+        warn_at(child, "key",
+                name + " of filter " + text::quoted(node_.attribute("type").value()) + " is not known" +
+                    text::suggestion(key, known_));
     }
   }
 
   void check_param(pugi::xml_node child) const {
     static const std::vector<std::string> names{"type", "key", "value", "rotations"};
-    static const std::vector<std::string> types{"string", "boolean", "bool",     "double", "integer",
-                                                "int",    "vec3",    "rotation", ""};
-    for (const pugi::xml_attribute attribute : child.attributes())
-      if (!is_among(names, attribute.name()))
-        report_.warn(document_.place(child, attribute.name()), "attribute " + text::quoted(attribute.name()) +
-                                                                   " of <param> is not known" +
-                                                                   text::suggestion(attribute.name(), names));
+    static const std::vector<std::string> types{"string",  "boolean", "bool", "double",
+                                                "integer", "int",     "vec3", "rotation"};
+    check_attributes(child, names);
     const std::string_view type = child.attribute("type").value();
-    if (!is_among(types, type))
-      report_.warn(document_.place(child, "type"),
-                   said("type", type) + " is not known" + text::suggestion(type, std::span(types).first(8)));
+    if (!type.empty() && !is_among(types, type))
+      warn_at(child, "type", said("type", type) + " is not known" + text::suggestion(type, types));
     if (type == "rotation") return;
-    if (!child.attribute("value")) report_.warn(document_.place(child), "<param> has no attribute 'value'");
+    if (!child.attribute("value")) warn_at(child, "", "<param> has no attribute 'value'");
     for (const pugi::xml_node inner : child.children())
       if (inner.type() == pugi::node_element)
-        report_.warn(document_.place(inner), "element <" + std::string(inner.name()).substr(0, 80) +
-                                                 "> in <param>: expected it in one of type rotation");
+        warn_at(inner, "", "element " + tag(inner) + " in <param>: expected it in one of type rotation");
   }
 
   const XmlDocument& document_;
@@ -324,7 +298,7 @@ class XmlInput final : public FieldIo {
   XmlReport& report_;
   const AssetSearch& search_;
   std::vector<std::string> known_{}, known_children_{}, required_{};
-  bool params_, takes_text_ = false;
+  bool params_, takes_text_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -15,8 +15,7 @@
 /// Encodings of XML documents.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
-/// Encoding that the first line of a document names, in small letters; empty if it names none. Source: XML 1.0, 2.8
-/// and 4.3.3.
+/// Encoding that a document names, in small letters; empty if none. Source: XML 1.0, 2.8 and 4.3.3.
 [[nodiscard]] inline std::string declared_encoding(std::string_view text) {
   if (!text.starts_with("<?xml")) return {};
   const std::string_view line = text.substr(0, std::min(text.find("?>"), text.size()));
@@ -25,8 +24,7 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text::lower(line.substr(open + 1, line.find(line[open], open + 1) - open - 1));
 }
 
-/// Place of the first byte that is not part of a character in UTF-8; the size of the text without one. Source: RFC
-/// 3629, 4.
+/// Place of the first byte that is not in a UTF-8 character, or the end. Source: RFC 3629, 4.
 [[nodiscard]] inline std::size_t first_not_utf8(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   for (std::size_t i = 0; i < text.size();) {
@@ -46,8 +44,8 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text.size();
 }
 
-/// Text in UTF-8 of one in windows-1252, which holds ISO-8859-1 but for control characters. Source: WHATWG, Encoding
-/// Standard, index windows-1252.
+/// Text in UTF-8 of one in windows-1252, which holds ISO-8859-1 but for control characters.
+/// Source: WHATWG, Encoding Standard, index windows-1252.
 [[nodiscard]] inline std::string utf8_of_windows_1252(std::string_view text) {
   static constexpr std::array<std::uint16_t, 32> from_0x80{
       0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,

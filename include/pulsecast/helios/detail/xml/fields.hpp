@@ -8,8 +8,7 @@
 #include <pulsecast/helios/detail/xml/output.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// Elements: what the tables of their settings cannot say is here and in the headers that include this one. The format
-/// is that of HELIOS++.
+/// Elements, in the format of HELIOS++: what the tables of settings cannot say.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
 /// Reads or writes settings that their table says all of.

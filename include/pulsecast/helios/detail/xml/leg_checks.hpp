@@ -17,8 +17,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Checks the legs of a survey against its scanner and platform, as they are read from a document or, for settings of a
-/// program, written to one. Faults: legs that never end, give no pulse, or exceed the device.
+/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give
+/// no pulse, or exceed the device.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
@@ -26,8 +26,7 @@ class LegChecks {
 
   /// Checks the path of a leg; `io` is that of its `<platformSettings>`.
   void check_platform(const FieldIo& io, std::size_t i) const {
-    const LegSettings& settings = survey_.legs[i];
-    const LegPlatformSettings& platform = settings.platform;
+    const LegPlatformSettings& platform = survey_.legs[i].platform;
     if (survey_.platform.kind == PlatformKind::interpolated) {
       if (!platform.trajectory || platform.trajectory->file.empty())
         io.fault("trajectory",
@@ -37,15 +36,15 @@ class LegChecks {
     if (platform.trajectory)
       io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
     if (survey_.platform.kind != PlatformKind::multicopter) {
-      const char* const why = " has no effect with this type of platform";
-      if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
-      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
+      const std::string why = " has no effect with this type of platform";
+      if (platform.smooth_turn) io.warn("smoothTurn", "a smooth turn" + why);
+      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", "yawAtDeparture_deg" + why);
     }
     if (legs_connect(survey_.platform.kind)) check_way(io, i);
   }
 
-  /// Checks the scanner's part of a leg; `io` is that of its `<scannerSettings>`, `resolution` its
-  /// `verticalResolution_deg`, 0 if it has none [rad].
+  /// Checks the scanner's part of a leg; `io` is that of its `<scannerSettings>`, which may have a
+  /// `verticalResolution_deg` [rad].
   void check_scanner(const FieldIo& io, std::size_t i, double resolution = 0) const {
     if (only_ends(survey_, i)) return;
     const LegSettings& settings = survey_.legs[i];
@@ -54,20 +53,18 @@ class LegChecks {
     check_head(io, device, settings, i);
     if (!s.active) return;
     check_rates(io, device, s, resolution);
-    if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
-      io.warn("scanAngle_deg", "scanAngle_deg exceeds the scanner's maximum: it is limited to " +
-                                   xml_number(units::degree.number(device.scan_angle_max)));
+    if (s.scan_angle && scan_angle_of(device, s) < *s.scan_angle)
+      io.warn("scanAngle_deg",
+              "scanAngle_deg exceeds the scanner's maximum: it is limited to " + shortest(device.scan_angle_max));
     check_gate(io, device, s);
   }
 
  private:
-  /// True if the platform stays in place for the whole leg.
-  [[nodiscard]] bool stays(std::size_t i) const {
-    return survey_.platform.kind == PlatformKind::stationary || is_stationary(survey_, i);
-  }
-
   /// Computed number, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
+
+  /// Angle as documents give it.
+  [[nodiscard]] static std::string shortest(double angle) { return xml_number(units::degree.number(angle)); }
 
   void check_way(const FieldIo& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
@@ -75,8 +72,8 @@ class LegChecks {
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
       io.fault("maxDuration_s",
-               "the only leg of a moving platform: expected another <leg> as its destination, or maxDuration_s of its "
-               "stay here");
+               "the only leg of a moving platform: expected another <leg> as its destination, or "
+               "maxDuration_s of its stay here");
     if (only_ends(survey_, i) && settings.duration_max && settings.scanner.active)
       io.warn("",
               "the last leg of a moving platform is the end of its path, and has no pulses: to stay there for "
@@ -85,8 +82,8 @@ class LegChecks {
     if (stays_in_place(survey_.legs, i)) {
       if (!settings.duration_max && !turns)
         io.warn("x",
-                "the next leg begins at the same position, so this one ends at once: maxDuration_s would be the "
-                "duration of a stay");
+                "the next leg begins at the same position, so this one ends at once: maxDuration_s would be "
+                "the duration of a stay");
     } else if (settings.platform.speed == 0) {
       io.fault("movePerSec_m", "the leg never ends: movePerSec_m is 0; expected a speed");
     }
@@ -98,23 +95,24 @@ class LegChecks {
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
     const auto limit = [&](const char* expected, const char* name, double frequency) {
       if (resolution == 0)
-        return io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_rate) + ": expected " + expected +
-                                           " the scanner's " + name + ", " + hertz(frequency));
-      io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " +
-                                             brief(s.scan_rate) + " lines a second at " + hertz(pulse_rate) +
-                                             ": expected " + expected + ' ' +
-                                             brief(degrees(resolution) * frequency / s.scan_rate) +
-                                             ", for the scanner's " + name + " is " + hertz(frequency));
+        return io.fault("scanFreq_hz", text::joined({"scanFreq_hz is ", hertz(s.scan_rate), ": expected ", expected,
+                                                     " the scanner's ", name, ", ", hertz(frequency)}));
+      const double angle = degrees(resolution);
+      io.fault("verticalResolution_deg",
+               text::joined({"verticalResolution_deg of ", brief(angle), " takes ", brief(s.scan_rate),
+                             " lines a second at ", hertz(pulse_rate), ": expected ", expected, " ",
+                             brief(angle * frequency / s.scan_rate), ", for the scanner's ", name, " is ",
+                             hertz(frequency)}));
     };
-    if (detail::scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
-    if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
+    if (s.scan_rate < device.scan_rate_min) limit("at least", "scanFreqMin_Hz", device.scan_rate_min);
+    if (scans_too_fast(device, s.scan_rate)) limit("at most", "scanFreqMax_Hz", device.scan_rate_max);
     if (s.scan_rate == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
     if (s.scan_rate >= pulse_rate)
       io.fault("scanFreq_hz",
                "scanFreq_hz is " + hertz(s.scan_rate) + ": expected less than pulseFreq_hz, " + hertz(pulse_rate));
     const std::vector<double>& rates = survey_.scanner.pulse_rates;
-    if (!rates.empty() && std::find(rates.begin(), rates.end(), pulse_rate) == rates.end())
+    if (!rates.empty() && std::ranges::find(rates, pulse_rate) == rates.end())
       io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(pulse_rate) + " is not one of the scanner's pulse rates");
   }
 
@@ -126,17 +124,19 @@ class LegChecks {
                 "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
       return;
     }
-    const auto [low, high, is_limited, is_cut] = detail::mirror_gate(device, *rotating, s);
+    const auto [low, high, is_limited, is_cut] = mirror_gate(device, *rotating, s);
     const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
     if (s.scan_rate > 0 && !(low < high))
-      io.fault("verticalAngleMin_deg", "no pulse is emitted between " + xml_number(units::degree.number(low)) +
-                                           " and " + xml_number(units::degree.number(high)) +
-                                           " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
+      io.fault("verticalAngleMin_deg",
+               text::joined({"no pulse is emitted between ", shortest(low), " and ", shortest(high),
+                             " deg: expected verticalAngleMin_deg below "
+                             "verticalAngleMax_deg"}));
+    const double width = 2 * rotating->effective_angle_max.value_or(device.scan_angle_max);
     if (is_limited)
       io.warn("verticalAngleMin_deg",
-              "verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's " +
-                  in_degrees(2 * rotating->effective_angle_max.value_or(device.scan_angle_max)) +
-                  " deg: they are limited to " + in_degrees(low) + " and " + in_degrees(high) + " deg");
+              text::joined({"verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's ",
+                            in_degrees(width), " deg: they are limited to ", in_degrees(low), " and ", in_degrees(high),
+                            " deg"}));
   }
 
   void check_head(const FieldIo& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
@@ -145,31 +145,32 @@ class LegChecks {
     for (const auto& [name, angle] :
          {std::pair("headRotateStart_deg", s.head_start), std::pair("headRotateStop_deg", s.head_stop)})
       if (looks_like_degrees(angle))
-        io.warn(name, std::string(name) + " is " + brief(degrees(angle)) + ", " + brief(angle / (2 * pi)) +
-                          " turns of the head: given in degrees, not radians?");
+        io.warn(name, text::joined({name, " is ", brief(degrees(angle)), ", ", brief(angle / (2 * pi)),
+                                    " turns of the head: given in degrees, not radians?"}));
     if (s.head_rate != speed)
       io.warn("headRotatePerSec_deg",
               device.head_rate_max == 0
                   ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
                   : "headRotatePerSec_deg exceeds the scanner's maximum: it is limited to " +
-                        xml_number(units::degree.number(device.head_rate_max)));
+                        shortest(device.head_rate_max));
     if (turns_away(s))
       io.fault("headRotateStop_deg",
                "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
     if (settings.duration_max) return;
-    if (head_never_stops(device, settings))
+    const bool turns = s.head_stop != s.head_start;
+    if (turns && speed == 0)
       io.fault("headRotateStop_deg",
-               "the leg never ends: the head does not turn" +
-                   std::string(device.head_rate_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
-                   "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
-                   "maxDuration_s");
-    if (!stays(i) || s.head_stop != s.head_start) return;
-    if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // reported already
-    if (speed == 0)
+               text::joined({"the leg never ends: the head does not turn",
+                             device.head_rate_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "",
+                             "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
+                             "maxDuration_s"}));
+    const PlatformKind kind = survey_.platform.kind;
+    if (turns || !(kind == PlatformKind::stationary || is_stationary(survey_, i))) return;
+    if (speed != 0)
+      io.warn("headRotateStop_deg", "headRotateStop_deg equals headRotateStart_deg: the leg ends at once");
+    else if (!legs_connect(kind))  // whose ends are reported already
       io.fault("maxDuration_s", "the leg never ends: neither platform nor head moves; expected maxDuration_s" +
                                     std::string(i == 0 ? "" : " for each leg"));
-    else
-      io.warn("headRotateStop_deg", "headRotateStop_deg equals headRotateStart_deg: the leg ends at once");
   }
 
   const SurveySettings& survey_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,19 +18,19 @@
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 
-/// True if a character is forbidden in a file name.
 [[nodiscard]] inline bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
 
 /// Replaces forbidden characters in a part of a file or folder name, with a warning.
 inline void fit_for_name(const XmlInput& io, const char* name, std::string& text) {
   if (std::none_of(text.begin(), text.end(), fits_no_name)) return;
-  const std::string given = XmlInput::said(name, text);
+  const std::string given = said(name, text);
   std::replace_if(text.begin(), text.end(), fits_no_name, '_');
   io.warn(name, given + " is taken as " + text::quoted(text) +
                     ": expected no slashes and no control characters in a part of a file name");
@@ -43,49 +44,44 @@ class LegReader {
 
   /// Reads and checks all legs. Returns their places.
   std::vector<std::string> read(XmlInput& io) {
-    const XmlDocument& document = document_.document();
-    io.know({}, {"leg"});
-    std::vector<pugi::xml_node> nodes;
     std::vector<double> resolutions;  // per leg, 0 if none [rad]
     std::vector<std::string> places;
-    for (pugi::xml_node node = io.node().child("leg"); node; node = node.next_sibling("leg")) {
-      XmlInput leg(document, node, report_, document_.search());
-      resolutions.push_back(read_leg(leg, survey_.legs.emplace_back()));
-      leg.finish();
-      nodes.push_back(node);
-      places.push_back(leg.place().text());
-    }
-    if (nodes.empty()) report_.fault(io.place(), "<survey> holds no <leg>: nothing would be scanned");
+    io.each("leg", 0, [&](FieldIo& leg, std::size_t) {
+      resolutions.push_back(read_leg(xml::input(leg), survey_.legs.emplace_back()));
+      places.push_back(xml::input(leg).place().text());
+    });
+    if (places.empty()) io.fault("", "<survey> holds no <leg>: nothing would be scanned");
     if (!report_.is_clean()) return places;
     const LegChecks checks(survey_);
     bool is_active = false;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
+    std::size_t i = 0;
+    for (const pugi::xml_node node : io.node().children("leg")) {
       const auto in = [&](const char* element) {
-        const pugi::xml_node own = nodes[i].child(element);
-        return XmlInput(document, own ? own : nodes[i], report_, document_.search());
+        const pugi::xml_node own = node.child(element);
+        return XmlInput(io.document(), own ? own : node, report_, io.search());
       };
-      const XmlInput platform = in("platformSettings"), scanner = in("scannerSettings");
-      check_ground(platform, survey_.legs[i].platform);
+      const XmlInput platform = in("platformSettings");
+      LegSettings& leg = survey_.legs[i];
+      check_ground(platform, leg.platform);
       checks.check_platform(platform, i);
-      checks.check_scanner(scanner, i, resolutions[i]);
-      if (survey_.platform.kind != PlatformKind::interpolated) survey_.legs[i].platform.trajectory.reset();
-      is_active = is_active || survey_.legs[i].scanner.active;
+      checks.check_scanner(in("scannerSettings"), i, resolutions[i]);
+      if (survey_.platform.kind != PlatformKind::interpolated) leg.platform.trajectory.reset();
+      is_active = is_active || leg.scanner.active;
+      ++i;
     }
-    if (!is_active) report_.warn(io.place(), "no leg is active: there will be no pulses");
+    if (!is_active) io.warn("", "no leg is active: there will be no pulses");
     return places;
   }
 
-  /// Reads templates of the survey's own document that no leg uses. Faults there become warnings, as they have no
-  /// effect.
+  /// Reads the templates of the survey's document, also without a leg; their faults are warnings.
   void read_unused_templates() {
-    const auto all = [&](const char* element, const auto& read) {
-      for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element)) {
-        XmlInput io(document_.document(), node, report_, document_.search());
-        io.require({"id"});
-        io.know({"id", "name"});
-        read(io);
-        io.finish();
-      }
+    const auto all = [&](const char* element, const XmlInput::Read& read) {
+      for (const pugi::xml_node node : document_.document().root().children(element))
+        document_.read(node, report_, [&](XmlInput& io) {
+          io.require({"id"});
+          io.know({"id", "name"});
+          read(io);
+        });
     };
     report_.leniently([&] {
       all("platformSettings", [&](XmlInput& io) {
@@ -109,20 +105,17 @@ class LegReader {
 
   /// Reads a leg. Returns its vertical resolution [rad].
   double read_leg(XmlInput& leg, LegSettings& settings) {
-    std::optional<double> duration_max;
     leg.text("stripId", settings.strip);
     if (settings.strip) fit_for_name(leg, "stripId", *settings.strip);
-    leg.number("maxDuration_s", duration_max, units::second, -1, 1e9);
-    const bool has_platform =
-        leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
-    if (!has_platform) report_.fault(leg.place(), "<leg> holds no <platformSettings>");
+    leg.number("maxDuration_s", settings.duration_max, units::second, -1, 1e9);
+    if (!leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); }))
+      leg.fault("", "<leg> holds no <platformSettings>");
     LegScanner scanner;
     if (!survey_.scanner.pulse_rates.empty()) scanner.settings.pulse_rate = survey_.scanner.pulse_rates.front();
     leg.child("scannerSettings", [&](XmlInput& inner) { read_leg_scanner(inner, scanner); });
-    if (duration_max && *duration_max <= 0) duration_max.reset();
-    if (!duration_max && scanner.duration_max && *scanner.duration_max > 0) duration_max = scanner.duration_max;
     settings.scanner = scanner.settings;
-    settings.duration_max = duration_max;
+    if (!(settings.duration_max > 0.0)) settings.duration_max = scanner.duration_max;
+    if (!(settings.duration_max > 0.0)) settings.duration_max.reset();
     return scanner.vertical_resolution;
   }
 
@@ -131,28 +124,26 @@ class LegReader {
     if (!has_ground_) has_ground_ = has_ground(survey_.scene);
     if (!*has_ground_)
       io.fault("onGround",
-               "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
+               "nothing in the scene is ground: expected a material with helios_isGround in an MTL file "
+               "of it");
   }
 
-  /// Reads the template of an element, if it has one, and then the element: `read(XmlInput&)`.
-  template <class Read>
+  /// Reads the template of an element, if it has one, and then the element: `read(io, is_leg)`.
   void with_template(XmlInput& io, const XmlLibraryDocument& from, std::vector<pugi::xml_node> before,
-                     const Read& read) {
+                     const std::function<void(XmlInput&, bool)>& read) {
     const bool is_leg = before.empty();
     if (const auto text = io.given("template")) {
-      const std::string element = io.node().name();
-      const XmlReference found = library_.find(io, from, "template", *text, element.c_str());
+      const XmlReference found = library_.find(io, from, "template", *text, io.node().name());
       before.push_back(io.node());
-      if (found && std::find(before.begin(), before.end(), found.node) != before.end()) {
-        io.fault("template", XmlInput::said("template", *text) + " is a template of itself");
-      } else if (found && before.size() > 16) {
-        io.fault("template", XmlInput::said("template", *text) + " exceeds the maximum depth of templates");
-      } else if (found) {
-        XmlInput inner(found.document->document(), found.node, report_, found.document->search());
-        inner.know({"id", "name"});
-        with_template(inner, *found.document, before, read);
-        inner.finish();
-      }
+      if (found && std::ranges::find(before, found.node) != before.end())
+        io.fault("template", said("template", *text) + " is a template of itself");
+      else if (found && before.size() > 16)
+        io.fault("template", said("template", *text) + " exceeds the maximum depth of templates");
+      else if (found)
+        found.document->read(found.node, report_, [&](XmlInput& inner) {
+          inner.know({"id", "name"});
+          with_template(inner, *found.document, before, read);
+        });
     }
     read(io, is_leg);
   }
@@ -171,13 +162,11 @@ class LegReader {
       inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();
-        if (content.find_first_not_of(" \t\r\n") == std::string::npos)
-          return report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
-        const auto seconds = number_of(content);
-        if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
-          report_.fault(text.place(),
-                        "<maxDuration_s> holds " + text::quoted(content) + ": expected a number of seconds");
-        scanner.duration_max = seconds;
+        if (content.find_first_not_of(" \t\r\n") == content.npos)
+          return text.warn("", "<maxDuration_s> is empty: it is ignored");
+        scanner.duration_max = number_of(content);
+        if (!(scanner.duration_max >= -1.0 && scanner.duration_max <= 1e9))
+          text.fault("", "<maxDuration_s> holds " + text::quoted(content) + ": expected a number of seconds");
       });
       inner.number("verticalResolution_deg", scanner.vertical_resolution, units::degree, 0, 180);
       inner.number("horizontalResolution_deg", scanner.horizontal_resolution, units::degree, 0, 360);
@@ -187,28 +176,26 @@ class LegReader {
       s.pulse_rate = usual_rate;
       io.warn("pulseFreq_hz", "pulseFreq_hz of 0 means the scanner's default, " + xml_number(usual_rate) + " Hz");
     }
-    const ChannelSettings* const device =
-        survey_.scanner.channels.empty() ? nullptr : &survey_.scanner.channels.front();
+    const auto& channels = survey_.scanner.channels;
+    const ChannelSettings* const device = channels.empty() ? nullptr : &channels.front();
     if (s.scan_angle == 0.0 && device && device->scan_angle_max > 0) {
       s.scan_angle.reset();
       io.warn("scanAngle_deg", "scanAngle_deg of 0 means the scanner's maximum, " +
                                    xml_number(units::degree.number(device->scan_angle_max)) + " deg");
     }
     if (scanner.vertical_resolution == 0 && scanner.horizontal_resolution == 0) return;
-    if (!device || !std::holds_alternative<RotatingOptic>(device->optic)) {
-      io.warn("verticalResolution_deg", "resolutions have no effect with these optics");
-    } else if (device->scan_angle_max > 0) {
-      const auto rounded = [](double value, double limit) {
-        return std::fabs(value - limit) < 1e-12 * limit ? limit : value;
-      };
-      s.scan_rate =
-          rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max), device->scan_rate_max);
-      s.scan_rate = rounded(s.scan_rate, device->scan_rate_min);
-      s.head_rate = rounded(scanner.horizontal_resolution * s.scan_rate, device->head_rate_max);
-      if (!(s.scan_rate <= 1e6 && s.head_rate <= radians(1e6)))
-        io.fault("verticalResolution_deg",
-                 "these resolutions need a scan frequency or head speed out of range: expected finer ones");
-    }
+    if (!device || !std::holds_alternative<RotatingOptic>(device->optic))
+      return io.warn("verticalResolution_deg", "resolutions have no effect with these optics");
+    if (!(device->scan_angle_max > 0)) return;
+    const auto rounded = [](double value, double limit) {
+      return std::fabs(value - limit) < 1e-12 * limit ? limit : value;
+    };
+    const double rate = s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max);
+    s.scan_rate = rounded(rounded(rate, device->scan_rate_max), device->scan_rate_min);
+    s.head_rate = rounded(scanner.horizontal_resolution * s.scan_rate, device->head_rate_max);
+    if (!(s.scan_rate <= 1e6 && s.head_rate <= radians(1e6)))
+      io.fault("verticalResolution_deg",
+               "these resolutions need a scan frequency or head speed out of range: expected finer ones");
   }
 
   XmlLibrary& library_;

@@ -21,28 +21,37 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Document of a survey or of assets, with its elements by id. Search order of its files: the assets folders, the
-/// folder of the survey, its own folder.
+/// Folders, and then that of a file.
+[[nodiscard]] inline auto and_own(std::vector<std::filesystem::path> folders, const std::filesystem::path& file) {
+  folders.push_back(std::filesystem::absolute(file).parent_path());
+  return folders;
+}
+
+/// Document of a survey or of assets, with its elements by id. Its files are searched in the
+/// folders of assets, the folder of the survey, and its own.
 class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders,
                      XmlReport& report)
-      : document_(path), search_(with_own(folders, path)) {
+      : document_(path), search_(and_own(folders, path)) {
     if (document_.oddity()) report.warn(document_.oddity()->place, document_.oddity()->problem);
-    if (std::string_view(document_.root().name()) != "document")
-      report.fault(
-          document_.place(document_.root()),
-          "the root element is <" + std::string(document_.root().name()).substr(0, 80) + ">: expected <document>");
-    XmlInput root(document_, document_.root(), report, search_);
-    root.know({}, {"platform", "scanner", "scene", "platformSettings", "scannerSettings", "survey"});
-    root.finish();
-    for (const pugi::xml_node node : document_.root().children()) {
+    const pugi::xml_node root = document_.root();
+    if (std::string_view(root.name()) != "document")
+      report.fault(document_.place(root), "the root element is " + XmlInput::tag(root) + ": expected <document>");
+    read(root, report, [](XmlInput& io) {
+      io.know({}, {"platform", "scanner", "scene", "platformSettings", "scannerSettings", "survey"});
+    });
+    for (const pugi::xml_node node : root.children()) {
       if (node.type() != pugi::node_element || std::string_view(node.name()) == "survey") continue;
-      const auto [other, is_new] = by_id_.emplace(key(node.name(), node.attribute("id").value()), node);
-      if (!is_new)
-        report.warn(document_.place(node), "a second <" + std::string(node.name()) + "> with the id " +
-                                               text::quoted(node.attribute("id").value()) + ": the first one is used");
+      const char* const id = node.attribute("id").value();
+      if (!by_id_.emplace(key(node.name(), id), node).second)
+        report.warn(document_.place(node),
+                    "a second " + XmlInput::tag(node) + " with the id " + text::quoted(id) + ": the first one is used");
     }
+  }
+
+  void read(pugi::xml_node node, XmlReport& report, const XmlInput::Read& read) const {
+    XmlInput(document_, node, report, search_).inside(node, read);
   }
 
   [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
@@ -54,23 +63,15 @@ class XmlLibraryDocument {
     return found == by_id_.end() ? pugi::xml_node() : found->second;
   }
 
-  /// Ids of all elements of a name.
   [[nodiscard]] std::vector<std::string> ids(const char* element) const {
     std::vector<std::string> all;
-    for (pugi::xml_node node = document_.root().child(element); node; node = node.next_sibling(element))
-      all.emplace_back(node.attribute("id").value());
+    for (const pugi::xml_node node : document_.root().children(element)) all.emplace_back(node.attribute("id").value());
     return all;
   }
 
  private:
   [[nodiscard]] static std::string key(std::string_view element, std::string_view id) {
-    return std::string(element).append("#").append(id);
-  }
-
-  [[nodiscard]] static AssetSearch with_own(std::vector<std::filesystem::path> folders,
-                                            const std::filesystem::path& path) {
-    folders.push_back(std::filesystem::absolute(path).parent_path());
-    return AssetSearch(folders);
+    return text::joined({element, "#", id});
   }
 
   XmlDocument document_;
@@ -101,19 +102,20 @@ class XmlLibrary {
     return *document;
   }
 
-  /// Resolves the reference of an attribute: `file.xml#id`, or `id` or `#id` for an element of the same document.
+  /// Resolves a reference: `file.xml#id`, or `id` or `#id` for an element of the same document.
   [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute,
                                   const std::string& text, const char* element) {
     const std::size_t sign = text.find('#');
-    const std::string path = sign == std::string::npos ? "" : text.substr(0, sign);
-    const std::string id = sign == std::string::npos ? text : text.substr(sign + 1);
+    const std::string path = sign == text.npos ? "" : text.substr(0, sign);
+    const std::string id = text.substr(sign + 1);  // all of it without the sign
     const XmlLibraryDocument* const document = path.empty() ? &from : other(io, from, attribute, text, path);
     if (document == nullptr) return {};
     if (const pugi::xml_node node = document->find(element, id); node && !id.empty()) return {document, node};
-    const bool is_path = sign == std::string::npos && id.ends_with(".xml");
-    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " +
-                            text::quoted(id) + " in " + document->document().path() +
-                            (is_path ? "; expected file.xml#id" : text::suggestion(id, document->ids(element))));
+    const bool is_path = sign == text.npos && id.ends_with(".xml");
+    io.fault(attribute,
+             text::joined({said(attribute, text), ": there is no <", element, "> with the id ", text::quoted(id),
+                           " in ", document->document().path(),
+                           is_path ? "; expected file.xml#id" : text::suggestion(id, document->ids(element))}));
     return {};
   }
 
@@ -123,24 +125,21 @@ class XmlLibrary {
     const AssetMatch match = from.search().find(path);
     io.take(attribute, text, match);
     if (match.files.empty()) return nullptr;
+    std::string problem = " cannot be read";
     const auto known = documents_.find(match.files.front().string());
-    if (known != documents_.end()) {
-      if (!known->second) io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");
-      return known->second.get();
+    if (known != documents_.end() && known->second) return known->second.get();
+    if (known == documents_.end() && documents_.size() == max_documents) {
+      problem = " exceeds the maximum of " + std::to_string(max_documents) + " documents";
+    } else if (known == documents_.end()) {
+      try {
+        return &read(match.files.front());
+      } catch (const XmlFaults& faults) {
+        for (const XmlFault& fault : faults.faults()) report_.fault(fault.place, fault.problem);
+      } catch (const FileError& error) {
+        report_.fault({.path = error.path()}, error.problem());
+      }
     }
-    if (documents_.size() == max_documents) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " exceeds the maximum of " + std::to_string(max_documents) +
-                              " documents");
-      return nullptr;
-    }
-    try {
-      return &read(match.files.front());
-    } catch (const XmlFaults& faults) {
-      for (const XmlFault& fault : faults.faults()) report_.fault(fault.place, fault.problem);
-    } catch (const FileError& error) {
-      report_.fault({.path = error.path()}, error.problem());
-    }
-    io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");
+    io.fault(attribute, said(attribute, text) + problem);
     return nullptr;
   }
 

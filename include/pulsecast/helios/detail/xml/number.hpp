@@ -60,7 +60,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
     nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", deg};
 }  // namespace units
 
-/// True for an angle beyond a turn that is whole in radians, as one that was given in degrees [rad].
+/// True for an angle beyond a turn that is whole in radians, as if given in degrees [rad].
 [[nodiscard]] inline bool looks_like_degrees(double angle) noexcept {
   return std::fabs(angle) > max_angle && angle == std::round(angle);
 }
@@ -75,15 +75,15 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
           std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
 }
 
-/// Number of a document for a value. @throws SettingError out of its limits, but for the rounding of its unit
+/// Number of a document for a value. @throws SettingError out of its limits, rounding aside
 [[nodiscard]] inline double document_number(std::string_view name, double value, const XmlUnit& unit, double low,
                                             double high) {
   const double number = unit.number(value), limit = std::clamp(number, low, high);
   if (number >= low && number <= high) return number;
   if (std::fabs(number - limit) <= 1e-12 * std::fabs(limit)) return limit;
-  const std::string bound = high < std::numeric_limits<double>::max() ? " to " + xml_number(high) : "";
-  const std::string allowed =
-      low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
+  using limits = std::numeric_limits<double>;
+  const std::string bound = high < limits::max() ? " to " + xml_number(high) : "";
+  const std::string allowed = low > limits::lowest() ? "from " + xml_number(low) + bound : "a number";
   const bool in_degrees = std::string_view(unit.symbol).starts_with("deg") && looks_like_degrees(value);
   throw SettingError(std::string(name), number, unit.symbol,
                      allowed + (in_degrees ? ": given in degrees, not radians?" : ""));
@@ -100,7 +100,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
   for (int i = 0; i < 3; ++i) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
     const std::size_t end = i < 2 ? text.find(separator) : text.size();
-    const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
+    const auto component = end == text.npos ? std::nullopt : number_of(text.substr(0, end));
     if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
     found[i] = *component;
     text.remove_prefix(std::min(end + 1, text.size()));

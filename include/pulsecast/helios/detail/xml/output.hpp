@@ -22,8 +22,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Writes an element, by the same calls as `XmlInput`. What that would refuse is a `SettingError`, and what it would
-/// note is a note here, so that writing a survey checks its settings.
+/// Writes an element, as `XmlInput` reads it: what that would refuse is a `SettingError`, what it
+/// would warn of is a note.
 class XmlOutput final : public FieldCheck {
  public:
   explicit XmlOutput(pugi::xml_node node, bool params = false) : node_(node), params_(params) {}
@@ -32,15 +32,15 @@ class XmlOutput final : public FieldCheck {
 
   using FieldCheck::number, FieldCheck::vector, FieldCheck::text;
   /// Writes a number. Infinity is left out: no attribute means no limit.
-  void number(const char* name, double& value, const XmlUnit& unit, double low, double high) override {
-    const double number = document_number(name, value, unit, low, high);
-    if (std::isfinite(value)) put(name, "double", xml_number(number));
+  void number(const char* name, double& v, const XmlUnit& unit, double low, double high) override {
+    const double number = document_number(name, v, unit, low, high);
+    if (std::isfinite(v)) put(name, xml_number(number), "double");
   }
   void whole(const char* name, int& value, int low, int high) override {
     FieldCheck::whole(name, value, low, high);
-    put(name, "integer", std::to_string(value));
+    put(name, std::to_string(value), "integer");
   }
-  void flag(const char* name, bool& value) override { put(name, "boolean", value ? "true" : "false"); }
+  void flag(const char* name, bool& v) override { put(name, v ? "true" : "false", "boolean"); }
   void text(const char* name, std::string& value) override { put(name, value); }
   void text(const char* name, std::optional<std::string>& value) override {
     if (value) put(name, *value);
@@ -49,18 +49,18 @@ class XmlOutput final : public FieldCheck {
             const void* /*member*/) override {
     if (index < words.size()) put(name, std::string(words[index]));
   }
-  void vector(const char* name, Vec3& value, double size_max) override {
-    FieldCheck::vector(name, value, size_max);
-    put(name, "vec3", xml_number(value.x) + ";" + xml_number(value.y) + ";" + xml_number(value.z));
+  void vector(const char* name, Vec3& v, double size_max) override {
+    FieldCheck::vector(name, v, size_max);
+    put(name, xml_number(v.x) + ";" + xml_number(v.y) + ";" + xml_number(v.z), "vec3");
   }
   void file(const char* name, std::filesystem::path& value) override {
     if (!value.empty()) put(name, std::filesystem::absolute(value).string());
   }
-  bool element(const char* name, const std::function<void(FieldIo&)>& fields) override {
-    child(name, "", [&](XmlOutput& inner) { fields(inner); });
+  bool element(const char* name, const Fields& fields) override {
+    child(name, "", fields);
     return true;
   }
-  void each(const char* name, std::size_t size, const std::function<void(FieldIo&, std::size_t)>& fields) override {
+  void each(const char* name, std::size_t size, const EachFields& fields) override {
     for (std::size_t i = 0; i < size; ++i)
       child(name, name + (" " + std::to_string(i)), [&](XmlOutput& inner) { fields(inner, i); });
   }
@@ -76,13 +76,7 @@ class XmlOutput final : public FieldCheck {
     for (const std::string& note : inner.notes_) notes_.push_back(title + (title.empty() ? "" : ": ") + note);
   }
   /// Writes a text.
-  void put(const char* name, const std::string& value) { put(name, "string", value); }
-
-  /// Of this element and those in it.
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
-
- private:
-  void put(const char* name, const char* type, const std::string& value) {
+  void put(const char* name, const std::string& value, const char* type = "string") {
     if (!params_) return void(node_.append_attribute(name).set_value(value.c_str()));
     pugi::xml_node param = node_.append_child("param");
     param.append_attribute("type").set_value(type);
@@ -90,6 +84,10 @@ class XmlOutput final : public FieldCheck {
     param.append_attribute("value").set_value(value.c_str());
   }
 
+  /// Of this element and those in it.
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+
+ private:
   pugi::xml_node node_;
   bool params_;
   mutable std::vector<std::string> notes_;

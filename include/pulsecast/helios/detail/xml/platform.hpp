@@ -34,17 +34,18 @@ inline void fields(FieldIo& io, PlatformSettings& platform) {
   io.require({"id", "type"});
   io.text("id", platform.id);
   io.text("name", platform.name);
+  using enum PlatformKind;
   PlatformKind kind = platform.kind;
-  if (!io.reads() && kind == PlatformKind::interpolated) kind = PlatformKind::stationary;  // its base has no effect
+  if (!io.reads() && kind == interpolated) kind = stationary;  // its base has no effect
   io.choice("type", kind,
-            {{"static", PlatformKind::stationary},
-             {"linearpath", PlatformKind::linear_path},
-             {"multicopter", PlatformKind::multicopter},
-             {"groundvehicle", PlatformKind::ground_vehicle}});
+            {{"static", stationary},
+             {"linearpath", linear_path},
+             {"multicopter", multicopter},
+             {"groundvehicle", ground_vehicle}});
   if (io.reads()) platform.kind = kind;
   io.element("scannerMount", [&](FieldIo& inner) { platform.mount.fields(inner); });
   noise_fields(io, platform);
-  if (platform.kind == PlatformKind::multicopter)
+  if (platform.kind == multicopter)
     platform.multicopter.fields(io);
   else
     io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -22,7 +21,7 @@
 /// `<scanner>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
-/// Reports a formula that is invalid, or not finite between two values of its variable.
+/// Reports a formula that is invalid, or finite nowhere between two values of its variable.
 inline void check_formula(const FieldIo& io, const char* name, const std::string& text, const char* variable,
                           double low, double high) {
   constexpr int places = 256;
@@ -31,8 +30,8 @@ inline void check_formula(const FieldIo& io, const char* name, const std::string
     const Formula formula(text, variable);
     for (int i = 0; i < places; ++i)
       if (std::isfinite(formula(low + (high - low) * (i + 0.518) / places))) return;
-    io.fault(name, XmlInput::said(name, text) + " is not finite for any " + variable +
-                       ": expected a formula with a finite value");
+    io.fault(name, text::joined({said(name, text), " is not finite for any ", variable,
+                                 ": expected a formula with a finite value"}));
   } catch (const std::invalid_argument& error) {
     io.fault(name, error.what());
   }
@@ -70,10 +69,10 @@ inline void range_noise(FieldIo& io, ChannelSettings& channel) {
 inline std::string bin_note(const ChannelSettings& channel) {
   const double bin = channel.waveform.bin_size, length = channel.pulse_length, limited = detail::limited_bin(channel);
   const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
-  return bin == limited ? ""
-                        : "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " +
-                              ns(limited) + "; expected bins from " + ns(length / WaveformSettings::max_samples) +
-                              " to " + ns(length);
+  if (bin == limited) return "";
+  return text::joined({"binSize_ns is ", ns(bin), ", and pulses are ", ns(length), " long: it is limited to ",
+                       ns(limited), "; expected bins from ", ns(length / WaveformSettings::max_samples), " to ",
+                       ns(length)});
 }
 
 /// Attributes of a scanner or of each of its channels.
@@ -93,8 +92,9 @@ inline void check(FieldIo& io, ChannelSettings& channel) {
     io.warn("optics", "<deflectionError> and <headError> have no effect with these optics");
     if (io.reads()) channel.errors.deflection = channel.errors.head = "";
   }
+  const auto is_absent = [](const RisleyPrism& prism) { return prism.angle == 0; };
   const auto* const risley = std::get_if<RisleyOptic>(&channel.optic);
-  if (risley && risley->prisms[0].angle == 0 && risley->prisms[1].angle == 0 && risley->prisms[2].angle == 0)
+  if (risley && std::ranges::all_of(risley->prisms, is_absent))
     io.warn("optics", "no prism has an angle: the beam is not deflected");
 }
 
@@ -105,30 +105,27 @@ inline constexpr std::size_t most_rates = 1000;              ///< number of them
 inline void pulse_rates(XmlInput& io, std::vector<double>& rates) {
   const auto text = io.value("pulseFreqs_Hz");
   if (!text) return;
-  for (std::string_view rest = *text;;) {
-    const std::size_t end = rest.find(',');
-    const std::string_view one = rest.substr(0, end);
-    const bool is_last = end == std::string_view::npos;
+  const std::string given = said("pulseFreqs_Hz", *text);
+  for (std::size_t at = 0, end = 0; end != text->npos; at = end + 1) {
+    end = text->find(',', at);
+    const std::string one = text->substr(at, end - at);
     const auto rate = number_of(one);
-    if (one.find_first_not_of(" \t\r\n") == std::string_view::npos && !(is_last && rates.empty()))
-      io.warn("pulseFreqs_Hz",
-              XmlInput::said("pulseFreqs_Hz", *text) + ": there is no number between two commas or at the end");
+    if (one.find_first_not_of(" \t\r\n") == one.npos && !(end == text->npos && rates.empty()))
+      io.warn("pulseFreqs_Hz", given + ": there is no number between two commas or at the end");
     else if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates)
-      return io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " +
-                                           xml_number(least_rate) + " to " + xml_number(most_rate) +
-                                           " Hz, with commas between");
+      return io.fault("pulseFreqs_Hz", given + ": expected numbers from " + xml_number(least_rate) + " to " +
+                                           xml_number(most_rate) + " Hz, with commas between");
     else
       rates.push_back(*rate);
-    if (is_last) return;
-    rest.remove_prefix(end + 1);
   }
 }
-/// Writes them.
 inline void pulse_rates(XmlOutput& io, const std::vector<double>& rates) {
   std::string text;
   require_within("pulseFreqs_Hz (number)", static_cast<double>(rates.size()), 0, most_rates, "");
-  for (const double rate : rates) require_within("pulseFreqs_Hz", rate, least_rate, most_rate, "Hz");
-  for (const double rate : rates) text.append(text.empty() ? "" : ",").append(xml_number(rate));
+  for (const double rate : rates) {
+    require_within("pulseFreqs_Hz", rate, least_rate, most_rate, "Hz");
+    text.append(text.empty() ? "" : ",").append(xml_number(rate));
+  }
   io.put("pulseFreqs_Hz", text);
 }
 
@@ -155,7 +152,7 @@ inline void channels(XmlOutput& io, ScannerSettings& scanner) {
     return check(io, scanner.channels.front());
   }
   if (!scanner.channels.empty())
-    ChannelSettings{.optic = detail::optic_of(scanner.channels.front().optic.index())}.optic_fields(io);
+    ChannelSettings{.optic = default_optics[scanner.channels.front().optic.index()]}.optic_fields(io);
   io.child("channels", "", [&](XmlOutput& list) {
     list.children("channel", scanner.channels, [](FieldIo& inner, ChannelSettings& channel) {
       inner.text("id", channel.id);
@@ -173,10 +170,7 @@ inline void fields(FieldIo& io, ScannerSettings& scanner) {
     pulse_rates(known, scanner.pulse_rates);
     channels(known, scanner);
   };
-  if (io.reads())
-    rest(input(io));
-  else
-    rest(output(io));
+  io.reads() ? rest(input(io)) : rest(output(io));
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml

@@ -33,19 +33,13 @@ inline void files(XmlInput& io, std::vector<std::filesystem::path>& paths) {
     paths.insert(paths.end(), match.files.begin(), match.files.end());
   };
   const auto one = io.given("filepath"), by_pattern = io.given("efilepath"), list = io.given("filepaths");
-  if (by_pattern) {
-    take("efilepath", *by_pattern, io.search().find_all(*by_pattern));
-  } else if (list) {
-    for (std::string_view rest = *list; paths.size() < 100'000;) {
-      const std::size_t end = rest.find('|');
-      take("filepaths", std::string(rest.substr(0, end)), io.search().find(std::string(rest.substr(0, end))));
-      if (end == std::string_view::npos) break;
-      rest.remove_prefix(end + 1);
-    }
-  } else if (one) {
-    take("filepath", *one, io.search().find(*one));
-  } else {
-    io.require({"filepath"});
+  if (by_pattern) return take("efilepath", *by_pattern, io.search().find_all(*by_pattern));
+  if (!list && !one) return io.require({"filepath"});
+  if (!list) return take("filepath", *one, io.search().find(*one));
+  for (std::size_t at = 0, end = 0; end != list->npos && paths.size() < 100'000; at = end + 1) {
+    end = list->find('|', at);
+    const std::string path = list->substr(at, end - at);
+    take("filepaths", path, io.search().find(path));
   }
 }
 inline void files(XmlOutput& io, std::vector<std::filesystem::path>& paths) {
@@ -58,22 +52,18 @@ inline void files(XmlOutput& io, std::vector<std::filesystem::path>& paths) {
 
 /// A loading filter.
 inline void fields(FieldIo& io, PartSource& source) {
-  std::visit(
-      [&](auto& of_kind) {
-        if (io.reads())
-          files(input(io), of_kind.files);
-        else
-          files(output(io), of_kind.files);
-        of_kind.fields(io);
-      },
-      source);
+  const auto fields_of = [&](auto& of_kind) {
+    io.reads() ? files(input(io), of_kind.files) : files(output(io), of_kind.files);
+    of_kind.fields(io);
+  };
+  std::visit(fields_of, source);
 }
 
-/// Types of loading filters, in the order of `PartSource`.
-inline constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "meshloader"};
-static_assert(loaders.size() == std::variant_size_v<PartSource>);
+/// Types of filters; the first are loading filters, in the order of `PartSource`.
+inline constexpr std::array filter_types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
+                                         "meshloader", "scale",         "rotate",    "translate"};
 
-inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part, except 0, which has no effect
+inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part
 inline constexpr int most_on_ground = 1'000'000;                ///< `onGround` of a part
 
 /// Writes the filters of a part or swap.
@@ -84,7 +74,7 @@ inline void filters(XmlOutput& io, PartSource* source, TransformSettings& transf
     return XmlOutput(node, true);
   };
   if (source) {
-    XmlOutput loader = filter(loaders[source->index()]);
+    XmlOutput loader = filter(filter_types[source->index()]);
     fields(loader, *source);
   }
   if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, least_scale, most_scale);
@@ -101,37 +91,27 @@ inline void filters(XmlOutput& io, PartSource* source, TransformSettings& transf
   translate.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
 }
 
-/// Source of a loading filter by its type; empty for another filter.
-template <std::size_t kind = 0>
-[[nodiscard]] std::optional<PartSource> source_of(std::string_view type) {
-  if constexpr (kind < loaders.size()) {
-    if (text::is_same_word(type, loaders[kind])) return PartSource(std::in_place_index<kind>);
-    return source_of<kind + 1>(type);
-  }
-  return std::nullopt;
-}
-
 /// Reads the filters of a part or swap.
 inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSettings& transform) {
-  static const std::vector<std::string> types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
-                                              "meshloader", "scale",         "rotate",    "translate"};
+  static const std::array<PartSource, std::variant_size_v<PartSource>> sources{
+      ObjSource{}, GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}};
   io.know({}, {"filter"});
   bool is_scaled = false, is_translated = false;
-  const auto once = [&](pugi::xml_node node, bool& before) {
-    if (std::exchange(before, true))
-      io.report().warn(io.document().place(node),
-                       "a second filter " + text::quoted(node.attribute("type").value()) + ": it replaces the first");
-  };
-  for (pugi::xml_node node = io.node().child("filter"); node; node = node.next_sibling("filter")) {
+  for (const pugi::xml_node node : io.node().children("filter")) {
     XmlInput filter(io.document(), node, io.report(), io.search(), true);
-    const std::string_view type = node.attribute("type").value();
+    const std::string type = node.attribute("type").value();
+    const auto once = [&](bool& before) {
+      if (std::exchange(before, true))
+        filter.warn("", "a second filter " + text::quoted(type) + ": it replaces the first");
+    };
     const auto is = [&](std::string_view name) { return text::is_same_word(type, name); };
-    if (std::optional<PartSource> made = source_of(type)) {
-      if (source) io.report().fault(io.document().place(node), "a second loading filter: expected one per part");
-      source = std::move(made);
+    const auto kind = static_cast<std::size_t>(std::ranges::find_if(filter_types, is) - filter_types.begin());
+    if (kind < sources.size()) {
+      if (source) filter.fault("", "a second loading filter: expected one per part");
+      source = sources[kind];
       fields(filter, *source);
     } else if (is("scale")) {
-      once(node, is_scaled);
+      once(is_scaled);
       filter.require({"scale"});
       double scale = 0;
       filter.number("scale", scale, units::one, 0, most_scale);
@@ -142,14 +122,13 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
     } else if (is("rotate")) {
       filter.require({"rotation"});
       filter.know({"rotation"});
-      if (const pugi::xml_node param = filter.param("rotation")) {
-        XmlInput list(io.document(), param, io.report(), io.search());
-        list.know({"type", "key", "value"});
-        transform.rotations.emplace_back().fields(list);
-        list.finish();
-      }
+      if (const pugi::xml_node param = filter.param("rotation"))
+        io.inside(param, [&](XmlInput& list) {
+          list.know({"type", "key", "value"});
+          transform.rotations.emplace_back().fields(list);
+        });
     } else if (is("translate")) {
-      once(node, is_translated);
+      once(is_translated);
       filter.require({"offset"});
       transform.translation = {};
       transform.on_ground = 0;
@@ -157,8 +136,9 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
     } else {
       io.report().fault(io.document().place(node, "type"),
-                        XmlInput::said("type", type) + " of a filter is not known" + text::suggestion(type, types));
-      filter.check_filter();
+                        said("type", type) + " of a filter is not known" +
+                            text::suggestion(type, std::vector<std::string>(filter_types.begin(), filter_types.end())));
+      filter.check_attributes(node, {"type"});
       continue;
     }
     filter.finish();
@@ -180,8 +160,8 @@ inline void fields(FieldIo& io, SwapSettings& swap) {
 
 /// True if the successor of a sequence is not one of its part.
 inline bool lacks_next(const PartSettings& part, const MotionSequenceSettings& sequence) {
-  const auto is_next = [&](const MotionSequenceSettings& other) { return other.id == sequence.next; };
-  return sequence.next && std::none_of(part.motions.begin(), part.motions.end(), is_next);
+  const auto is_next = [&](const auto& other) { return other.id == sequence.next; };
+  return sequence.next && std::ranges::none_of(part.motions, is_next);
 }
 
 /// Attributes and children of a part, except its geometry and id.
@@ -194,21 +174,19 @@ inline void dynamic_fields(FieldIo& io, PartSettings& part) {
   valid(io, [&] { static_cast<void>(part.named_numbers()); });
   io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse hits a part at its pose of that time");
   const auto unknown = [](const MotionSequenceSettings& sequence) {
-    return XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part";
+    return said("next", *sequence.next) + ": there is no such <dmotion> in this part";
   };
   if (!io.reads()) {
     for (const MotionSequenceSettings& sequence : part.motions)
       if (lacks_next(part, sequence)) io.fault("next", unknown(sequence));
     return;
   }
-  XmlInput& element = input(io);
-  pugi::xml_node node = element.node().child("dmotion");
-  if (part.motions.size() > 1000) io.fault("", "<part> holds more than 1000 <dmotion>");
-  if (element.report().is_full() || part.motions.size() > 1000) return;
-  for (const MotionSequenceSettings& sequence : part.motions) {
-    if (lacks_next(part, sequence)) element.report().fault(element.document().place(node, "next"), unknown(sequence));
-    node = node.next_sibling("dmotion");
-  }
+  if (part.motions.size() > 1000) return io.fault("", "<part> holds more than 1000 <dmotion>");
+  const XmlInput& element = input(io);
+  std::size_t i = 0;
+  for (const pugi::xml_node node : element.node().children("dmotion"))
+    if (const MotionSequenceSettings& sequence = part.motions[i++]; lacks_next(part, sequence))
+      element.report().fault(element.document().place(node, "next"), unknown(sequence));
 }
 
 /// Attributes of a scene, its light and media.
@@ -225,40 +203,32 @@ inline void scene_fields(FieldIo& io, SceneSettings& scene) {
 
 /// Reads a scene. A part of several files and no id becomes several parts, each with a number.
 inline void fields(XmlInput& io, SceneSettings& scene) {
-  io.know({}, {"part"});
   scene_fields(io, scene);
-  if (scene.light.size() > 1) io.report().warn(io.place(), "<scene> holds a second <light>: the first is used");
+  if (scene.light.size() > 1) io.warn("", "<scene> holds a second <light>: the first is used");
   std::size_t number = 0;
-  for (pugi::xml_node node = io.node().child("part"); node; node = node.next_sibling("part")) {
-    XmlInput inner(io.document(), node, io.report(), io.search());
+  io.each("part", 0, [&](FieldIo& inner, std::size_t) {
     PartSettings part;
     std::optional<PartSource> source;
-    const auto id = inner.given("id");
-    filters(inner, source, part.transform);
+    const auto id = input(inner).given("id");
+    filters(input(inner), source, part.transform);
     dynamic_fields(inner, part);
-    inner.finish();
     if (!source) {
-      io.report().warn(inner.place(), "<part> has no loading filter: it is left out");
       ++number;
-      continue;
+      return inner.warn("", "<part> has no loading filter: it is left out");
     }
-    std::vector<std::filesystem::path> loaded;
-    std::visit([&](auto& of_kind) { loaded = std::move(of_kind.files); }, *source);
+    part.source = *source;
+    const std::vector<std::filesystem::path> loaded = std::visit([](auto& of_kind) { return of_kind.files; }, *source);
     const auto* const rasters = std::get_if<GeoTiffSource>(&*source);
     const bool is_split = !id && loaded.size() > 1 && !(rasters && rasters->mosaic);
     for (std::size_t i = 0; i < (is_split ? loaded.size() : 1); ++i) {
-      PartSettings one = part;
-      one.id = id ? *id : std::to_string(number + i);
-      one.source = *source;
-      std::visit([&](auto& of_kind) { of_kind.files = is_split ? std::vector{loaded[i]} : loaded; }, one.source);
-      scene.parts.push_back(std::move(one));
+      part.id = id.value_or(std::to_string(number++));
+      if (is_split) std::visit([&](auto& of_kind) { of_kind.files = {loaded[i]}; }, part.source);
+      scene.parts.push_back(part);
     }
-    number += is_split ? loaded.size() : 1;
-  }
-  if (scene.parts.empty()) io.report().fault(io.place(), "<scene> holds no <part> with a loading filter");
+  });
+  if (scene.parts.empty()) io.fault("", "<scene> holds no <part> with a loading filter");
 }
 
-/// Writes a scene.
 inline void fields(XmlOutput& io, SceneSettings& scene) {
   scene_fields(io, scene);
   for (PartSettings& part : scene.parts)

@@ -12,7 +12,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
@@ -34,7 +33,7 @@ class SurveyReader {
  public:
   /// `assets` and `channel_files` as in `XmlOptions`.
   SurveyReader(const std::filesystem::path& path, const std::vector<std::filesystem::path>& assets, bool channel_files)
-      : library_(folders(path, assets), report_), document_(library_.read(path)), channel_files_(channel_files) {}
+      : library_(and_own(assets, path), report_), document_(library_.read(path)), channel_files_(channel_files) {}
 
   /// Reads the survey of the document. Throws `XmlFaults`.
   [[nodiscard]] SurveySettings read() {
@@ -44,9 +43,7 @@ class SurveyReader {
     if (const pugi::xml_node second = node.next_sibling("survey"))
       report_.warn(document.place(second), "a second <survey>: the first one is used");
     if (node) {
-      XmlInput io(document, node, report_, document_.search());
-      read_survey(io, std::filesystem::path(document.path()).stem().string());
-      io.finish();
+      document_.read(node, report_, [&](XmlInput& io) { read_survey(io); });
       legs_.read_unused_templates();
     }
     report_.require_clean();
@@ -54,41 +51,30 @@ class SurveyReader {
     return survey_;
   }
 
-  /// Reads all elements of a name in the document.
   template <class Settings>
   void read_all(const char* element, std::vector<Settings>& values) {
-    for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element))
+    for (const pugi::xml_node node : document_.document().root().children(element))
       asset({&document_, node}, values.emplace_back());
   }
 
-  /// Per leg, of the survey.
   [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< position of the survey
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }  ///< of the survey
   [[nodiscard]] const XmlReport& report() const noexcept { return report_; }
 
  private:
-  static std::vector<std::filesystem::path> folders(const std::filesystem::path& path,
-                                                    std::vector<std::filesystem::path> all) {
-    all.push_back(std::filesystem::absolute(path).parent_path());
-    return all;
-  }
-
   template <class Settings>
   void asset(const XmlReference& found, Settings& settings) {
-    XmlInput io(found.document->document(), found.node, report_, found.document->search());
-    xml::fields(io, settings);
-    io.finish();
+    found.document->read(found.node, report_, [&](XmlInput& io) { xml::fields(io, settings); });
   }
 
-  void read_survey(XmlInput& io, std::string name) {
+  void read_survey(XmlInput& io) {
     io.text("name", survey_.name);
     fit_for_name(io, "name", survey_.name);
     if (survey_.name == ".." || survey_.name == ".") {
-      io.warn("name",
-              XmlInput::said("name", survey_.name) + " cannot name a folder for results: the name of the file is used");
+      io.warn("name", said("name", survey_.name) + " cannot name a folder for results: the name of the file is used");
       survey_.name.clear();
     }
-    if (survey_.name.empty()) survey_.name = std::move(name);
+    if (survey_.name.empty()) survey_.name = std::filesystem::path(io.document().path()).stem().string();
     seed(io);
     io.without_effect({"numRuns", "simSpeed"});
     bool is_offset = false;
@@ -128,17 +114,18 @@ class SurveyReader {
     } else if (number && std::abs(*number) < 1e18) {
       survey_.seed = static_cast<std::uint64_t>(std::abs(*number));
       if (*number < 0 || *number != std::floor(*number))
-        io.warn("seed", XmlInput::said("seed", *text) + " is taken as " + std::to_string(*survey_.seed) +
+        io.warn("seed", said("seed", *text) + " is taken as " + std::to_string(*survey_.seed) +
                             ": expected a whole number from 0");
     } else {
-      io.fault("seed", XmlInput::said("seed", *text) + ": expected a whole number, 'YYYY-MM-DD hh:mm:ss' or AUTO");
+      io.fault("seed", said("seed", *text) + ": expected a whole number, 'YYYY-MM-DD hh:mm:ss' or AUTO");
     }
   }
 
   template <class Settings>
   XmlReference read_reference(XmlInput& io, const char* name, Settings& settings) {
+    const char* const element = std::string_view(name) == "basePlatform" ? "platform" : name;
     const auto text = io.given(name);
-    const XmlReference found = text ? library_.find(io, document_, name, *text, name) : XmlReference{};
+    const XmlReference found = text ? library_.find(io, document_, name, *text, element) : XmlReference{};
     if (found) asset(found, settings);
     return found;
   }
@@ -147,41 +134,38 @@ class SurveyReader {
   void check_channel_ids(const XmlReference& scanner) {
     const XmlDocument& document = scanner.document->document();
     std::map<std::string, std::size_t> numbers;
-    pugi::xml_node node = scanner.node.child("channels").child("channel");
-    for (std::size_t k = 0; k < survey_.scanner.channels.size() && node; ++k, node = node.next_sibling("channel")) {
-      const std::string id =
-          survey_.scanner.channels[k].id.empty() ? std::to_string(k) : survey_.scanner.channels[k].id;
-      const auto [other, is_new] = numbers.emplace(id, k);
-      if (channel_files_ && std::any_of(id.begin(), id.end(), fits_no_name))
-        report_.fault(document.place(node, "id"),
-                      "the id of a channel is part of file names: expected no slashes and no control characters in it");
+    std::size_t k = 0;
+    for (const pugi::xml_node node : scanner.node.child("channels").children("channel")) {
+      const XmlPlace place = document.place(node, "id");
+      const std::string number = std::to_string(k), given = survey_.scanner.channels[k].id;
+      const std::string& id = given.empty() ? number : given;
+      const auto [other, is_new] = numbers.emplace(id, k++);
+      if (channel_files_ && std::ranges::any_of(id, fits_no_name))
+        report_.fault(place,
+                      "the id of a channel is part of file names: expected no slashes and no control characters "
+                      "in it");
       if (is_new) continue;
-      const std::string problem = "channel " + std::to_string(k) + " has the id of channel " +
-                                  std::to_string(other->second) + ", " + text::quoted(id);
+      const std::string problem = text::joined(
+          {"channel ", number, " has the id of channel ", std::to_string(other->second), ", ", text::quoted(id)});
       if (channel_files_)
-        report_.fault(document.place(node, "id"),
-                      problem + ": expected different ids, as each channel has its own file");
+        report_.fault(place, problem + ": expected different ids, as each channel has its own file");
       else
-        report_.warn(document.place(node, "id"), problem);
+        report_.warn(place, problem);
     }
   }
 
   void read_platform(XmlInput& io) {
     const auto text = io.given("platform");
     if (text != "interpolated") {
-      io.without_effect({"basePlatform", "rotationSpec"}, "has no effect unless platform=\"interpolated\"");
+      const char* const unless = "has no effect unless platform=\"interpolated\"";
+      io.without_effect({"basePlatform", "rotationSpec"}, unless);
       read_reference(io, "platform", survey_.platform);
-      if (io.child("scannerMount", [&](XmlInput& inner) {
-            MountSettings ignored;
-            ignored.fields(inner);
-          }))
-        io.warn("platform", "<scannerMount> of a survey has no effect unless platform=\"interpolated\"");
+      const auto ignore = [](XmlInput& inner) { MountSettings{}.fields(inner); };
+      if (io.child("scannerMount", ignore)) io.warn("platform", std::string("<scannerMount> of a survey ") + unless);
       return;
     }
     survey_.platform.id = "interpolated";
-    if (const auto base = io.given("basePlatform"))
-      if (const XmlReference found = library_.find(io, document_, "basePlatform", *base, "platform"))
-        asset(found, survey_.platform);
+    read_reference(io, "basePlatform", survey_.platform);
     survey_.platform.multicopter = {};
     survey_.platform.kind = PlatformKind::interpolated;
     xml::rotation_spec(io, survey_.platform.rotation_spec);
@@ -192,6 +176,7 @@ class SurveyReader {
   void read_overrides(XmlInput& io) {
     std::vector<ChannelSettings> none(1);
     std::vector<ChannelSettings>& channels = survey_.scanner.channels.empty() ? none : survey_.scanner.channels;
+    const pugi::xml_node own = io.node().child("FWFSettings");
     for (ChannelSettings& channel : channels) {
       io.child("FWFSettings", [&](XmlInput& inner) { channel.waveform.fields(inner); });
       io.child("detectorSettings", [&](XmlInput& inner) {
@@ -199,15 +184,8 @@ class SurveyReader {
         xml::range_noise(inner, channel);
         channel.check_range(inner);
       });
-    }
-    limit_bins(io);
-  }
-
-  void limit_bins(const XmlInput& io) {
-    const pugi::xml_node own = io.node().child("FWFSettings");
-    for (ChannelSettings& channel : survey_.scanner.channels) {
       const std::string note = xml::bin_note(channel);
-      if (!note.empty()) report_.warn(own ? document_.document().place(own) : io.place("scanner"), note);
+      if (!note.empty()) report_.warn(own ? io.document().place(own) : io.place("scanner"), note);
       channel.waveform.bin_size = limited_bin(channel);
     }
   }

@@ -5,8 +5,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <sstream>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -48,18 +49,9 @@ class DocumentWriter {
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   [[nodiscard]] std::string text() const {
-    struct Writer : pugi::xml_writer {
-      void write(const void* data, std::size_t size) override { all.append(static_cast<const char*>(data), size); }
-      std::string all;
-    } writer;
-    document_.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
-    return std::move(writer.all);
-  }
-
-  void write(const std::filesystem::path& path) const {
-    io::OutputFile file(path);
-    file.write(text());
-    file.commit();
+    std::ostringstream all;
+    document_.save(all, "  ", pugi::format_indent, pugi::encoding_utf8);
+    return all.str();
   }
 
  private:
@@ -67,6 +59,12 @@ class DocumentWriter {
   pugi::xml_node root_;
   std::vector<std::string> notes_;
 };
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+  io::OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
 
 inline void write_leg(XmlOutput& io, const SurveySettings& survey, std::size_t i) {
   LegSettings leg = survey.legs[i];
@@ -89,16 +87,15 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-/// Document of a survey. @throws SettingError for what `read_survey` would refuse of it, files and ground aside;
-/// `leg_name(i)` begins the messages about a leg
-template <class LegName>
-DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name) {
+/// Document of a survey; `leg_name(i)` begins the messages about a leg. @throws SettingError for
+/// what `read_survey` would refuse, except files and ground
+inline DocumentWriter document_of(const SurveySettings& survey, const auto& leg_name) {
   DocumentWriter document;
   if (survey.scanner.channels.empty()) throw SettingError("scanner: channels (number)", 0, "", "at least 1");
   if (survey.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
   ScannerSettings scanner = with_id(survey.scanner, "scanner");
   if (scanner.pulse_rates.empty()) scanner.pulse_rates = {first_pulse_rate(survey)};
-  PlatformSettings platform = with_id(survey.platform, "platform");
+  const PlatformSettings platform = with_id(survey.platform, "platform");
   const SceneSettings scene = with_id(survey.scene, "scene");
   document.add("scanner", scanner);
   document.add("platform", platform);
@@ -107,17 +104,14 @@ DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name
     io.put("name", survey.name);
     io.put("scene", "#" + scene.id);
     io.put("scanner", "#" + scanner.id);
-    if (platform.kind == PlatformKind::interpolated) {
-      io.put("platform", "interpolated");
-      io.put("basePlatform", "#" + platform.id);
-      xml::rotation_spec(io, platform.rotation_spec);
-    } else {
-      io.put("platform", "#" + platform.id);
-    }
+    const bool interpolated = platform.kind == PlatformKind::interpolated;
+    if (interpolated) io.put("platform", "interpolated");
+    io.put(interpolated ? "basePlatform" : "platform", "#" + platform.id);
+    if (RotationSpec spec = platform.rotation_spec; interpolated) xml::rotation_spec(io, spec);
     if (survey.seed) io.put("seed", std::to_string(*survey.seed));
-    if (LegOffsetSettings offset = survey.leg_offset.value_or(LegOffsetSettings{}); survey.leg_offset) {
+    if (std::optional<LegOffsetSettings> offset = survey.leg_offset) {
       io.put("legRandomOffset", "true");
-      offset.fields(io);
+      offset->fields(io);
     }
     for (const ChannelSettings& channel : scanner.channels)
       if (const std::string note = xml::bin_note(channel); !note.empty()) io.warn("binSize_ns", note);
