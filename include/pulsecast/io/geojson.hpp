@@ -16,7 +16,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a GeoJSON file.
 struct GeoJsonSettings {
-  int epsg = 0;                    ///< EPSG code of a projected system in metres, from 1 to 32766; 0: none
+  int epsg = 0;                    ///< EPSG code of a projected system in metres, up to 32766; 0: none
   double interval = 1;             ///< time between two points of a trajectory [s]
   double footprint_interval = 10;  ///< time that one polygon of a footprint covers [s]
 
@@ -74,8 +74,8 @@ class HullOfStream {
 }  // namespace detail
 
 /// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for QGIS:
-/// - trajectory: LineString of the origins of pulses, the first and the last among them; a Point for
-///   a leg that does not move. Properties: kind, leg, pulses, points (all echoes), start, end [s];
+/// - trajectory: LineString of origins of pulses, the first and the last among them; a Point for a
+///   leg that does not move. Properties: kind, leg, pulses, points (all echoes), start, end [s];
 /// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one
 ///   `footprint_interval`, counted from the start of the leg. Properties: kind, leg, start and end
 ///   (first and last pulse with a point) [s], points, area [m^2]. Points on a line have none.

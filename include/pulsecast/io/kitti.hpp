@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <map>
 #include <system_error>
@@ -39,7 +38,7 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
   KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
-  PointSettings points{};                  ///< pose of the sensor, which is required, and distortion
+  PointSettings points{};                  ///< pose of the sensor (required), and distortion
 
   void validate() const {
     require_within("KittiSettings::scan_rate", scan_rate, 1e-3, 1e6, "Hz");
@@ -84,8 +83,6 @@ class KittiWriter {
   }
 
  private:
-  static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
-
   [[nodiscard]] static PointLayout layout() {
     return PointLayout::packed(layouts::xyz_float())
         .with(layouts::columns({column("reflectance"), column("classification"), column("object")}));

@@ -18,7 +18,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of an MCAP file.
 struct McapSettings {
-  std::string profile = "ros2";  ///< requirements of the channels; "ros2": all of ROS 2; empty: none
+  std::string profile = "ros2";  ///< "ros2": all channels are of ROS 2; empty: any
   /// Length of a chunk, from 1 to 2^30; a longer message is alone in its chunk [byte]
   std::size_t chunk_size = std::size_t{1} << 20;
 
@@ -31,7 +31,7 @@ struct McapSettings {
 /// Channel of an MCAP file: messages of one type on one topic. By default those of ROS 2.
 struct McapChannel {
   std::string topic{};                      ///< topic
-  std::string schema_name{};                ///< type, as "sensor_msgs/msg/PointCloud2"; empty: no schema
+  std::string schema_name{};                ///< as "sensor_msgs/msg/PointCloud2"; empty: none
   std::string schema_encoding = "ros2msg";  ///< language of the schema
   std::string schema{};                     ///< definition of the type
   std::string message_encoding = "cdr";     ///< encoding of the messages
@@ -59,11 +59,11 @@ enum class McapOpcode : std::uint8_t {
   data_end = 0x0F
 };
 
-inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length [byte]
+inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length
 inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< of a chunk
 inline constexpr std::uint32_t mcap_no_crc = 0;  ///< absent checksum. Source: mcap.dev/spec
 
-/// Record under construction: opcode, length of the content, content. Source: mcap.dev/spec, Records.
+/// Record under construction: opcode, length of content, content. Source: mcap.dev/spec, Records.
 class McapRecord {
  public:
   McapRecord& begin(McapOpcode opcode) {
@@ -132,7 +132,7 @@ class McapWriter {
         const McapChannel& b = other.settings;
         return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
       });
-      added.schema = static_cast<std::uint16_t>(same - channels_.begin() + 1);  // schemas count from 1
+      added.schema = static_cast<std::uint16_t>(same - channels_.begin() + 1);  // from 1
       if (brings_schema(id)) put_schema(id);
     }
     put_channel(id);

@@ -105,13 +105,9 @@ WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
 /// ox, oy, oz: origin [m], 4; dx, dy, dz: unit direction, 9; fate: `missed`, `out_of_range`,
 /// `below_threshold` or `absorbed`; leg and deviceIndex (emitter), from 0. Pulses blocked by the
 /// optic were never sent. `close()` completes the file: see `OutputFile`.
-class MissTextWriter {
+class MissTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit MissTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : MissTextWriter(OutputFile(std::move(path)), settings) {}
-  explicit MissTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
@@ -119,16 +115,12 @@ class MissTextWriter {
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< see ChoosesShots
-  void close() { text_.close(); }
 
  private:
   void write(const Shot& shot) {
-    text_.wholes(shot.index).reals(9, settings_.start_time + shot.tick.seconds());
-    text_.beam(shot).word(name_of(shot.fate)).wholes(shot.leg, shot.channel).end_row();
+    text_.wholes(shot.index).reals(9, clock(shot)).beam(shot);
+    text_.word(name_of(shot.fate)).wholes(shot.leg, shot.channel).end_row();
   }
-
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<MissTextWriter> && EchoSink<WithMisses<XyzWriter>> && EchoSink<WithMisses<XyzWriter&>>);
 

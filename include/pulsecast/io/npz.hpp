@@ -18,7 +18,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of an NPZ file.
 struct NpzSettings {
   PointLayout layout = layouts::map();  ///< arrays: one a field, by its name
-  PointSettings points{};               ///< values of the arrays; set the origin for large coordinates
+  PointSettings points{};               ///< values; set the origin for large coordinates
 
   void validate() const { detail::require_packable(layout, points); }
 };

@@ -19,7 +19,7 @@ struct OusterFormat {
   static constexpr std::uint16_t port = 7502;              // of lidar packets
   static constexpr std::size_t lasers = 64;                // pixels of a column
   static constexpr std::size_t packet_columns = 16;        // columns of a packet
-  static constexpr std::size_t header = 32;                // of dual returns; as long as the footer [byte]
+  static constexpr std::size_t header = 32;                // of dual returns; also the footer [byte]
   static constexpr std::uint32_t encoder_counts = 90'112;  // of a turn
 
   /// Columns of a turn.

@@ -20,17 +20,17 @@ struct PcapSettings {
 
 namespace detail {
 
-/// Frame of a packet in a capture file: its record, and big-endian headers of Ethernet, IPv4 and UDP.
+/// Frame of a packet: record of the file, and big-endian headers of Ethernet, IPv4 and UDP.
 class PacketFrame {
  public:
-  static constexpr std::size_t record = 16;           // source: IETF draft-ietf-opsawg-pcap, 5 [byte]
+  static constexpr std::size_t record = 16;           // IETF draft-ietf-opsawg-pcap, 5 [byte]
   static constexpr std::size_t ethernet = 14;         // source: IEEE 802.3, frame format [byte]
   static constexpr std::size_t ip = 20, udp = 8;      // source: RFC 791, 3.1; RFC 768 [byte]
   static constexpr std::size_t payload_max = 65'507;  // by the lengths of IPv4 and UDP [byte]
 
   explicit PacketFrame(const PcapSettings& settings) noexcept {
     for (std::size_t k = 0; k < 6; ++k) bytes_[record + k] = std::byte{0xFF};  // to all hosts
-    bytes_[record + 6] = std::byte{0x02};                                      // from a local address
+    bytes_[record + 6] = std::byte{0x02};                                      // locally unique
     bytes_[record + 11] = std::byte{0x01};
     put_big(record + 12, 0x0800);  // IPv4
     put_big(start, 0x4500);        // version 4, a header of 5 words

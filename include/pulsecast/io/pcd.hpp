@@ -26,7 +26,7 @@ enum class PcdEncoding : std::uint8_t {
 struct PcdSettings {
   PcdEncoding encoding = PcdEncoding::binary;  ///< encoding of the points
   PointLayout layout = layouts::xyzi();        ///< fields, written without gaps
-  PointSettings points{};                      ///< values of the fields; set the origin for large coordinates
+  PointSettings points{};                      ///< values; set the origin for large coordinates
 
   void validate() const {
     require_within("PcdSettings::encoding", static_cast<double>(encoding), 0,
@@ -37,7 +37,7 @@ struct PcdSettings {
 
 namespace detail {
 
-/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: 104 % of the input, and bytes kept free.
+/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: 104 %, and bytes kept free.
 constexpr std::uint64_t lzf_room(std::uint64_t size) noexcept { return size + size / 25 + 16; }
 /// Greatest input of LZF: the sizes before and after are 32-bit numbers [byte].
 inline constexpr std::uint64_t lzf_size_max = 4'129'776'230;

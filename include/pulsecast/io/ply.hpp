@@ -13,7 +13,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of a PLY file.
 struct PlySettings {
   PointLayout layout = layouts::map();  ///< properties of a vertex, written without gaps
-  PointSettings points{};               ///< values of the properties; set the origin for large coordinates
+  PointSettings points{};               ///< values; set the origin for large coordinates
 
   void validate() const { detail::require_packable(layout, points); }
 };

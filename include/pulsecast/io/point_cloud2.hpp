@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include <fastcdr/Cdr.h>
@@ -72,9 +71,7 @@ uint32 count
 
 namespace detail {
 
-static_assert(std::endian::native == std::endian::little, "records are sent as they lie in memory");
-
-/// Encapsulation header: CDR, little-endian, no options. Source: OMG DDSI-RTPS 2.5, chapter 10, CDR_LE.
+/// Encapsulation header: CDR, little-endian, no options. Source: OMG DDSI-RTPS 2.5, 10, CDR_LE.
 inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::byte{1}};
 
 /// Length of the data of a message. @throws SettingError for more than its field holds

@@ -107,12 +107,12 @@ using enum NumberType;
   return xyzi().with({{"ring", uint16, column("ring")}, {"time", float32, column("time")}});
 }
 
-/// Fields of the ROS driver of Hesai, 26 bytes: clock time [s]. Source: HesaiTechnology/HesaiLidar_ROS_2.0.
+/// Fields of the ROS driver of Hesai, 26 bytes, clock [s]. Source: HesaiTechnology/HesaiLidar_ROS_2.0.
 [[nodiscard]] inline PointLayout hesai() {
   return xyzi().with({{"ring", uint16, column("ring")}, {"timestamp", float64, column("clock")}});
 }
 
-/// Fields of the ROS driver of Livox, 26 bytes: clock time [ns]. Source: Livox-SDK/livox_ros_driver2.
+/// Fields of the ROS driver of Livox, 26 bytes, clock [ns]. Source: Livox-SDK/livox_ros_driver2.
 [[nodiscard]] inline PointLayout livox() {
   return xyzi().with({{"tag", uint8}, {"line", uint8, column("ring")}, {"timestamp", float64, column("clock"), 1e9}});
 }

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_POINT_RECORDS_HPP
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,6 +18,8 @@
 
 /// Records of points in a layout, which point files and messages consist of.
 namespace PULSECAST_NAMESPACE::io {
+
+static_assert(std::endian::native == std::endian::little, "records hold numbers as they lie in memory");
 
 namespace detail {
 
@@ -90,7 +93,7 @@ template <class Visitor>
   return count;
 }
 
-/// Encoder of echoes as point records, in pulse order. Allocates nothing but the vector of the records.
+/// Encoder of echoes as point records, in pulse order. Allocates nothing but their vector.
 class PointEncoder {
  public:
   /// @throws SettingError for a layout or settings out of range, or an attribute that no object has
@@ -231,7 +234,7 @@ class PointEncoder {
   PointLayout layout_;
   PointSettings settings_;
   std::vector<Number> numbers_;                                                    // one a field
-  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // needed, and known
+  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // needs
   Tick start_{};
   Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
 };

@@ -20,6 +20,28 @@ struct TextFileSettings {
   void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
+namespace detail {
+
+/// Text file with a time of its tick 0.
+class TextFileWriter {
+ public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
+  explicit TextFileWriter(std::filesystem::path path, const TextFileSettings& settings = {})
+      : TextFileWriter(OutputFile(std::move(path)), settings) {}
+  explicit TextFileWriter(OutputFile file, const TextFileSettings& settings = {})
+      : settings_(validated(settings)), text_(std::move(file)) {}
+
+  void close() { text_.close(); }
+
+ protected:
+  [[nodiscard]] double clock(const Shot& shot) const { return settings_.start_time + shot.tick.seconds(); }
+
+  TextFileSettings settings_;
+  TextOutput text_;
+};
+
+}  // namespace detail
+
 /// Further columns of a text file of points, after the standard ones.
 struct PointTextColumns {
   std::vector<PointField> columns{};  ///< columns in order, see `layouts::columns`
@@ -34,13 +56,13 @@ struct PointTextColumns {
 /// gpsTime [s] has 9. Then integers: return number, returns of the pulse, its index, object, class.
 /// These are the columns of HELIOS++. Further ones follow on request, in the shortest form that
 /// reads back the same, or nan. `close()` completes the file: see `OutputFile`.
-class XyzWriter {
+class XyzWriter : public detail::TextFileWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(OutputFile(std::move(path))) {}
+      : XyzWriter(OutputFile(std::move(path)), settings, std::move(more)) {}
   explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(std::move(file)) {}
+      : TextFileWriter(std::move(file), settings), more_(encoder(settings, std::move(more))) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
@@ -48,7 +70,6 @@ class XyzWriter {
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
-  void close() { text_.close(); }
 
  private:
   [[nodiscard]] static std::optional<PointEncoder> encoder(const TextFileSettings& settings, PointTextColumns more) {
@@ -62,7 +83,7 @@ class XyzWriter {
     text_.vector("the position of an echo", point_of(shot, echo), 4);
     text_.reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
-    text_.reals(9, settings_.start_time + shot.tick.seconds());
+    text_.reals(9, clock(shot));
     if (more_) more_->see(batch, shot, echo, [&](const PointView& view) { write_more(view); });
     text_.end_row();
   }
@@ -78,10 +99,8 @@ class XyzWriter {
     }
   }
 
-  TextFileSettings settings_;
   std::optional<PointEncoder> more_;
   std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);
-  TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);
 
@@ -94,13 +113,9 @@ static_assert(EchoSink<XyzWriter>);
 /// 0; fate: number of its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5
 /// absorbed. Pulses blocked by the optic (1) were never sent. The first nine are columns of
 /// HELIOS++; pulseIndex counts over all devices. `close()` completes the file: see `OutputFile`.
-class PulseTextWriter {
+class PulseTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit PulseTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  explicit PulseTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     const Tick start = Tick::of_seconds(settings_.start_time);
@@ -109,12 +124,6 @@ class PulseTextWriter {
       text_.wholes(shot.index, shot.channel, static_cast<std::uint8_t>(shot.fate)).end_row();
     }
   }
-
-  void close() { text_.close(); }
-
- private:
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<PulseTextWriter>);
 
@@ -166,13 +175,9 @@ static_assert(EchoSink<SubrayTextWriter>);
 /// [s], 9; w: samples of received power [nW], 9. These are the columns of HELIOS++. Sample i is
 /// from the range `c (tmin + (tmax - tmin) i / (n - 1))`. `close()` completes the file: see
 /// `OutputFile`.
-class WaveformTextWriter {
+class WaveformTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit WaveformTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  explicit WaveformTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
@@ -180,21 +185,16 @@ class WaveformTextWriter {
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
-  void close() { text_.close(); }
 
  private:
   void write(const Shot& shot, const EchoBatch& batch) {
     constexpr double nano = 1e9, one_way = 0.5;
     const double last = shot.waveform_start + (shot.samples - 1) * batch.sample_interval;
     text_.wholes(shot.index).beam(shot);
-    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano);
-    text_.reals(9, settings_.start_time + shot.tick.seconds());
+    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano).reals(9, clock(shot));
     for (const float sample : batch.waveform_of(shot)) text_.reals(9, double{sample} * nano);
     text_.end_row();
   }
-
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<WaveformTextWriter>);
 

@@ -24,7 +24,7 @@ struct UdpSettings {
   void validate() const { require_within("UdpSettings::pace", pace, 0, 1e6, ""); }
 };
 
-/// Sends packets by UDP to a host, or all of a network. Throws a `FileError` that names the receiver.
+/// Sends packets by UDP to a host, or all of a network. Errors: a `FileError` that names it.
 class UdpSender {
  public:
   /// @throws SettingError for settings out of range @throws FileError without a socket

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -19,9 +18,7 @@
 /// Points as point files hold them: PCD, PLY, NPZ, text.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
-
-/// @throws SettingError for a layout or settings out of range, or names not unique and valid in a header
+/// @throws SettingError for layout or settings out of range, or names not unique and visible ASCII
 inline void require_packable(const PointLayout& layout, const PointSettings& points) {
   layout.validate();
   points.validate();

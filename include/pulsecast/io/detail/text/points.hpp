@@ -149,7 +149,7 @@ class TextPoints {
 
   InputFile file_;
   TextPointColumns columns_;
-  RowCells cells_;
+  RowCells cells_{"", true};
   std::size_t needed_ = 0;  // columns in use
   std::vector<std::string> notes_;
   bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: first row looked at

@@ -14,8 +14,6 @@ namespace PULSECAST_NAMESPACE::io {
 /// Splitter of rows into cells.
 class RowCells {
  public:
-  RowCells() = default;
-
   /// Any of the characters `separators` ends a cell. If `joins_blanks` is set, blanks and tabs
   /// around cells do not count, and as separators several count as one.
   RowCells(std::string_view separators, bool joins_blanks) : joins_blanks_(joins_blanks) {
@@ -90,7 +88,7 @@ class TextTable {
   [[nodiscard]] bool line_is_open() const noexcept { return file_.line_is_open(); }
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
-  /// Cells of the current line without blanks and quotation marks around them. Valid until the next.
+  /// Cells of the current line, without blanks and quotation marks around; valid until the next.
   [[nodiscard]] const std::vector<std::string_view>& cells() {
     if (!cells_) cells_ = cells_between(separator_in(text()));
     unquoted_ = cells_->split(line_text_);

@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE::io {
 struct TextPointColumns {
   using Columns = std::array<std::size_t, 3>;
 
-  std::string separators = {};                       ///< any of these characters; if empty, as `TextPoints` finds
+  std::string separators = {};                       ///< characters; if empty, as `TextPoints` finds
   Columns position{0, 1, 2};                         ///< columns of x, y and z
   std::optional<Columns> normal = Columns{3, 4, 5};  ///< columns of its x, y and z
   std::optional<Columns> colour = Columns{6, 7, 8};  ///< columns of red, green and blue
