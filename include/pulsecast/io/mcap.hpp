@@ -59,8 +59,8 @@ enum class McapOpcode : std::uint8_t {
   data_end = 0x0F
 };
 
-inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length
-inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< of a chunk
+inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length [byte]
+inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< of a chunk [byte]
 inline constexpr std::uint32_t mcap_no_crc = 0;  ///< absent checksum. Source: mcap.dev/spec
 
 /// Record under construction: opcode, length of content, content. Source: mcap.dev/spec, Records.

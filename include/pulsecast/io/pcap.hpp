@@ -23,7 +23,7 @@ namespace detail {
 /// Frame of a packet: record of the file, and big-endian headers of Ethernet, IPv4 and UDP.
 class PacketFrame {
  public:
-  static constexpr std::size_t record = 16;           // IETF draft-ietf-opsawg-pcap, 5 [byte]
+  static constexpr std::size_t record = 16;           // source: IETF draft-ietf-opsawg-pcap, 5 [byte]
   static constexpr std::size_t ethernet = 14;         // source: IEEE 802.3, frame format [byte]
   static constexpr std::size_t ip = 20, udp = 8;      // source: RFC 791, 3.1; RFC 768 [byte]
   static constexpr std::size_t payload_max = 65'507;  // by the lengths of IPv4 and UDP [byte]

@@ -44,13 +44,13 @@ struct PointSettings {
   std::function<Pose<frame::Instrument, frame::World>(Tick)> sensor{};
   MotionDistortion distortion = MotionDistortion::kept;  ///< of points in the sensor's frame
   PointAxes axes = PointAxes::right_forward_up;          ///< axes of the coordinates
-  Vec3 origin{};                                         ///< place of coordinates 0, for points in the world [m]
-  std::vector<std::uint16_t> rings{};                    ///< see `SpinningSensor::rings`; empty: the channel
+  Vec3 origin{};                                         ///< place of coordinates 0 in the world [m]
+  std::vector<std::uint16_t> rings{};                    ///< see `SpinningSensor::rings`; empty: channel
   double start_time = 0;                                 ///< clock time at tick 0 [s]
   Laser laser{};                                         ///< laser, for the column photons
-  double power_reference = 1e-9;                         ///< power of 0 dB, for the column intensity_level [W]
-  SurfaceQuery surfaces{};                               ///< surfaces of echoes, see `surfaces_of`; empty: unknown
-  PointColours colours{};                                ///< colours of echoes, see `colours_of`; empty: unknown
+  double power_reference = 1e-9;                         ///< power of 0 dB of intensity_level [W]
+  SurfaceQuery surfaces{};                               ///< of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};                                ///< of echoes, see `colours_of`; empty: unknown
   ObjectAttributes attributes{};                         ///< attributes of objects
 
   void validate() const {

@@ -101,8 +101,7 @@ using enum NumberType;
   return PointLayout::packed(xyz_float()).with({{"intensity", float32, column("reflectivity")}});
 }
 
-/// Fields of the ROS driver of Velodyne, 22 bytes: time in the scan [s]. Source:
-/// ros-drivers/velodyne.
+/// Fields of Velodyne's ROS driver, 22 bytes: time in the scan [s]. Source: ros-drivers/velodyne.
 [[nodiscard]] inline PointLayout velodyne() {
   return xyzi().with({{"ring", uint16, column("ring")}, {"time", float32, column("time")}});
 }
@@ -118,8 +117,7 @@ using enum NumberType;
 }
 
 /// Fields of the ROS driver of Ouster, 48 bytes: t in the scan [ns], intensity in photons, range
-/// [mm], as in a structure aligned to 16 bytes. Source: ouster-lidar/ouster-ros, default point
-/// type.
+/// [mm], as in a structure aligned to 16 bytes. Source: ouster-lidar/ouster-ros.
 [[nodiscard]] inline PointLayout ouster() {
   return {{{"x", float32, column("x"), 1, 0},
            {"y", float32, column("y"), 1, 4},

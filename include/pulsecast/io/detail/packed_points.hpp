@@ -18,7 +18,7 @@
 /// Points as point files hold them: PCD, PLY, NPZ, text.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// @throws SettingError for layout or settings out of range, or names not unique and visible ASCII
+/// @throws SettingError for layout or settings out of range, or names not unique or visible ASCII
 inline void require_packable(const PointLayout& layout, const PointSettings& points) {
   layout.validate();
   points.validate();

@@ -10,8 +10,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Well-known text of UTM on WGS 84, ETRS89 or NAD83, else empty. Source: EPSG registry; OGC
-/// 01-009, 7.
+/// Well-known text of UTM on WGS 84, ETRS89 or NAD83, else empty. Source: EPSG; OGC 01-009, 7.
 [[nodiscard]] inline std::string las_utm(std::uint16_t epsg) {
   struct Family {
     unsigned first, last;  // codes of its zones

@@ -90,8 +90,9 @@ struct LasSettings {
   std::vector<PointField> columns = {};  ///< further extra values, see `layouts::columns`
   /// Values of `columns`, but for start time, reference power, colours and attributes of the file.
   PointSettings points = {};
-  double scale = 1e-4;                                 ///< step of the coordinates [m]
-  std::optional<Vec3> offset = {};                     ///< origin [m]; if empty, by the first point
+  double scale = 1e-4;  ///< step of the coordinates [m]
+  /// Origin of the coordinates [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  std::optional<Vec3> offset = {};
   std::string wkt = {};                                ///< OGC well-known text; if empty, by `epsg`
   std::uint16_t epsg = 0;                              ///< EPSG code of a system in metres; 0: none
   GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
@@ -112,7 +113,7 @@ struct LasSettings {
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
     require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");
-    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // by OGC GeoTIFF 1.1
+    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");
     if (intensity == LasIntensity::range_normalized && !intensity_full_scale)

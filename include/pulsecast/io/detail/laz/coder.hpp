@@ -109,7 +109,7 @@ class LazEncoder {
 
   /// Bytes of all coded symbols; bytes after them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
-    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // to 24 zeros: the interval is longer
+    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // to 24 zeros: length_ >= 2^24
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);

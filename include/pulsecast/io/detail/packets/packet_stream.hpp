@@ -22,7 +22,7 @@ enum class PacketReturns : std::uint8_t {
 /// Settings of the packets of a sensor.
 struct PacketSettings {
   PacketReturns returns = PacketReturns::strongest;  ///< returns of a pulse
-  double start_time = 0;                             ///< clock time at tick 0, from 0 to 4e9 [s]
+  double start_time = 0;                             ///< clock time at tick 0, as since 1970, to 4e9 [s]
 
   void validate() const { require_within("PacketSettings::start_time", start_time, 0, 4e9, "s"); }
 };
