@@ -193,7 +193,7 @@ inline constexpr std::array point_columns = [] {
   using namespace detail;
   using enum NumberType;
   using enum PointNeed;
-  using Colour = PointColour;
+  using Rgb = PointColour;
   constexpr auto normal = &PointSurface::normal, velocity = &PointSurface::velocity;
   constexpr auto part = &SurfaceInteraction::part;
   constexpr auto material = &SurfaceInteraction::material_index;
@@ -215,10 +215,10 @@ inline constexpr std::array point_columns = [] {
       member<&Shot::echoes>("number_of_returns", "", uint8, "returns of the pulse"),
       member<&Shot::channel>("channel", "", uint16, "number of the emitter, from 0"),
       member<&Echo::kind>("kind", "", uint8, "way of the light, 0: direct"),
-      PointColumn{"red", "", uint16, of_colour<&Colour::red>, "red, up to 65535", colour},
-      PointColumn{"green", "", uint16, of_colour<&Colour::green>, "green, up to 65535", colour},
-      PointColumn{"blue", "", uint16, of_colour<&Colour::blue>, "blue, up to 65535", colour},
-      PointColumn{"near_infrared", "", uint16, of_colour<&Colour::near_infrared>, "near infrared, up to 65535", colour},
+      PointColumn{"red", "", uint16, of_colour<&Rgb::red>, "red, up to 65535", colour},
+      PointColumn{"green", "", uint16, of_colour<&Rgb::green>, "green, up to 65535", colour},
+      PointColumn{"blue", "", uint16, of_colour<&Rgb::blue>, "blue, up to 65535", colour},
+      PointColumn{"near_infrared", "", uint16, of_colour<&Rgb::near_infrared>, "near infrared, up to 65535", colour},
       PointColumn{"rgb", "", uint32, rgb_of, "65536 red + 256 green + blue", colour},
       PointColumn{"rgb_bits", "", float32, rgb_bits_of, "rgb as the bits of a float", colour},
       PointColumn{"clock", "s", float64, clock_time, "emission by the clock"},
