@@ -5,15 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
@@ -33,32 +26,32 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Point records of a COPC file. They wait in a temporary file, and `finish` builds the octree. Source of the records:
-/// https://copc.io, COPC 1.0, info VLR and hierarchy VLR.
+/// Point records of a COPC file. They wait in a temporary file, and `finish` builds the octree.
+/// Source of the records: https://copc.io, COPC 1.0, info VLR and hierarchy VLR.
 class CopcRecords {
  public:
   explicit CopcRecords(unsigned threads, CopcSizes sizes = {})
       : threads_(std::min(thread_count(threads), 12U)), sizes_(sizes) {}
 
   static constexpr std::uint8_t format_bits = 128;
-  static constexpr std::uint32_t first_descriptor_count = 1, descriptor_count = 1;
-  [[nodiscard]] static std::vector<std::byte> first_descriptors() {
+  [[nodiscard]] static std::vector<std::byte> first_descriptor() {
     return std::vector<std::byte>(las_vlr_header_size + info_size);
   }
-  [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& layout) {
-    return laz_descriptor(layout, std::numeric_limits<std::uint32_t>::max());  // chunks of any number of points
+  [[nodiscard]] static std::vector<std::byte> descriptor(const LasLayout& layout) {
+    return laz_descriptor(layout, std::numeric_limits<std::uint32_t>::max());  // chunks of any size
   }
 
   void begin(OutputFile& file, const LasLayout& layout, bool /*changed*/) {
     layout_ = layout;
     table_position_at_ = file.position();
     file.write(LasBytes<8>{});  // placeholder
-    runs_.emplace(file.path().string() + ".points", layout.record(), threads_, sizes_.run_bytes, sizes_.most_cells);
+    const std::filesystem::path path = file.path().string() + ".points";
+    runs_.emplace(path, layout.record(), threads_, sizes_.run_bytes, sizes_.most_cells);
   }
 
   void write(OutputFile& /*file*/, std::span<const std::byte> record) {
     double time = 0;
-    std::memcpy(&time, record.data() + 22, sizeof time);  // offset: LAS 1.4 R15, Point Data Record Format 6
+    std::memcpy(&time, record.data() + 22, sizeof time);  // LAS 1.4 R15, Point Data Record Format 6
     first_time_ = std::fmin(first_time_, time);
     last_time_ = std::fmax(last_time_, time);
     runs_->add(record);
@@ -72,7 +65,8 @@ class CopcRecords {
   void finish(OutputFile& file, const LasEncoder& encoder) {
     runs_->end();
     CopcTree tree(file, *layout_, threads_, sizes_, std::move(change_));
-    CopcRoot root{{std::int64_t{1} << 31, std::int64_t{1} << 31, std::int64_t{1} << 31}, copc_grid_bits};
+    constexpr std::int64_t middle = std::int64_t{1} << 31;
+    CopcRoot root{{middle, middle, middle}, copc_grid_bits};
     if (runs_->points() > 0) {
       const CopcPlan plan(*runs_, sizes_);
       root = plan.root();
@@ -91,7 +85,7 @@ class CopcRecords {
   [[nodiscard]] LasExtendedRecords extended() const noexcept { return extended_; }
 
  private:
-  static constexpr std::size_t info_size = 160, info_at = 375, extended_header_size = 60;  // 375: of the header [byte]
+  static constexpr std::size_t info_size = 160, info_at = 375, extended_header_size = 60;  // [byte]
 
   void write_hierarchy(OutputFile& file, const LasEncoder& encoder, const CopcRoot& root,
                        std::vector<CopcEntry> entries) {
@@ -107,7 +101,8 @@ class CopcRecords {
     file.write(h);
     file.write(pages);
 
-    const double scale = encoder.settings().scale, side = std::ldexp(scale, static_cast<int>(root.bits));
+    const double scale = encoder.settings().scale;
+    const double side = std::ldexp(scale, static_cast<int>(root.bits));
     LasBytes<info_size> info{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double corner = static_cast<double>(root.corner[axis] - (std::int64_t{1} << 31)) - 0.5;  // [step]
@@ -130,26 +125,25 @@ class CopcRecords {
   std::optional<CopcRuns> runs_;
   CopcTree::Change change_;
   std::uint64_t table_position_at_ = 0;  // offset of the table's position in the file [byte]
-  double first_time_ = std::numeric_limits<double>::infinity(), last_time_ = -std::numeric_limits<double>::infinity();
+  double first_time_ = std::numeric_limits<double>::infinity(), last_time_ = -first_time_;
   LasExtendedRecords extended_{};
 };
 
 }  // namespace detail
 
-/// Writes points as COPC 1.0, a LAZ file with an octree for maps and viewers that read a part of it: as `LazWriter`,
-/// but for the order of the points. A node with children has at most one point in each of its 128^3 cells, that nearest
-/// to the centre, so all points down to some level are an even sample of the cloud. Another node has at most 50,000, or
-/// one in each cell, unless its side is 128 steps of the coordinates. The bytes of the file are the same for any number
-/// of threads.
+/// Writes points as COPC 1.0, a LAZ file with an octree for maps and viewers that read a part of
+/// it: as `LazWriter`, but for the order of the points. A node with children has at most one point
+/// in each of its 128^3 cells, that nearest to the centre, so all points down to some level are an
+/// even sample. Another node has at most 50,000, or one in each cell, unless its side is 128 steps
+/// of the coordinates. The bytes are the same for any number of threads.
 ///
-/// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed. The disk must have
-/// room for them and the file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each
-/// thread, of which at most 12 are used, so that it stays below 1 GB. But points within a cube of 2048 steps are held
-/// at once. `docs/performance.md` has the figures.
+/// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed, so
+/// the disk must have room for both. Memory is independent of the number of points: some 200 MB,
+/// and 60 MB more for each of at most 12 threads, below 1 GB in all. But points within a cube of
+/// 2048 steps are held at once. `docs/performance.md` has the figures.
 class CopcWriter : public detail::LasFileWriter<detail::CopcRecords> {
  public:
-  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError if the file cannot
-  /// be made
+  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError
   explicit CopcWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), LazWriter::compressible(std::move(settings)), detail::CopcRecords(threads)) {}
 };

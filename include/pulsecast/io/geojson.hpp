@@ -16,12 +16,12 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a GeoJSON file.
 struct GeoJsonSettings {
-  int epsg = 0;  ///< EPSG code of a projected system in metres, from 1 to 32766; 0 if unknown, and none is written
+  int epsg = 0;                    ///< EPSG code of a projected system in metres, up to 32766; 0: none
   double interval = 1;             ///< time between two points of a trajectory [s]
   double footprint_interval = 10;  ///< time that one polygon of a footprint covers [s]
 
   void validate() const {
-    require_within("GeoJsonSettings::epsg", epsg, 0, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
+    require_within("GeoJsonSettings::epsg", epsg, 0, 32766, "");  // source: OGC GeoTIFF 1.1
     require_positive("GeoJsonSettings::interval", interval, "s");
     require_positive("GeoJsonSettings::footprint_interval", footprint_interval, "s");
   }
@@ -29,10 +29,10 @@ struct GeoJsonSettings {
 
 namespace detail {
 
-/// Convex hull of points in the plane, anticlockwise from the lowest x, without points on its edges. Exact if the
-/// products of differences are. Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions.
+/// Convex hull, anticlockwise from the lowest x, without points on its edges. Exact if the products
+/// of differences are. Source: Andrew 1979, Another efficient algorithm for convex hulls.
 [[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::ranges::sort(points, {}, [](const Vec2& p) { return std::pair(p.x, p.y); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Vec2> hull;
@@ -51,7 +51,7 @@ namespace detail {
   return hull;
 }
 
-/// Convex hull of a stream of points. Keeps a buffer of some thousands, or of twice the corners if these are more.
+/// Convex hull of a stream of points. Keeps some thousands, or twice the corners if these are more.
 class HullOfStream {
  public:
   void add(const Vec2& point) {
@@ -73,19 +73,18 @@ class HullOfStream {
 
 }  // namespace detail
 
-/// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for a look in QGIS:
-/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points; a
-///   Point for a leg that does not move. Properties: kind, leg, pulses, points (all echoes of the leg), start, end [s];
-/// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one `footprint_interval`, counted
-///   from the start of the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points,
-///   area [m^2]. Points on a line have none.
+/// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for QGIS:
+/// - trajectory: LineString of origins of pulses, the first and the last among them; a Point for a
+///   leg that does not move. Properties: kind, leg, pulses, points (all echoes), start, end [s];
+/// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one
+///   `footprint_interval`, counted from the start of the leg. Properties: kind, leg, start and end
+///   (first and last pulse with a point) [s], points, area [m^2]. Points on a line have none.
 ///
-/// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and
-/// GDAL read that member; RFC 7946 allows longitude and latitude of WGS 84 only, so strict readers misplace coordinates
-/// in metres. Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another begins; one
-/// that comes back has new features. Footprints are written as their time ends, a trajectory with its leg: memory grows
-/// with the points of one leg's trajectory, and the corners of one footprint. Only `close()` completes the file: see
-/// `OutputFile`. Throws a `FileError`.
+/// Sources: RFC 7946, 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, 3. QGIS
+/// and GDAL read it; RFC 7946 allows WGS 84 only, so strict readers misplace coordinates in metres.
+/// Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another
+/// begins; one that comes back has new features. Memory grows with the points of one leg's
+/// trajectory, and the corners of one footprint. `close()` completes the file: see `OutputFile`.
 class GeoJsonWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -148,14 +147,13 @@ class GeoJsonWriter {
     std::uint64_t points = 0;
   };
 
-  /// Point in whole millimetres: hulls are exact up to some 90 km, and remain convex as written. Empty if not finite.
+  /// Point in whole millimetres: hulls up to some 90 km are exact. Empty if not finite.
   [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
     const Vec3 scaled = point * per_metre;
     if (!finite(scaled)) return std::nullopt;
     return Vec3{std::nearbyint(scaled.x), std::nearbyint(scaled.y), std::nearbyint(scaled.z)};
   }
 
-  /// Array of coordinates [m].
   template <std::size_t N>
   [[nodiscard]] static std::string position(const double (&millimetres)[N]) {
     TextRow row(',');
@@ -203,31 +201,30 @@ class GeoJsonWriter {
     }
     if (!std::isfinite(twice)) return;
     const std::string area = text::to_text(twice / (2 * per_metre * per_metre));
-    feature(
-        "footprint", done.time, text::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
-        text::joined({R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
+    const std::string end = position({corners[0].x, corners[0].y});
+    feature("footprint", done.time, text::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
+            text::joined({R"({"type":"Polygon","coordinates":[[)", ring, end, "]]}"}));
   }
 
   void end_leg() {
     if (!leg_) return;
     end_footprint();
     if (leg_->last) leg_->add(*leg_->last);
-    const bool moves = leg_->line_points > 1;
-    const std::string geometry = text::joined({R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)",
-                                               moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
+    const std::string pulses = std::to_string(leg_->pulses), points = std::to_string(leg_->points);
+    const auto [begin, end] = leg_->line_points > 1 ? std::pair(R"({"type":"LineString","coordinates":[)", "]}")
+                                                    : std::pair(R"({"type":"Point","coordinates":)", "}");
     if (leg_->last)
-      feature(
-          "trajectory", leg_->time,
-          text::joined({R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
-          geometry);
+      feature("trajectory", leg_->time, text::joined({R"("pulses":)", pulses, R"(,"points":)", points}),
+              text::joined({begin, leg_->line, end}));
     leg_.reset();
   }
 
-  /// Writes a feature of the present leg.
   void feature(std::string_view kind, const Times& time, std::string_view counts, std::string_view geometry) {
+    const std::string leg = std::to_string(leg_->number);
+    const std::string start = text::to_text(time.start), end = text::to_text(time.end);
     file_.write(text::joined({std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind,
-                              R"(","leg":)", std::to_string(leg_->number), R"(,"start":)", text::to_text(time.start),
-                              R"(,"end":)", text::to_text(time.end), ",", counts, R"(},"geometry":)", geometry, "}"}));
+                              R"(","leg":)", leg, R"(,"start":)", start, R"(,"end":)", end, ",", counts,
+                              R"(},"geometry":)", geometry, "}"}));
   }
 
   GeoJsonSettings settings_;

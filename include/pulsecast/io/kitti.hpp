@@ -5,19 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
@@ -29,8 +19,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// Classes of SemanticKITTI by those of echoes. Classes without an entry are 0, unlabeled.
 using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 
-/// Table for the classes of LAS that have a counterpart; classes from 64 on are the user's, and go into further
-/// entries. Source: ASPRS LAS 1.4 R15, table of classes; semantic-kitti-api, config/semantic-kitti.yaml.
+/// Table for the classes of LAS that have a counterpart; those from 64 on are the user's. Source:
+/// ASPRS LAS 1.4 R15, table of classes; semantic-kitti-api, config/semantic-kitti.yaml.
 [[nodiscard]] inline KittiClasses kitti_classes() {
   return {{2, 72},    // ground: terrain
           {3, 70},    // low vegetation: vegetation
@@ -48,7 +38,7 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
   KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
-  PointSettings points{};  ///< pose of the sensor, which is required, and distortion; axes are those of the format
+  PointSettings points{};                  ///< pose of the sensor (required), and distortion
 
   void validate() const {
     require_within("KittiSettings::scan_rate", scan_rate, 1e-3, 1e6, "Hz");
@@ -58,21 +48,18 @@ struct KittiSettings {
   }
 };
 
-/// Writes scans as a sequence folder of SemanticKITTI. Source: Behley et al. 2019, SemanticKITTI; semantic-kitti-api,
-/// README and auxiliary scripts. Scans are those of `ScanSplitter`, numbered from 0:
-/// - velodyne/000000.bin: x forward, y left, z up [m] and reflectance, limited to 0 to 1, in the sensor's frame, as
-/// 32-bit floats;
-/// - labels/000000.label: of each point 32 bits, instance in the upper 16 and class in the lower. The instance is the
-/// object modulo 65536;
+/// Writes scans as a sequence folder of SemanticKITTI. Source: Behley et al. 2019, SemanticKITTI;
+/// semantic-kitti-api. Scans are those of `ScanSplitter`, numbered from 0:
+/// - velodyne/000000.bin: floats x forward, y left, z up [m] of the sensor, reflectance up to 1;
+/// - labels/000000.label: of each point 32 bits, object modulo 65536 in the upper 16, class below;
 /// - times.txt: seconds since the first scan, one line a scan;
-/// - poses.txt: sensor at each scan's start in the frame of the first, both with x forward, y left, z up: rows of a
-/// matrix of 3 by 4;
-/// - calib.txt: the identity as Tr, from the sensor to the frame of the poses. There are no cameras.
+/// - poses.txt: sensor at each start in the frame of the first, axes as above: 3 by 4, by rows;
+/// - calib.txt: the identity as Tr, from the sensor to the frame of the poses. No cameras.
 ///
-/// Files of a scan are complete with the scan; times, poses and calibration with `close()`. Throws a `FileError`.
+/// Files of a scan are complete with the scan, others with `close()`. Throws a `FileError`.
 class KittiWriter {
  public:
-  /// Creates the folder, which holds no scans yet. @throws SettingError for settings out of range @throws FileError
+  /// Creates the folder. @throws SettingError for settings out of range @throws FileError
   KittiWriter(std::filesystem::path folder, const KittiSettings& settings)
       : folder_(std::move(folder)),
         classes_(settings.classes),
@@ -96,8 +83,6 @@ class KittiWriter {
   }
 
  private:
-  static_assert(std::endian::native == std::endian::little, "scans are written as the numbers lie in memory");
-
   [[nodiscard]] static PointLayout layout() {
     return PointLayout::packed(layouts::xyz_float())
         .with(layouts::columns({column("reflectance"), column("classification"), column("object")}));
@@ -116,7 +101,8 @@ class KittiWriter {
       std::filesystem::create_directories(folder, error);
       const bool empty = !error && std::filesystem::is_empty(folder, error);
       if (error)
-        throw FileError(folder.string(), "", "cannot be created: " + error.message() + "; expected a writable folder");
+        throw FileError(folder.string(), "",
+                        text::joined({"cannot be created: ", error.message(), "; expected a writable folder"}));
       if (!empty) throw FileError(folder.string(), "", "holds files already; expected a folder without scans");
     }
     return folder_;
@@ -125,7 +111,8 @@ class KittiWriter {
   void write(const PointBuffer& scan) {
     const std::string number = std::to_string(scans_++);
     const std::string name = std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number;
-    OutputFile points(folder_ / "velodyne" / (name + ".bin")), labels(folder_ / "labels" / (name + ".label"));
+    OutputFile points(folder_ / "velodyne" / (name + ".bin"));
+    OutputFile labels(folder_ / "labels" / (name + ".label"));
     const std::vector<PointField>& fields = scan.layout().fields;
     for (std::size_t i = 0; i < scan.size(); ++i) {
       std::array<float, 4> point;
@@ -151,9 +138,10 @@ class KittiWriter {
     const auto column = [&](const Vec3& axis) {
       return to_forward_left_up(pose.rotation * from_forward_left_up(axis));
     };
-    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1}),
-               at = to_forward_left_up(pose.position);
-    poses_.reals(12, x.x, y.x, z.x, at.x, x.y, y.y, z.y, at.y, x.z, y.z, z.z, at.z).end_row();
+    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
+    const Vec3 at = to_forward_left_up(pose.position);
+    for (int row = 0; row < 3; ++row) poses_.reals(12, x[row], y[row], z[row], at[row]);
+    poses_.end_row();
   }
 
   std::filesystem::path folder_;

@@ -3,13 +3,6 @@
 #ifndef PULSECAST_IO_LAS_HPP
 #define PULSECAST_IO_LAS_HPP
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
@@ -24,9 +17,9 @@ namespace detail {
 class LasRecords {
  public:
   static constexpr std::uint8_t format_bits = 0;  ///< flags in the header's point format
-  static constexpr std::uint32_t first_descriptor_count = 0, descriptor_count = 0;  ///< of records about the points
-  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }    ///< those before all others
-  [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& /*layout*/) { return {}; }
+  /// Records about the points, before and after all others; empty: none.
+  [[nodiscard]] static std::vector<std::byte> first_descriptor() { return {}; }
+  [[nodiscard]] static std::vector<std::byte> descriptor(const LasLayout& /*layout*/) { return {}; }
 
   /// Begins the points at the file's position; `changed` says if `change` will be called.
   void begin(const OutputFile& file, const LasLayout& layout, bool /*changed*/) {
@@ -46,7 +39,7 @@ class LasRecords {
   }
 
   void finish(OutputFile& /*file*/, const LasEncoder& /*encoder*/) {}
-  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }  ///< valid once finished
+  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }  ///< once finished
 
  private:
   std::uint64_t begin_ = 0;  // [byte]
@@ -55,7 +48,7 @@ class LasRecords {
 
 }  // namespace detail
 
-/// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter`. Memory does not grow with them.
+/// Writes points as LAS, in pulse order: see `detail::LasFileWriter`. Memory does not grow with them.
 class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
  public:
   /// @throws SettingError for settings out of range @throws FileError if the file cannot be made

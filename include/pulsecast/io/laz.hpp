@@ -4,15 +4,7 @@
 #define PULSECAST_IO_LAZ_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
@@ -30,17 +22,17 @@ namespace detail {
 
 inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
 
-/// Variable-length record, header included, on the compression of points in chunks of `chunk` points. Source: `laszip
-/// encoded` as documented by LASzip, LAStools.
+/// Variable-length record, header included, on the compression of points in chunks of `chunk`
+/// points. Source: `laszip encoded` as documented by LASzip, LAStools.
 [[nodiscard]] inline std::vector<std::byte> laz_descriptor(const LasLayout& layout,
                                                            std::uint32_t chunk = laz_chunk_points) {
   struct Item {
     std::uint16_t type;
     std::size_t size;
   };
-  std::vector<Item> items{{10, laz_point_size}};  // POINT14
-  if (layout.colour_size > 0)                     // RGB14, RGBNIR14
-    items.push_back({layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});
+  std::vector<Item> items{{10, laz_point_size}};           // POINT14
+  if (layout.colour_size == 6) items.push_back({11, 6});   // RGB14
+  if (layout.colour_size == 8) items.push_back({12, 8});   // RGBNIR14
   items.push_back({14, layout.record() - layout.extras});  // BYTE14
   LasBytes<34> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
@@ -64,8 +56,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   return bytes;
 }
 
-/// Chunk table: sizes of all chunks [byte], for random access, and their numbers of points, unless `points` is empty
-/// and all but the last have as many. Source: Isenburg 2013, LASzip, 3 (chunk table).
+/// Chunk table: sizes of all chunks [byte], for random access, and their numbers of points, unless
+/// `points` is empty. Source: Isenburg 2013, LASzip, 3 (chunk table).
 [[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes,
                                                             std::span<const std::uint32_t> points = {}) {
   LasBytes<8> head{};  // version, 0, and number of chunks
@@ -87,16 +79,15 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   return bytes;
 }
 
-/// Point records of a LAZ file. As many chunks as threads, but at most 16, are gathered, compressed in parallel and
-/// written in order. Records to be changed wait uncompressed in a file of their own.
+/// Point records of a LAZ file. As many chunks as threads, at most 16, are gathered, compressed in
+/// parallel and written in order. Records to be changed wait uncompressed in a file of their own.
 class LazRecords {
  public:
   explicit LazRecords(unsigned threads) : threads_(std::min(thread_count(threads), 16U)) {}
 
   static constexpr std::uint8_t format_bits = 128;
-  static constexpr std::uint32_t first_descriptor_count = 0, descriptor_count = 1;
-  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }
-  [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& layout) { return laz_descriptor(layout); }
+  [[nodiscard]] static std::vector<std::byte> first_descriptor() { return {}; }
+  [[nodiscard]] static std::vector<std::byte> descriptor(const LasLayout& how) { return laz_descriptor(how); }
 
   void begin(OutputFile& file, const LasLayout& layout, bool changed) {
     record_ = layout.record();
@@ -148,8 +139,8 @@ class LazRecords {
     const std::size_t full = laz_chunk_points * record_;
     std::vector<std::vector<std::byte>> chunks((gathered_.size() + full - 1) / full);
     for_each_index(chunks.size(), threads_, [&](std::size_t i) {
-      const auto records = std::span<const std::byte>(gathered_).subspan(i * full);
-      chunks[i] = LazChunk(records.first(std::min(full, records.size())), record_, colour_).compressed();
+      const auto rest = std::span<const std::byte>(gathered_).subspan(i * full);
+      chunks[i] = LazChunk(rest.first(std::min(full, rest.size())), record_, colour_).compressed();
     });
     for (const auto& chunk : chunks) {
       file.write(chunk);
@@ -168,14 +159,13 @@ class LazRecords {
 
 }  // namespace detail
 
-/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as
-/// LASzip does. Chunks of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the
-/// file are the same for any number. Throws a `SettingError` for another format, or for waveforms. With intensities
-/// scaled to the maximum amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
+/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, compressed as
+/// LASzip does. Chunks of 50,000 points are compressed on `threads` threads, 0 as in
+/// `thread_count`; the bytes are the same for any number. With intensities scaled to the maximum
+/// amplitude, `close()` compresses all; until then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
-  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError if the file cannot
-  /// be made
+  /// @throws SettingError for settings out of range, or that LAZ does not support @throws FileError
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 
@@ -189,7 +179,7 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
     return settings;
   }
 
-  static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points of a chunk, except the last
+  static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< but for the last
 
   /// Compresses a chunk of whole records by these settings: at least one, at most `chunk_points`.
   [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records,

@@ -18,8 +18,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of an MCAP file.
 struct McapSettings {
-  std::string profile = "ros2";  ///< requirements that the channels meet; "ros2": all are of ROS 2; empty: none
-  /// Length that messages fill a chunk up to, from 1 to 2^30; a longer one is alone in its chunk [byte]
+  std::string profile = "ros2";  ///< "ros2": all channels are of ROS 2; empty: any
+  /// Length of a chunk, from 1 to 2^30; a longer message is alone in its chunk [byte]
   std::size_t chunk_size = std::size_t{1} << 20;
 
   /// @throws SettingError for settings out of range
@@ -30,12 +30,12 @@ struct McapSettings {
 
 /// Channel of an MCAP file: messages of one type on one topic. By default those of ROS 2.
 struct McapChannel {
-  std::string topic{};        ///< topic
-  std::string schema_name{};  ///< type of the messages, as "sensor_msgs/msg/PointCloud2"; empty: there is no schema
+  std::string topic{};                      ///< topic
+  std::string schema_name{};                ///< as "sensor_msgs/msg/PointCloud2"; empty: none
   std::string schema_encoding = "ros2msg";  ///< language of the schema
   std::string schema{};                     ///< definition of the type
   std::string message_encoding = "cdr";     ///< encoding of the messages
-  /// Further texts by their keys. The profile "ros2" requires the quality of service, in YAML; empty: the player's
+  /// Further texts by keys. The profile "ros2" requires the quality of service, in YAML, or empty
   std::map<std::string, std::string> metadata{{"offered_qos_profiles", ""}};
 };
 
@@ -60,13 +60,12 @@ enum class McapOpcode : std::uint8_t {
 };
 
 inline constexpr std::size_t mcap_record_head = 1 + 8;                                    ///< opcode, length [byte]
-inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< head of a chunk [byte]
+inline constexpr std::size_t mcap_chunk_head = mcap_record_head + 8 + 8 + 8 + 4 + 4 + 8;  ///< of a chunk [byte]
 inline constexpr std::uint32_t mcap_no_crc = 0;  ///< absent checksum. Source: mcap.dev/spec
 
-/// Record under construction: opcode, length of the content, content. Source: mcap.dev/spec, Records and Serialization.
+/// Record under construction: opcode, length of content, content. Source: mcap.dev/spec, Records.
 class McapRecord {
  public:
-  /// Begins a new record.
   McapRecord& begin(McapOpcode opcode) {
     bytes_.clear();
     return add(static_cast<std::uint8_t>(opcode)).add(std::uint64_t{0});
@@ -109,28 +108,31 @@ class McapRecord {
 
 }  // namespace detail
 
-/// Writes an MCAP file, which the tools of ROS 2 (rosbag2) and others read: chunks without compression, with an index
-/// and statistics. It takes messages of any encoding, in any order of their times. Checksums are left out, as the
-/// format allows. Only `close()` completes the file: see `OutputFile`. Source of the format: mcap.dev/spec, version 0.
+/// Writes an MCAP file, which the tools of ROS 2 (rosbag2) and others read: chunks without
+/// compression and checksums, with an index and statistics. Messages may have any encoding and
+/// order. `close()` completes the file: see `OutputFile`. Source: mcap.dev/spec, 0.
 class McapWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit McapWriter(std::filesystem::path path, McapSettings settings = {})
       : settings_(validated(std::move(settings))), file_(std::move(path)) {
     file_.write(magic);
-    put(record_.begin(Opcode::header).add(settings_.profile).add(std::string_view("pulsecast " PULSECAST_VERSION)));
+    constexpr std::string_view library = "pulsecast " PULSECAST_VERSION;
+    put(record_.begin(Opcode::header).add(settings_.profile).add(library));
   }
 
-  /// Adds a channel, and returns its number. @throws SettingError for more than 65,535 channels @throws FileError
+  /// Adds a channel, and returns its number. @throws SettingError beyond 65,535 @throws FileError
   [[nodiscard]] std::uint16_t add_channel(McapChannel channel) {
     require_within("McapWriter::add_channel (channels so far)", static_cast<double>(channels_.size()), 0, 65'534, "");
     const auto id = static_cast<std::uint16_t>(channels_.size());
     channels_.push_back({std::move(channel), {}, 0, 0});
     Channel& added = channels_.back();
     if (!added.settings.schema_name.empty()) {
-      const auto same = std::find_if(channels_.begin(), channels_.end(),
-                                     [&](const Channel& other) { return same_schema(other.settings, added.settings); });
-      added.schema = static_cast<std::uint16_t>(same - channels_.begin() + 1);  // schemas count from 1
+      const auto same = std::ranges::find_if(channels_, [&, &a = added.settings](const Channel& other) {
+        const McapChannel& b = other.settings;
+        return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
+      });
+      added.schema = static_cast<std::uint16_t>(same - channels_.begin() + 1);  // from 1
       if (brings_schema(id)) put_schema(id);
     }
     put_channel(id);
@@ -144,8 +146,8 @@ class McapWriter {
     if (channel >= channels_.size())
       throw SettingError("McapWriter::write (channel)", channel, "", "one that add_channel has returned");
     constexpr std::uint64_t message_head = detail::mcap_record_head + 2 + 4 + 8 + 8;
-    if (in_chunk_ && file_.position() - chunks_.back().records() + message_head + data.size() > settings_.chunk_size)
-      end_chunk();
+    const std::uint64_t end = file_.position() + message_head + data.size();
+    if (in_chunk_ && end - chunks_.back().records() > settings_.chunk_size) end_chunk();
     if (!in_chunk_) begin_chunk();
     Channel& of = channels_[channel];
     Chunk& chunk = chunks_.back();
@@ -186,7 +188,7 @@ class McapWriter {
 
   struct Channel {
     McapChannel settings;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // times and positions in the open chunk
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // times, positions in the chunk
     std::uint64_t messages;
     std::uint16_t schema;  // number of the schema; 0: none
   };
@@ -194,8 +196,8 @@ class McapWriter {
   struct Chunk {
     std::uint64_t start = 0, size = 0;  // position in the file; length of its records [byte]
     Times times{};
-    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes{};  // channels and positions [byte]
-    std::uint64_t indexes_size = 0;                                  // length of these records [byte]
+    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes{};  // channels, positions [byte]
+    std::uint64_t indexes_size = 0;                                  // of these records [byte]
 
     [[nodiscard]] std::uint64_t records() const noexcept { return start + detail::mcap_chunk_head; }
   };
@@ -210,29 +212,19 @@ class McapWriter {
 
   void put(detail::McapRecord& record) { file_.write(record.bytes()); }
 
-  [[nodiscard]] static bool same_schema(const McapChannel& a, const McapChannel& b) noexcept {
-    return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
-  }
-
   /// True if a channel is the first with its schema, which has the number of this channel, from 1.
-  [[nodiscard]] bool brings_schema(std::size_t id) const noexcept { return channels_[id].schema == id + 1; }
+  bool brings_schema(std::size_t id) const noexcept { return channels_[id].schema == id + 1; }
 
   void put_schema(std::size_t id) {
     const McapChannel& of = channels_[id].settings;
-    put(record_.begin(Opcode::schema)
-            .add(channels_[id].schema)
-            .add(of.schema_name)
-            .add(of.schema_encoding)
-            .add(of.schema));
+    record_.begin(Opcode::schema).add(channels_[id].schema);
+    put(record_.add(of.schema_name).add(of.schema_encoding).add(of.schema));
   }
 
   void put_channel(std::size_t id) {
     const McapChannel& of = channels_[id].settings;
-    record_.begin(Opcode::channel)
-        .add(static_cast<std::uint16_t>(id))
-        .add(channels_[id].schema)
-        .add(of.topic)
-        .add(of.message_encoding);
+    record_.begin(Opcode::channel).add(static_cast<std::uint16_t>(id)).add(channels_[id].schema);
+    record_.add(of.topic).add(of.message_encoding);
     put(record_.add_list([&] {
       for (const auto& [key, value] : of.metadata) record_.add(key).add(value);
     }));
@@ -300,8 +292,9 @@ class McapWriter {
     }
     Times times = chunks_.empty() ? Times{0, 0} : Times{};
     for (const Chunk& chunk : chunks_) times.add(chunk.times.first, chunk.times.last);
-    record_.begin(Opcode::statistics).add(messages).add(schemas).add(static_cast<std::uint32_t>(channels_.size()));
-    record_.add(std::uint32_t{0}).add(std::uint32_t{0});  // attachments, metadata records
+    const auto channels = static_cast<std::uint32_t>(channels_.size());
+    record_.begin(Opcode::statistics).add(messages).add(schemas).add(channels);
+    record_.add(std::uint64_t{0});  // attachments, metadata records
     record_.add(static_cast<std::uint32_t>(chunks_.size())).add(times.first).add(times.last);
     put(record_.add_list([&] {
       for (std::size_t id = 0; id < channels_.size(); ++id)

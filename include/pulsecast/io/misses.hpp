@@ -19,21 +19,21 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of points for pulses without echoes.
 struct MissSettings {
   double range = 1000;                ///< distance of the points along the beam [m]
-  std::uint16_t classification = 64;  ///< class of the points; default: LAS 1.4 R15, table 17, first of a user
+  std::uint16_t classification = 64;  ///< class; default: first of a user, LAS 1.4 R15, table 17
   ObjectId object = 0;                ///< object number of the points
 
   void validate() const { require_within("MissSettings::range", range, 0, 1e9, "m"); }
 };
 
-/// Adds a point to each pulse of a batch that was sent and has no echo: at a set range along the beam, with amplitude
-/// and reflectance 0 and a class of its own, as return 1 of 1. Such a shot keeps its fate, which is not
-/// `Fate::returned`; shots with echoes, waveforms and recorded subrays stay as they are.
+/// Adds a point to each pulse of a batch that was sent and has no echo: at a set range along the
+/// beam, with amplitude and reflectance 0 and a class of its own, as return 1 of 1. Such a shot
+/// keeps its fate; shots with echoes, waveforms and recorded subrays stay as they are.
 class MissPoints {
  public:
   /// @throws SettingError for settings out of range
   explicit MissPoints(const MissSettings& settings = {}) : settings_(validated(settings)) {}
 
-  /// Batch with the points, valid until the next call, and as long as the other one. Errors: std::bad_alloc.
+  /// Batch with the points, valid until the next call, and as long as the other one.
   [[nodiscard]] EchoBatch operator()(const EchoBatch& batch) {
     shots_.assign(batch.shots.begin(), batch.shots.end());
     echoes_.clear();
@@ -42,8 +42,8 @@ class MissPoints {
       shot.first_echo = static_cast<std::uint32_t>(echoes_.size());
       echoes_.insert(echoes_.end(), own.begin(), own.end());
       if (!own.empty()) continue;
-      echoes_.push_back(
-          {.range = settings_.range, .object = settings_.object, .classification = settings_.classification});
+      const auto& [range, classification, object] = settings_;
+      echoes_.push_back({.range = range, .object = object, .classification = classification});
       shot.echoes = 1;
     }
     EchoBatch all = batch;
@@ -64,7 +64,7 @@ concept ClosableSink = requires(S& sink) {
   sink.close();
 };
 
-/// Sink around another, which gets points for pulses without echoes, too: see `MissPoints`. `Sink` may be a reference.
+/// Sink around another, which gets points for pulses without echoes, too: see `MissPoints`.
 template <class Sink>
 requires EchoSink<std::remove_reference_t<Sink>>
 class WithMisses {
@@ -74,10 +74,10 @@ class WithMisses {
       : sink_(std::forward<Sink>(sink)), points_(settings) {}
 
   void operator()(const EchoBatch& batch) { sink_(points_(batch)); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< see ChoosesShots
 
-  void close() requires ClosableSink<std::remove_reference_t<Sink>> { sink_.close(); }        ///< closes the other sink
-  [[nodiscard]] const std::remove_reference_t<Sink>& sink() const noexcept { return sink_; }  ///< the other sink
+  void close() requires ClosableSink<std::remove_reference_t<Sink>> { sink_.close(); }
+  [[nodiscard]] const std::remove_reference_t<Sink>& sink() const noexcept { return sink_; }
 
  private:
   Sink sink_;
@@ -97,40 +97,30 @@ WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
   return names[static_cast<std::size_t>(fate)];
 }
 
-/// Writes pulses that were sent and gave no echo as text, one a line, in these blank-separated columns, no header:
+/// Writes pulses that were sent and gave no echo as text, one a line, in these columns, no header:
 ///
 ///     pulseIndex time ox oy oz dx dy dz fate leg deviceIndex
 ///
-/// pulseIndex: slot, the fullwaveIndex of points and waveforms; time: departure [s], 9 decimals; ox, oy, oz: origin
-/// [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; fate: `missed`, `out_of_range`, `below_threshold` or
-/// `absorbed`, see `Fate`; leg and deviceIndex (emitter), from 0. Pulses blocked by the optic were never sent, and have
-/// no line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-class MissTextWriter {
+/// pulseIndex: slot, the fullwaveIndex of points and waveforms; time: departure [s], 9 decimals;
+/// ox, oy, oz: origin [m], 4; dx, dy, dz: unit direction, 9; fate: `missed`, `out_of_range`,
+/// `below_threshold` or `absorbed`; leg and deviceIndex (emitter), from 0. Pulses blocked by the
+/// optic were never sent. `close()` completes the file: see `OutputFile`.
+class MissTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit MissTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : MissTextWriter(OutputFile(std::move(path)), settings) {}
-  /// Writes to an open file, which may be a compressing one: see `gzip_file`.
-  explicit MissTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       if (shot.fate != Fate::returned) write(shot);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< as the concept ChoosesShots describes
-  void close() { text_.close(); }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< see ChoosesShots
 
  private:
   void write(const Shot& shot) {
-    text_.wholes(shot.index).reals(9, settings_.start_time + shot.tick.seconds());
-    text_.vector("the origin of a pulse", shot.origin, 4).vector("the direction of a pulse", shot.direction, 9);
+    text_.wholes(shot.index).reals(9, clock(shot)).beam(shot);
     text_.word(name_of(shot.fate)).wholes(shot.leg, shot.channel).end_row();
   }
-
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<MissTextWriter> && EchoSink<WithMisses<XyzWriter>> && EchoSink<WithMisses<XyzWriter&>>);
 

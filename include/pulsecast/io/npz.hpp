@@ -4,17 +4,8 @@
 #define PULSECAST_IO_NPZ_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <exception>
-#include <filesystem>
-#include <memory>
 #include <new>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -27,7 +18,7 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of an NPZ file.
 struct NpzSettings {
   PointLayout layout = layouts::map();  ///< arrays: one a field, by its name
-  PointSettings points{};  ///< values of the arrays; set the origin for large coordinates in single precision
+  PointSettings points{};               ///< values; set the origin for large coordinates
 
   void validate() const { detail::require_packable(layout, points); }
 };
@@ -37,17 +28,16 @@ namespace detail {
 /// Zip file without compression and without times, so that equal content gives equal bytes.
 class StoredZip {
  public:
-  explicit StoredZip(OutputFile& file) : file_(file), archive_(archive_write_new()), entry_(archive_entry_new()) {
+  explicit StoredZip(OutputFile& file) : file_(file) {
     if (!archive_ || !entry_) throw std::bad_alloc();
     check(archive_write_set_format_zip(archive_.get()));
     check(archive_write_zip_set_compression_store(archive_.get()));
-    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // the file has a buffer; no padding
+    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // no buffer, no padding
     check(archive_write_open(archive_.get(), this, nullptr, write_some, nullptr));
   }
   StoredZip(const StoredZip&) = delete;
   StoredZip& operator=(const StoredZip&) = delete;
 
-  /// Appends a member of two parts.
   void add(const std::string& name, std::string_view head, std::span<const std::byte> body) {
     archive_entry_clear(entry_.get());
     archive_entry_set_pathname(entry_.get(), name.c_str());
@@ -94,16 +84,16 @@ class StoredZip {
     const char* const reason = archive_error_string(archive_.get());
     file_.discard();
     throw FileError(file_.path().string(), "",
-                    text::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
+                    std::string("cannot be written as zip: ") + (reason ? reason : "no reason given"));
   }
 
   OutputFile& file_;
   std::exception_ptr error_;
-  std::unique_ptr<archive, Free> archive_;
-  std::unique_ptr<archive_entry, Free> entry_;
+  std::unique_ptr<archive, Free> archive_{archive_write_new()};
+  std::unique_ptr<archive_entry, Free> entry_{archive_entry_new()};
 };
 
-/// Header of an array of one dimension, padded to 64 bytes in all. Source: NumPy, numpy.lib.format, version 1.0.
+/// Header of an array of one dimension, padded to 64 bytes. Source: NumPy, numpy.lib.format, 1.0.
 [[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count) {
   constexpr std::array<std::string_view, 11> types{"",    "|i1", "|u1", "<i2", "<u2", "<i4",
                                                    "<u4", "<f4", "<f8", "<i8", "<u8"};
@@ -113,16 +103,17 @@ class StoredZip {
   text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
   text.back() = '\n';
   const auto length = static_cast<std::uint16_t>(text.size());
-  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFF) + static_cast<char>(length >> 8) + text;
+  const std::array end{static_cast<char>(length & 0xFF), static_cast<char>(length >> 8)};
+  return text::joined({{"\x93NUMPY\x01\x00", 8}, {end.data(), 2}, text});
 }
 
 }  // namespace detail
 
-/// Writes points as NPZ for NumPy: for each field of the layout an array of one dimension, `name.npy`, in a zip file
-/// without compression. Equal points give equal bytes. Source: NumPy, numpy.savez and numpy.lib.format. Columns are
-/// held in memory until `close()`, up to twice the size of the points. Times since a scan's start count from tick 0,
-/// except of scans that `add` appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-/// Limits: where memory runs out in `close()`, libarchive ends the process with status 1, and `NAME.part` stays.
+/// Writes points as NPZ for NumPy: for each field an array of one dimension, `name.npy`, in a zip
+/// file without compression. Equal points give equal bytes. Columns are held in memory until
+/// `close()`, up to twice the size of the points. Times since a scan's start count from tick 0, but
+/// in `add`. `close()` completes the file: see `OutputFile`. Limits: without memory in `close()`,
+/// libarchive ends the process with status 1. Source: NumPy, numpy.savez.
 class NpzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -130,9 +121,9 @@ class NpzWriter {
       : points_(validated(settings).layout, settings.points), columns_(points_.layout()), file_(std::move(path)) {}
 
   void operator()(const EchoBatch& batch) { columns_.add(points_.of(batch)); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
-  /// Appends the points of a buffer, such as a scan. @throws SettingError for other fields than those of the file
+  /// Appends the points of a buffer. @throws SettingError for other fields @throws FileError
   void add(const PointBuffer& points) { columns_.add(points_.of(points)); }
 
   /// Writes the arrays, and gives the file its name. Throws a `FileError`.
@@ -141,7 +132,8 @@ class NpzWriter {
     for (std::size_t k = 0; k < points_.layout().fields.size(); ++k) {
       const PointField& field = points_.layout().fields[k];
       const std::vector<std::byte>& column = columns_.all()[k];
-      zip.add(field.name + ".npy", detail::npy_header(field.type, column.size() / size_of(field.type)), column);
+      const std::size_t count = column.size() / size_of(field.type);
+      zip.add(field.name + ".npy", detail::npy_header(field.type, count), column);
     }
     zip.close();
     file_.commit();

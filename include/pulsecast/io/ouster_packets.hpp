@@ -4,7 +4,6 @@
 #define PULSECAST_IO_OUSTER_PACKETS_HPP
 
 #include <cmath>
-#include <span>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/packets/packet_stream.hpp>
@@ -14,13 +13,13 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Lidar packets of an OS1-64: of the profile LEGACY for single returns, and RNG19_RFL8_SIG16_NIR16_DUAL for dual ones.
-/// Source of every offset and value: Ouster, firmware user manual, 2.x and 3.x, lidar data packet format.
+/// Lidar packets of an OS1-64: profile LEGACY for single returns, RNG19_RFL8_SIG16_NIR16_DUAL for
+/// dual ones. Source: Ouster, firmware user manual, 2.x and 3.x, lidar data packet format.
 struct OusterFormat {
   static constexpr std::uint16_t port = 7502;              // of lidar packets
   static constexpr std::size_t lasers = 64;                // pixels of a column
   static constexpr std::size_t packet_columns = 16;        // columns of a packet
-  static constexpr std::size_t header = 32;                // of a packet of dual returns; as long as its footer [byte]
+  static constexpr std::size_t header = 32;                // of dual returns; also the footer [byte]
   static constexpr std::uint32_t encoder_counts = 90'112;  // of a turn
 
   /// Columns of a turn.
@@ -29,11 +28,11 @@ struct OusterFormat {
   }
 
   static void validate(const SpinningSensor& sensor) {
-    require_within("SpinningSensor::lasers (number)", static_cast<double>(sensor.lasers.size()), lasers, lasers, "");
+    const auto number = static_cast<double>(sensor.lasers.size());
+    require_within("SpinningSensor::lasers (number)", number, lasers, lasers, "");
     require_within("SpinningSensor::start", sensor.start, pi - 1e-9, pi + 1e-9, "rad");  // encoder 0
     const double columns = sensor.sequence_rate / sensor.rotation_rate;
-    const bool is_mode = columns == 512 || columns == 1024 || columns == 2048;
-    if (!is_mode)
+    if (columns != 512 && columns != 1024 && columns != 2048)
       throw SettingError("SpinningSensor::sequence_rate (sequences a turn)", columns, "", "512, 1024 or 2048");
   }
 
@@ -41,7 +40,7 @@ struct OusterFormat {
     return packet_columns * column_size(source) + (source.is_dual() ? 2 * header : 0);
   }
 
-  [[nodiscard]] static std::size_t sequences(const PacketSource&) noexcept { return packet_columns; }
+  static std::size_t sequences(const PacketSource&) noexcept { return packet_columns; }
 
   static void begin(const PacketSource& source, PulseIndex first, std::span<std::byte> payload) noexcept {
     const std::size_t columns = frame_columns(source.sensor);
@@ -50,8 +49,8 @@ struct OusterFormat {
       put(payload, 2, static_cast<std::uint16_t>(first / columns));
     }
     for (std::size_t k = 0; k < packet_columns; ++k) {
-      const PulseIndex sequence = first + k;
-      const std::size_t at = column(source, k), number = static_cast<std::size_t>(sequence % columns);
+      const PulseIndex sequence = first + k, number = sequence % columns;
+      const std::size_t at = column(source, k);
       put(payload, at, parts_of(source.clock(sequence), 1'000'000'000));
       put(payload, at + 8, static_cast<std::uint16_t>(number));
       if (source.is_dual()) {
@@ -65,7 +64,7 @@ struct OusterFormat {
   }
 
   static void write(const PacketSource& source, std::span<std::byte> payload, std::size_t sequence, std::size_t laser,
-                    std::span<const Echo> echoes) noexcept {
+                    Echoes echoes) noexcept {
     const std::size_t pixel = column(source, sequence) + column_header(source) + laser * pixel_size(source);
     if (!source.is_dual()) {
       const Echo& echo = single_return(echoes, source.settings.returns);
@@ -98,13 +97,12 @@ struct OusterFormat {
   [[nodiscard]] static std::size_t column_size(const PacketSource& source) noexcept {
     return column_header(source) + lasers * pixel_size(source) + (source.is_dual() ? 0 : 4);
   }
-  /// Position of a column.
   [[nodiscard]] static std::size_t column(const PacketSource& source, std::size_t k) noexcept {
     return (source.is_dual() ? header : 0) + k * column_size(source);
   }
 
   /// Range, which includes the way from the axis to the lenses; 0 if it exceeds `most`.
-  [[nodiscard]] static std::uint32_t millimetres(const PacketSource& source, const Echo& echo, double most) noexcept {
+  static std::uint32_t millimetres(const PacketSource& source, const Echo& echo, double most) noexcept {
     const double steps = std::nearbyint(1e3 * (echo.range + source.sensor.exit_radius));
     return steps >= 1 && steps <= most ? static_cast<std::uint32_t>(steps) : 0;
   }
@@ -113,20 +111,19 @@ struct OusterFormat {
     return static_cast<std::uint8_t>(std::nearbyint(reflectivity_byte(echo.reflectance)));
   }
 
-  /// As the column photons.
   [[nodiscard]] static std::uint16_t photons(const PacketSource& source, const Echo& echo) noexcept {
     const double number = photon_count(echo.amplitude, source.sensor.beam);
-    return number > 0 ? static_cast<std::uint16_t>(std::nearbyint(std::fmin(number, 0xFFFF))) : std::uint16_t{0};
+    return static_cast<std::uint16_t>(std::nearbyint(std::fmin(std::fmax(number, 0), 0xFFFF)));
   }
 };
 
 }  // namespace detail
 
-/// Sink that writes the echoes of an OS1-64 as its lidar packets: `OusterPackets packets(ouster_os1_64(), {},
-/// std::ref(file))`. Single returns are of the profile LEGACY, of 12608 bytes; dual ones of
-/// RNG19_RFL8_SIG16_NIR16_DUAL, of 16640 bytes, the strongest first. After construction, it allocates nothing. All
-/// columns are valid; the near infrared is 0. Ranges are as the manual has them, where (r - n) is the way from the lens
-/// at the radius n to the point; beyond what their bits hold, they are 0, as without a return.
+/// Sink that writes the echoes of an OS1-64 as its lidar packets: `OusterPackets
+/// packets(ouster_os1_64(), {}, std::ref(file))`. Single returns are of the profile LEGACY, of
+/// 12608 bytes; dual ones of RNG19_RFL8_SIG16_NIR16_DUAL, of 16640 bytes, the strongest first. All
+/// columns are valid; the near infrared is 0. Ranges r are as in the manual: (r - n) is from the
+/// lens at the radius n to the point; 0 beyond what their bits hold, as without a return.
 using OusterPackets = detail::PacketStream<detail::OusterFormat>;
 static_assert(EchoSink<OusterPackets> && ChoosesShots<OusterPackets>);
 

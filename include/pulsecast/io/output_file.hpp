@@ -21,7 +21,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Locks an open file exclusively until it is closed; false if locked already. True where the file system has no locks.
+/// Locks an open file exclusively until it is closed; false if locked already. True without locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno != EWOULDBLOCK;
@@ -32,33 +32,33 @@ namespace PULSECAST_NAMESPACE::io {
 [[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
   struct stat open {};
   struct stat named {};
-  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
-         open.st_ino == named.st_ino;
+  if (::fstat(file, &open) != 0 || ::stat(path.c_str(), &named) != 0) return false;
+  return open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 /// Flushes an open file to its disk; true where there is nothing to flush, or no disk.
 [[nodiscard]] inline bool sync_to_disk(int file) noexcept {
   struct stat status {};
-  return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL ||
-         errno == EROFS;
+  if (::fstat(file, &status) == 0 && status.st_size == 0) return true;
+  return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
 }
 
 /// Encoder of the bytes of a file before they are written, as a compressor.
 class OutputEncoder {
  public:
   virtual ~OutputEncoder() = default;
-  /// Appends the encoded `bytes` to `out`; `last` is true once, with the last bytes, which may be none.
+  /// Appends the encoded `bytes` to `out`; `last` is true once, with the last, which may be none.
   virtual void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) = 0;
 };
 
-/// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete.
-/// Until then, or if the program is killed, the final name keeps its former content. Destruction without `commit()`
-/// removes the temporary file. Throws a `FileError` that names the final path at every failure; after one to write,
-/// nothing can be written or committed. With an encoder, bytes pass through it, a megabyte at a time, and cannot be
-/// read again or overwritten. The temporary file is locked: a second `OutputFile` of the same name, in any program, is
-/// refused. On a file system without locks, the second takes the name, and the first fails at its commit. The content
-/// is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name. Limits: a
-/// power cut may lose the name until the folder itself is written to the disk.
+/// File under construction: written as `NAME.part`, and renamed by `commit()` when complete. Until
+/// then, or if the program is killed, the final name keeps its former content. Destruction without
+/// `commit()` removes the temporary file. Throws a `FileError` that names the final path at every
+/// failure; after one to write, nothing can be written or committed. With an encoder, bytes pass
+/// through it, a megabyte at a time, and cannot be read again or overwritten. The temporary file is
+/// locked: a second of the same name is refused; on a file system without locks, it takes the name,
+/// and the first fails at its commit. The content is on the disk before the renaming: a power cut
+/// may lose the name, but leaves no incomplete file.
 class OutputFile {
  public:
   /// Opens and locks the temporary file of `path`; with an `encoder`, bytes pass through it.
@@ -72,10 +72,9 @@ class OutputFile {
     open_alone();
   }
 
-  /// Piece of a file that others assemble: appended to `piece` until `commit()`. Its name is for messages only.
+  /// Piece of a file that others assemble: appended to `piece` until `commit()`.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
-  /// Appends bytes.
   void write(std::span<const std::byte> bytes) {
     if (piece_ != nullptr) {
       position_ += bytes.size();
@@ -102,14 +101,14 @@ class OutputFile {
       position += advance(bytes, ::pwrite(file_->number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
   }
 
-  /// Reads bytes written before, from `position` [byte] on, also without a name; on several threads while none writes.
+  /// Reads bytes from `position` [byte] on, also without a name; on any threads while none writes.
   void read(std::uint64_t position, std::span<std::byte> bytes) const {
     PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
     require_open();
     const std::uint64_t passed_on = position_ - buffer_.size();
     while (!bytes.empty() && position < passed_on) {
       errno = 0;
-      const std::size_t some = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), passed_on - position));
+      const std::uint64_t some = std::min<std::uint64_t>(bytes.size(), passed_on - position);
       const ssize_t count = ::pread(file_->number, bytes.data(), some, static_cast<off_t>(position));
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) throw error("cannot be read again", errno, "what was written");
@@ -119,7 +118,7 @@ class OutputFile {
     if (!bytes.empty()) std::memcpy(bytes.data(), buffer_.data() + (position - passed_on), bytes.size());
   }
 
-  /// Removes the name of the temporary file, which lives on: for what this object alone reads again, and never commits.
+  /// Removes the name of the temporary file, for what this object alone reads, and never commits.
   void forget_name() noexcept { file_->remove(); }
 
   /// Continues after bytes that others wrote to the temporary file; without an encoder.
@@ -153,15 +152,14 @@ class OutputFile {
     }
     errno = 0;
     std::error_code failed;
-    if (!sync_to_disk(file_->number)) {
-      failed = system_error(errno);
-    } else {
+    if (sync_to_disk(file_->number))
       std::filesystem::rename(file_->name, path_, failed);
-    }
+    else
+      failed = system_error(errno);
     if (failed)
       fail("cannot be completed", failed.value(),
            text::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
-    file_->close();  // the lock ends after the renaming; closing reports no error that syncing has not
+    file_->close();  // after the renaming, as it ends the lock; syncing has reported any error
   }
 
   /// Abandons the file and removes the bytes written: for writers that cannot write the rest.
@@ -191,13 +189,13 @@ class OutputFile {
     }
   };
 
-  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes at a time: calls cost little then
+  static constexpr std::size_t capacity = std::size_t{1} << 20;  // calls cost little then [byte]
 
   [[nodiscard]] static std::error_code system_error(int number) {
     return {number != 0 ? number : EIO, std::generic_category()};
   }
 
-  /// Opens the temporary file exclusively. Removes what a killed program left: its processes may still write to that.
+  /// Opens the temporary file. Removes what a killed program left: its processes may still write.
   void open_alone() {
     const char* const name = file_->name.c_str();
     for (int tries = 0; tries < 100; ++tries) {
@@ -222,7 +220,8 @@ class OutputFile {
   }
 
   [[nodiscard]] FileError error(std::string_view what, int number, std::string_view expected) const {
-    return {path_.string(), "", text::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
+    const std::string reason = system_error(number).message();
+    return {path_.string(), "", text::joined({what, ": ", reason, "; expected ", expected})};
   }
   [[noreturn]] void fail(std::string_view what, int number, std::string_view expected) {
     discard();

@@ -20,17 +20,17 @@ struct PcapSettings {
 
 namespace detail {
 
-/// Frame of a packet in a capture file: its record, and headers of Ethernet, IPv4 and UDP, which are big-endian.
+/// Frame of a packet: record of the file, and big-endian headers of Ethernet, IPv4 and UDP.
 class PacketFrame {
  public:
-  static constexpr std::size_t record = 16;       // header of a record. Source: IETF draft-ietf-opsawg-pcap, 5 [byte]
-  static constexpr std::size_t ethernet = 14;     // source: IEEE 802.3, frame format [byte]
-  static constexpr std::size_t ip = 20, udp = 8;  // source: RFC 791, 3.1; RFC 768 [byte]
+  static constexpr std::size_t record = 16;           // source: IETF draft-ietf-opsawg-pcap, 5 [byte]
+  static constexpr std::size_t ethernet = 14;         // source: IEEE 802.3, frame format [byte]
+  static constexpr std::size_t ip = 20, udp = 8;      // source: RFC 791, 3.1; RFC 768 [byte]
   static constexpr std::size_t payload_max = 65'507;  // by the lengths of IPv4 and UDP [byte]
 
   explicit PacketFrame(const PcapSettings& settings) noexcept {
     for (std::size_t k = 0; k < 6; ++k) bytes_[record + k] = std::byte{0xFF};  // to all hosts
-    bytes_[record + 6] = std::byte{0x02};                                      // from an address of local meaning
+    bytes_[record + 6] = std::byte{0x02};                                      // locally unique
     bytes_[record + 11] = std::byte{0x01};
     put_big(record + 12, 0x0800);  // IPv4
     put_big(start, 0x4500);        // version 4, a header of 5 words
@@ -42,12 +42,11 @@ class PacketFrame {
     }
   }
 
-  /// All bytes before the payload.
-  [[nodiscard]] std::span<const std::byte> before(const SensorPacket& packet, std::uint64_t parts_per_second) noexcept {
-    const std::uint64_t parts = parts_of(packet.time, parts_per_second);
+  [[nodiscard]] std::span<const std::byte> before(const SensorPacket& packet, std::uint64_t per_second) noexcept {
+    const std::uint64_t parts = parts_of(packet.time, per_second);
     const auto length = static_cast<std::uint32_t>(ethernet + ip + udp + packet.payload.size());
-    put(bytes_, 0, static_cast<std::uint32_t>(parts / parts_per_second));
-    put(bytes_, 4, static_cast<std::uint32_t>(parts % parts_per_second));
+    put(bytes_, 0, static_cast<std::uint32_t>(parts / per_second));
+    put(bytes_, 4, static_cast<std::uint32_t>(parts % per_second));
     put(bytes_, 8, length);   // captured
     put(bytes_, 12, length);  // sent
     put_big(start + 2, length - ethernet);
@@ -70,8 +69,7 @@ class PacketFrame {
   /// Checksum of the header of IPv4. Source: RFC 1071.
   [[nodiscard]] std::size_t checksum() const noexcept {
     std::size_t sum = 0;
-    for (std::size_t k = 0; k < ip; k += 2)
-      sum += std::to_integer<std::size_t>(bytes_[start + k]) << 8 | std::to_integer<std::size_t>(bytes_[start + k + 1]);
+    for (std::size_t k = 0; k < ip; ++k) sum += std::to_integer<std::size_t>(bytes_[start + k]) << (k % 2 == 0 ? 8 : 0);
     while (sum > 0xFFFF) sum = (sum & 0xFFFF) + (sum >> 16);
     return ~sum & 0xFFFF;
   }
@@ -81,18 +79,18 @@ class PacketFrame {
 
 }  // namespace detail
 
-/// Writes packets to a capture file of the classic form of tcpdump: undivided frames of Ethernet, IPv4 and UDP. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`. Source: IETF draft-ietf-opsawg-pcap, 4 and 5.
+/// Writes packets to a capture file of tcpdump: undivided frames of Ethernet, IPv4 and UDP.
+/// `close()` completes the file: see `OutputFile`. Source: IETF draft-ietf-opsawg-pcap, 4, 5.
 class PcapWriter {
  public:
   /// Opens the file. @throws FileError
   explicit PcapWriter(std::filesystem::path path, const PcapSettings& settings = {})
-      : file_(std::move(path)), frame_(settings), parts_per_second_(settings.nanoseconds ? 1'000'000'000 : 1'000'000) {
+      : file_(std::move(path)), frame_(settings), per_second_(settings.nanoseconds ? 1'000'000'000 : 1'000'000) {
     std::array<std::byte, 24> header{};
     detail::put(header, 0, settings.nanoseconds ? std::uint32_t{0xA1B23C4D} : std::uint32_t{0xA1B2C3D4});
     detail::put(header, 4, std::uint16_t{2});  // version 2.4
     detail::put(header, 6, std::uint16_t{4});
-    detail::put(header, 16, std::uint32_t{65'550});  // longest frame: that of the largest packet of IPv4
+    detail::put(header, 16, std::uint32_t{65'550});  // longest frame, of IPv4
     detail::put(header, 20, std::uint32_t{1});       // Ethernet
     file_.write(header);
   }
@@ -101,7 +99,7 @@ class PcapWriter {
   void operator()(const SensorPacket& packet) {
     require_within("SensorPacket::payload (size)", static_cast<double>(packet.payload.size()), 0,
                    detail::PacketFrame::payload_max, "byte");
-    file_.write(frame_.before(packet, parts_per_second_));
+    file_.write(frame_.before(packet, per_second_));
     file_.write(packet.payload);
   }
 
@@ -110,7 +108,7 @@ class PcapWriter {
  private:
   OutputFile file_;
   detail::PacketFrame frame_;
-  std::uint64_t parts_per_second_;
+  std::uint64_t per_second_;  // parts of a time
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -4,16 +4,8 @@
 #define PULSECAST_IO_PCD_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <liblzf/lzf.h>
 
@@ -34,7 +26,7 @@ enum class PcdEncoding : std::uint8_t {
 struct PcdSettings {
   PcdEncoding encoding = PcdEncoding::binary;  ///< encoding of the points
   PointLayout layout = layouts::xyzi();        ///< fields, written without gaps
-  PointSettings points{};  ///< values of the fields; set the origin for large coordinates in single precision
+  PointSettings points{};                      ///< values; set the origin for large coordinates
 
   void validate() const {
     require_within("PcdSettings::encoding", static_cast<double>(encoding), 0,
@@ -45,13 +37,13 @@ struct PcdSettings {
 
 namespace detail {
 
-/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: at most 104 % of the input; and bytes kept free by checks.
-[[nodiscard]] constexpr std::uint64_t lzf_room(std::uint64_t size) noexcept { return size + size / 25 + 16; }
+/// Room for the output of LZF [byte]. Source: liblzf, lzf.h: 104 %, and bytes kept free.
+constexpr std::uint64_t lzf_room(std::uint64_t size) noexcept { return size + size / 25 + 16; }
 /// Greatest input of LZF: the sizes before and after are 32-bit numbers [byte].
 inline constexpr std::uint64_t lzf_size_max = 4'129'776'230;
 static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max());
 
-/// Bytes compressed by LZF, after their sizes with and without it. Source: PCD file format 0.7, binary_compressed.
+/// Bytes compressed by LZF, after their sizes with and without it. Source: as `PcdWriter`.
 [[nodiscard]] inline std::vector<std::byte> pcd_compressed(std::span<const std::byte> bytes) {
   std::array<std::uint32_t, 2> sizes{0, static_cast<std::uint32_t>(bytes.size())};
   const auto room = static_cast<std::uint32_t>(lzf_room(bytes.size()));
@@ -64,12 +56,11 @@ static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max(
 
 }  // namespace detail
 
-/// Writes points as PCD, the format of PCL, as an unorganized cloud without a viewpoint. Source: PCL, PCD file format
-/// 0.7, whose 64-bit integers not all readers take: they become `float64`. Streams, unless compressed: memory does not
-/// grow with the number of points. Compressed files take up to four times the memory of their points until `close()`,
-/// and are limited to 4.1 GB before compression; more is a `FileError`. Default coordinates are in single precision:
-/// set `PointSettings::origin` for large ones. Times since a scan's start count from tick 0, except of scans that `add`
-/// appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Writes points as PCD, the format of PCL, as an unorganized cloud; 64-bit integers, which not all
+/// readers take, become `float64`. Memory does not grow with the number of points, unless
+/// compressed: then the file takes up to four times the memory of its points until `close()`, and
+/// at most 4.1 GB before compression. Times since a scan's start count from tick 0, but in `add`.
+/// `close()` completes the file: see `OutputFile`. Source: PCL, PCD file format 0.7.
 class PcdWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -82,12 +73,12 @@ class PcdWriter {
   }
 
   void operator()(const EchoBatch& batch) { write(points_.of(batch)); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
-  /// Appends the points of a buffer, such as a scan. @throws SettingError for fields other than its @throws FileError
+  /// Appends the points of a buffer. @throws SettingError for other fields @throws FileError
   void add(const PointBuffer& points) { write(points_.of(points)); }
 
-  /// Compresses the points if so set, completes the header, and gives the file its name. Throws a `FileError`.
+  /// Completes points and header, and gives the file its name. @throws FileError
   void close() {
     if (encoding_ == PcdEncoding::binary_compressed) {
       std::vector<std::byte> bytes;
@@ -125,9 +116,10 @@ class PcdWriter {
 
   [[noreturn]] void refuse() {
     file_.discard();
+    const std::string most = std::to_string(detail::lzf_size_max), count = std::to_string(count_);
     throw FileError(file_.path().string(), "",
-                    "has " + std::to_string(count_) + " points, which are too large for LZF: expected at most " +
-                        std::to_string(detail::lzf_size_max) + " bytes; without compression, there is no limit");
+                    text::joined({"has ", count, " points, which are too large for LZF: expected at most ", most,
+                                  " bytes; without compression, there is no limit"}));
   }
 
   /// Header for the points so far, of equal length for any number.

@@ -4,13 +4,6 @@
 #define PULSECAST_IO_PLY_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include <pulsecast/io/detail/packed_points.hpp>
 #include <pulsecast/io/output_file.hpp>
@@ -20,16 +13,15 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of a PLY file.
 struct PlySettings {
   PointLayout layout = layouts::map();  ///< properties of a vertex, written without gaps
-  PointSettings points{};  ///< values of the properties; set the origin for large coordinates in single precision
+  PointSettings points{};               ///< values; set the origin for large coordinates
 
   void validate() const { detail::require_packable(layout, points); }
 };
 
-/// Writes points as binary little-endian PLY: an element `vertex` with a property for each field of the layout. Source:
-/// Turk 1994, The PLY Polygon File Format. It has no 64-bit integers, which become `double`. Streams: memory does not
-/// grow with the number of points. Readers find coordinates by the names x, y and z, and many keep them in single
-/// precision only: set `PointSettings::origin` for those. Times since a scan's start count from tick 0, except of scans
-/// that `add` appends. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Writes points as binary little-endian PLY: an element `vertex` with a property for each field;
+/// 64-bit integers become `double`. Memory does not grow with the number of points. Times since a
+/// scan's start count from tick 0, but in `add`. `close()` completes the file: see `OutputFile`.
+/// Source: Turk 1994, The PLY Polygon File Format.
 class PlyWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -40,9 +32,9 @@ class PlyWriter {
   }
 
   void operator()(const EchoBatch& batch) { file_.write(points_.of(batch)); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
-  /// Appends the points of a buffer, such as a scan. @throws SettingError for fields other than its @throws FileError
+  /// Appends the points of a buffer. @throws SettingError for other fields @throws FileError
   void add(const PointBuffer& points) { file_.write(points_.of(points)); }
 
   /// Completes the header, and gives the file its name. Throws a `FileError`.
@@ -58,15 +50,11 @@ class PlyWriter {
     constexpr std::array<std::string_view, 9> types{"",    "char", "uchar", "short", "ushort",
                                                     "int", "uint", "float", "double"};
     const detail::CountText points(count);
-    std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + points.blanks +
-                       "\nelement vertex " + points.digits + '\n';
-    for (const PointField& field : points_.layout().fields)
-      text.append("property ")
-          .append(types[static_cast<std::size_t>(field.type)])
-          .append(" ")
-          .append(field.name)
-          .append("\n");
-    return text + "end_header\n";
+    std::string properties;
+    for (const PointField& f : points_.layout().fields)
+      properties += text::joined({"property ", types[static_cast<std::size_t>(f.type)], " ", f.name, "\n"});
+    return text::joined({"ply\nformat binary_little_endian 1.0\ncomment written by pulsecast", points.blanks,
+                         "\nelement vertex ", points.digits, "\n", properties, "end_header\n"});
   }
 
   detail::PackedPoints points_;

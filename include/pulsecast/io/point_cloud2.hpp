@@ -5,29 +5,22 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/tick.hpp>
-#include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/io/point_records.hpp>
 
-/// Scans as ROS 2 messages, without ROS. Recording of a survey, 10 scans a second, with `io/mcap` and
-/// `io/scan_splitter`:
+/// Scans as ROS 2 messages, without ROS. Recording with `io/mcap` and `io/scan_splitter`:
 ///
 ///     McapWriter bag("scans.mcap");
-///     const auto points = bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type, .schema =
-///     point_cloud2_definition}); std::vector<std::byte> message; ScanSplitter scans(PointBuffer(layouts::velodyne(),
-///     settings), 10, [&](const PointBuffer& scan) {
+///     const auto points = bag.add_channel({.topic = "/points", .schema_name = point_cloud2_type,
+///                                          .schema = point_cloud2_definition});
+///     std::vector<std::byte> message;
+///     ScanSplitter scans(PointBuffer(layouts::velodyne(), settings), 10, [&](const PointBuffer& scan) {
 ///       serialize_point_cloud2(scan, "lidar", message);
 ///       bag.write(points, stamp_ns(scan), stamp_ns(scan), message);
 ///     });
@@ -39,8 +32,8 @@ namespace PULSECAST_NAMESPACE::io {
 /// Name of the message type.
 inline constexpr const char* point_cloud2_type = "sensor_msgs/msg/PointCloud2";
 
-/// Definition of the message type and of those that it consists of, in the encoding "ros2msg". Source: fields of the
-/// ROS 2 packages sensor_msgs, std_msgs and builtin_interfaces; MCAP format registry, ros2msg.
+/// Definition of the message type and its parts, in the encoding "ros2msg". Source: ROS 2 packages
+/// sensor_msgs, std_msgs and builtin_interfaces; MCAP format registry, ros2msg.
 inline constexpr const char* point_cloud2_definition = R"(std_msgs/Header header
 uint32 height
 uint32 width
@@ -69,31 +62,30 @@ uint32 count
 /// Start of a scan by the clock, which is the stamp of its message, to the nearest nanosecond [ns].
 /// @throws SettingError for a time that ROS does not hold: before 0 s or after 2^31 - 1 s
 [[nodiscard]] inline std::uint64_t stamp_ns(const PointBuffer& scan) {
-  const double clock = scan.settings().start_time, max_seconds = 2'147'483'647;
-  require_within("PointSettings::start_time + PointBuffer::scan_start", clock + scan.scan_start().seconds(), 0,
-                 max_seconds, "s");
+  const double clock = scan.settings().start_time, time = clock + scan.scan_start().seconds();
+  require_within("PointSettings::start_time + PointBuffer::scan_start", time, 0, 2'147'483'647, "s");
   const Tick stamp = Tick::of_seconds(clock) + scan.scan_start();
-  return static_cast<std::uint64_t>(stamp.second * 1'000'000'000 + std::llround(stamp.fraction * 1e9));
+  const long long rest = std::llround(stamp.fraction * 1e9);
+  return static_cast<std::uint64_t>(stamp.second * 1'000'000'000 + rest);
 }
 
 namespace detail {
 
-static_assert(std::endian::native == std::endian::little, "point records are sent as they lie in memory");
-
-/// Encapsulation header of a message: CDR, little-endian, no options. Source: OMG DDSI-RTPS 2.5, chapter 10, CDR_LE.
+/// Encapsulation header: CDR, little-endian, no options. Source: OMG DDSI-RTPS 2.5, 10, CDR_LE.
 inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::byte{1}};
 
 /// Length of the data of a message. @throws SettingError for more than its field holds
 [[nodiscard]] inline std::uint32_t point_cloud2_length(std::size_t bytes) {
-  require_within("PointBuffer::records (size), as a PointCloud2", static_cast<double>(bytes), 0, 4'294'967'295, "byte");
+  const auto size = static_cast<double>(bytes);
+  require_within("PointBuffer::records (size), as a PointCloud2", size, 0, 4'294'967'295, "byte");
   return static_cast<std::uint32_t>(bytes);
 }
 
-/// Length of a message up to its data, without the encapsulation header [byte]. A number is aligned to its size; a
-/// string is its length, then its bytes and a zero. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
-[[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, const std::string& frame_id) noexcept {
+/// Length of a message up to its data, without encapsulation [byte]. Numbers are aligned to their
+/// sizes; a string is length, bytes and zero. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
+[[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, std::string_view frame_id) noexcept {
   const auto aligned = [](std::size_t at) { return (at + 3) / 4 * 4; };
-  const auto with_string = [&](std::size_t at, const std::string& text) { return aligned(at) + 4 + text.size() + 1; };
+  const auto with_string = [&](auto at, std::string_view text) { return aligned(at) + 4 + text.size() + 1; };
   std::size_t size = aligned(with_string(8, frame_id)) + 12;  // height, width, fields
   for (const PointField& field : layout.fields)
     size = aligned(aligned(with_string(size, field.name)) + 4 + 1) + 4;  // offset, type, count
@@ -102,9 +94,9 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 
 }  // namespace detail
 
-/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`, in place of its former content:
-/// little-endian CDR after an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
-/// `stamp_ns`; 64-bit integers become `float64`. Once `message` has grown to the longest scan, it allocates nothing.
+/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`: little-endian CDR
+/// after an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
+/// `stamp_ns`; 64-bit integers become `float64`. Allocates nothing but `message`.
 /// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
 inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
                                    std::vector<std::byte>& message) {
@@ -117,8 +109,8 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
   message.assign(detail::cdr_encapsulation.begin(), detail::cdr_encapsulation.end());
   message.reserve(message.size() + head + records.size() + 1);
   message.resize(message.size() + head);  // the padding of numbers is zero
-  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(message.data() + detail::cdr_encapsulation.size()),
-                                       head);
+  auto* const after = reinterpret_cast<char*>(message.data() + detail::cdr_encapsulation.size());
+  eprosima::fastcdr::FastBuffer buffer(after, head);
   eprosima::fastcdr::Cdr cdr(buffer);
   cdr << static_cast<std::int32_t>(stamp / nanoseconds_per_second)
       << static_cast<std::uint32_t>(stamp % nanoseconds_per_second) << frame_id;
@@ -127,13 +119,14 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
   for (const PointField& field : layout.fields)
     cdr << field.name << field.offset << static_cast<std::uint8_t>(std::min(field.type, NumberType::float64))
         << std::uint32_t{1};
-  cdr << false << layout.size << length << length;  // is_bigendian, point_step, row_step, length of the data
+  cdr << false << layout.size << length << length;  // is_bigendian, point_step, row_step, data
   const std::size_t data = message.size();
   message.insert(message.end(), records.begin(), records.end());
-  for (std::size_t k = 0; k < layout.fields.size(); ++k)  // a message has no 64-bit integers
-    for (std::size_t i = 0; layout.fields[k].type >= NumberType::int64 && i < scan.size(); ++i)
-      detail::store_number<double>(scan.number(i, layout.fields[k]),
-                                   message.data() + data + i * layout.size + layout.fields[k].offset);
+  for (const PointField& field : layout.fields)  // a message has no 64-bit integers
+    for (std::size_t i = 0; field.type >= NumberType::int64 && i < scan.size(); ++i) {
+      std::byte* const at = message.data() + data + i * layout.size + field.offset;
+      detail::store_number<double>(scan.number(i, field), at);
+    }
   message.push_back(std::byte{1});  // is_dense: echoes have finite coordinates
 }
 

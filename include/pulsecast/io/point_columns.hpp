@@ -7,16 +7,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>
@@ -27,10 +20,10 @@
 #include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/scene/surface_query.hpp>
 
-/// Table of all columns that a point can have. Every format of points, Python and the page take them from here.
+/// Table of all columns that a point can have, for every format of points, Python and the page.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Number type of a column or field. The values up to float64 are those of the data types of sensor_msgs/PointField.
+/// Number type of a column or field. Values up to float64 are those of sensor_msgs/PointField.
 enum class NumberType { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64, int64, uint64 };
 
 /// Axes of the coordinates of points.
@@ -47,18 +40,18 @@ enum class MotionDistortion : std::uint8_t {
 
 /// Settings of points: their frame, and what columns read besides pulse and echo.
 struct PointSettings {
-  /// Pose of the sensor, for points in its frame, as `Platform::instrument_at` gives it; empty: points are in the world
+  /// Pose of the sensor, for points in its frame: see `Platform::instrument_at`; empty: world
   std::function<Pose<frame::Instrument, frame::World>(Tick)> sensor{};
-  MotionDistortion distortion = MotionDistortion::kept;  ///< distortion of points in the sensor's frame
+  MotionDistortion distortion = MotionDistortion::kept;  ///< of points in the sensor's frame
   PointAxes axes = PointAxes::right_forward_up;          ///< axes of the coordinates
-  Vec3 origin{};                       ///< place in the world that has coordinates 0, for points in the world [m]
-  std::vector<std::uint16_t> rings{};  ///< ring of each channel, see `SpinningSensor::rings`; empty: the channel
-  double start_time = 0;               ///< clock time at tick 0 [s]
-  Laser laser{};                       ///< laser, for the column photons
-  double power_reference = 1e-9;       ///< power of 0 dB, for the column intensity_level [W]
-  SurfaceQuery surfaces{};             ///< surfaces of echoes, see `surfaces_of`; empty: unknown
-  PointColours colours{};              ///< colours of echoes, see `colours_of`; empty: unknown
-  ObjectAttributes attributes{};       ///< attributes of objects
+  Vec3 origin{};                                         ///< place of coordinates 0 in the world [m]
+  std::vector<std::uint16_t> rings{};                    ///< see `SpinningSensor::rings`; empty: channel
+  double start_time = 0;                                 ///< clock time at tick 0 [s]
+  Laser laser{};                                         ///< laser, for the column photons
+  double power_reference = 1e-9;                         ///< power of 0 dB of intensity_level [W]
+  SurfaceQuery surfaces{};                               ///< of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};                                ///< of echoes, see `colours_of`; empty: unknown
+  ObjectAttributes attributes{};                         ///< attributes of objects
 
   void validate() const {
     require_finite("PointSettings::origin (length)", length(origin), "m");
@@ -68,15 +61,16 @@ struct PointSettings {
   }
 };
 
-/// Settings of the points of a scene, which must outlive them: surfaces and colours, by one more ray per echo each
-/// where a column needs them, and the attributes of its parts. @throws SettingError
+/// Settings of the points of a scene, which must outlive them: surfaces and colours, by one more
+/// ray per echo each where a column needs them, and attributes of its parts. @throws SettingError
 template <SceneQueries World>
 [[nodiscard]] PointSettings points_of(const World& world) {
-  return {.surfaces = surfaces_of(world), .colours = colours_of(world), .attributes = ObjectAttributes(world.parts())};
+  const ObjectAttributes attributes(world.parts());
+  return {.surfaces = surfaces_of(world), .colours = colours_of(world), .attributes = attributes};
 }
 
-/// Reflectance as instruments encode it in a byte: percents up to white surfaces; above, 10 a doubling, up to 255.
-/// Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, but for the doubling, which no maker publishes.
+/// Reflectance as instruments encode it in a byte: percents up to white, then 10 a doubling, up to
+/// 255. Source: Velodyne, VLP-16 user manual 63-9243 rev. D, 6.1, but for the unpublished doubling.
 [[nodiscard]] inline double reflectivity_byte(double reflectance) noexcept {
   if (!(reflectance > 0)) return 0;
   return std::min(255.0, reflectance <= 1 ? 100 * reflectance : 100 + 10 * std::log2(reflectance));
@@ -117,87 +111,79 @@ enum class PointNeed : std::uint8_t {
 
 /// Column of a point.
 struct PointColumn {
-  std::string_view name;                                        ///< name, as in Python
-  std::string_view unit;                                        ///< SI symbol; empty for a pure number
-  NumberType type;                                              ///< number type that suits it
-  double (*get)(const PointView&) noexcept;                     ///< value in its unit; NaN if unknown
-  std::string_view description;                                 ///< meaning, in a few words
-  PointNeed needs = PointNeed::nothing;                         ///< what it reads besides pulse and echo
-  std::uint64_t (*whole)(const PointView&) noexcept = nullptr;  ///< value of a whole number, exact
+  std::string_view name;                                   ///< name, as in Python
+  std::string_view unit;                                   ///< SI symbol; empty for a pure number
+  NumberType type;                                         ///< number type that suits it
+  double (*get)(const PointView&) noexcept;                ///< value in its unit; NaN if unknown
+  std::string_view description;                            ///< meaning, in a few words
+  PointNeed needs = PointNeed::nothing;                    ///< what it reads besides pulse and echo
+  std::uint64_t (*whole)(const PointView&) noexcept = {};  ///< value of a whole number, exact
 };
 
 namespace detail {
 
 /// Level of a ratio of powers [dB]; -200 or more, also for zero.
-[[nodiscard]] inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
+inline double level_of(double ratio) noexcept { return ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0; }
 
+using View = const PointView&;
 template <class T>
-[[nodiscard]] constexpr T value_of(const PointView& p, T Echo::*member) noexcept {
+constexpr T value_of(View p, T Echo::*member) noexcept {
   return p.echo.*member;
 }
 template <class T>
-[[nodiscard]] constexpr T value_of(const PointView& p, T Shot::*member) noexcept {
+constexpr T value_of(View p, T Shot::*member) noexcept {
   return p.shot.*member;
 }
 /// Column of a member of `Echo` or `Shot`. Whole numbers are exact.
 template <auto Member>
-[[nodiscard]] constexpr PointColumn member(std::string_view name, std::string_view unit, NumberType type,
-                                           std::string_view description) noexcept {
-  PointColumn column{name, unit, type,
-                     [](const PointView& p) noexcept { return static_cast<double>(value_of(p, Member)); }, description};
-  using Value = decltype(value_of(std::declval<const PointView&>(), Member));
-  if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>)
-    column.whole = [](const PointView& p) noexcept { return static_cast<std::uint64_t>(value_of(p, Member)); };
+constexpr PointColumn member(std::string_view name, std::string_view unit, NumberType type,
+                             std::string_view description) noexcept {
+  const auto get = [](View p) noexcept { return static_cast<double>(value_of(p, Member)); };
+  PointColumn column{name, unit, type, get, description};
+  if constexpr (!std::is_floating_point_v<decltype(value_of(std::declval<View>(), Member))>)
+    column.whole = [](View p) noexcept { return static_cast<std::uint64_t>(value_of(p, Member)); };
   return column;
 }
 template <int Axis>
-[[nodiscard]] double of_position(const PointView& p) noexcept {
+double of_position(View p) noexcept {
   return p.position[Axis];
 }
 template <auto Vector, int Axis>
-[[nodiscard]] double of_surface(const PointView& p) noexcept {
+double of_surface(View p) noexcept {
   return p.surface ? (p.surface->*Vector)[Axis] : 0;
 }
 template <auto Channel>
-[[nodiscard]] double of_colour(const PointView& p) noexcept {
+double of_colour(View p) noexcept {
   return p.colour ? (*p.colour).*Channel : std::numeric_limits<double>::quiet_NaN();
 }
 template <auto Index>
-[[nodiscard]] double of_scene(const PointView& p) noexcept {
+double of_scene(View p) noexcept {
   return p.surface ? p.surface->interaction.*Index : std::numeric_limits<double>::infinity();
 }
-[[nodiscard]] inline double scan_time(const PointView& p) noexcept {
-  return static_cast<double>(p.shot.tick.second - p.scan_start.second) + (p.shot.tick.fraction - p.scan_start.fraction);
+inline double scan_time(View p) noexcept {
+  const Tick &tick = p.shot.tick, &start = p.scan_start;
+  return static_cast<double>(tick.second - start.second) + (tick.fraction - start.fraction);
 }
-[[nodiscard]] inline double clock_time(const PointView& p) noexcept {
+inline double clock_time(View p) noexcept {
   return (p.settings.start_time + static_cast<double>(p.shot.tick.second)) + p.shot.tick.fraction;
 }
-[[nodiscard]] inline double ring_of(const PointView& p) noexcept {
-  return p.shot.channel < p.settings.rings.size() ? p.settings.rings[p.shot.channel] : p.shot.channel;
+inline double ring_of(View p) noexcept {
+  const auto& rings = p.settings.rings;
+  return p.shot.channel < rings.size() ? rings[p.shot.channel] : p.shot.channel;
 }
-[[nodiscard]] inline double incidence_of(const PointView& p) noexcept {
-  return std::acos(std::clamp(p.echo.cos_incidence, -1.0, 1.0));
-}
-[[nodiscard]] inline double azimuth_of(const PointView& p) noexcept { return std::atan2(p.position.y, p.position.x); }
-[[nodiscard]] inline double elevation_of(const PointView& p) noexcept {
-  return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y));
-}
-[[nodiscard]] inline double reflectivity_of(const PointView& p) noexcept {
-  return reflectivity_byte(p.echo.reflectance);
-}
-[[nodiscard]] inline double photons_of(const PointView& p) noexcept {
-  return photon_count(p.echo.amplitude, p.settings.laser);
-}
-[[nodiscard]] inline double intensity_level_of(const PointView& p) noexcept {
-  return level_of(p.echo.amplitude / p.settings.power_reference);
-}
-[[nodiscard]] inline double reflectance_level_of(const PointView& p) noexcept { return level_of(p.echo.reflectance); }
-[[nodiscard]] inline double rgb_of(const PointView& p) noexcept {
+inline double incidence_of(View p) noexcept { return std::acos(std::clamp(p.echo.cos_incidence, -1.0, 1.0)); }
+inline double azimuth_of(View p) noexcept { return std::atan2(p.position.y, p.position.x); }
+inline double elevation_of(View p) noexcept { return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y)); }
+inline double reflectivity_of(View p) noexcept { return reflectivity_byte(p.echo.reflectance); }
+inline double photons_of(View p) noexcept { return photon_count(p.echo.amplitude, p.settings.laser); }
+inline double intensity_level_of(View p) noexcept { return level_of(p.echo.amplitude / p.settings.power_reference); }
+inline double reflectance_level_of(View p) noexcept { return level_of(p.echo.reflectance); }
+inline double rgb_of(View p) noexcept {
   if (!p.colour) return std::numeric_limits<double>::quiet_NaN();
   const auto byte = [](std::uint16_t channel) { return (channel + 128U) / 257U; };  // to nearest
   return byte(p.colour->red) << 16 | byte(p.colour->green) << 8 | byte(p.colour->blue);
 }
-[[nodiscard]] inline double rgb_bits_of(const PointView& p) noexcept {
+inline double rgb_bits_of(View p) noexcept {
   return p.colour ? std::bit_cast<float>(static_cast<std::uint32_t>(rgb_of(p))) : 0;
 }
 }  // namespace detail
@@ -207,6 +193,10 @@ inline constexpr std::array point_columns = [] {
   using namespace detail;
   using enum NumberType;
   using enum PointNeed;
+  using Rgb = PointColour;
+  constexpr auto normal = &PointSurface::normal, velocity = &PointSurface::velocity;
+  constexpr auto part = &SurfaceInteraction::part;
+  constexpr auto material = &SurfaceInteraction::material_index;
   return std::array{
       PointColumn{"x", "m", float64, of_position<0>, "coordinate along x", position},
       PointColumn{"y", "m", float64, of_position<1>, "coordinate along y", position},
@@ -225,11 +215,10 @@ inline constexpr std::array point_columns = [] {
       member<&Shot::echoes>("number_of_returns", "", uint8, "returns of the pulse"),
       member<&Shot::channel>("channel", "", uint16, "number of the emitter, from 0"),
       member<&Echo::kind>("kind", "", uint8, "way of the light, 0: direct"),
-      PointColumn{"red", "", uint16, of_colour<&PointColour::red>, "red, up to 65535", colour},
-      PointColumn{"green", "", uint16, of_colour<&PointColour::green>, "green, up to 65535", colour},
-      PointColumn{"blue", "", uint16, of_colour<&PointColour::blue>, "blue, up to 65535", colour},
-      PointColumn{"near_infrared", "", uint16, of_colour<&PointColour::near_infrared>, "near infrared, up to 65535",
-                  colour},
+      PointColumn{"red", "", uint16, of_colour<&Rgb::red>, "red, up to 65535", colour},
+      PointColumn{"green", "", uint16, of_colour<&Rgb::green>, "green, up to 65535", colour},
+      PointColumn{"blue", "", uint16, of_colour<&Rgb::blue>, "blue, up to 65535", colour},
+      PointColumn{"near_infrared", "", uint16, of_colour<&Rgb::near_infrared>, "near infrared, up to 65535", colour},
       PointColumn{"rgb", "", uint32, rgb_of, "65536 red + 256 green + blue", colour},
       PointColumn{"rgb_bits", "", float32, rgb_bits_of, "rgb as the bits of a float", colour},
       PointColumn{"clock", "s", float64, clock_time, "emission by the clock"},
@@ -243,23 +232,21 @@ inline constexpr std::array point_columns = [] {
       PointColumn{"photons", "", float32, photons_of, "photons in a pulse length"},
       PointColumn{"intensity_level", "dB", float32, intensity_level_of, "power at the peak"},
       PointColumn{"reflectance_level", "dB", float32, reflectance_level_of, "relative to white"},
-      PointColumn{"normal_x", "", float32, of_surface<&PointSurface::normal, 0>, "normal, 0 if unknown", surface},
-      PointColumn{"normal_y", "", float32, of_surface<&PointSurface::normal, 1>, "normal, 0 if unknown", surface},
-      PointColumn{"normal_z", "", float32, of_surface<&PointSurface::normal, 2>, "normal, 0 if unknown", surface},
-      PointColumn{"velocity_x", "m/s", float32, of_surface<&PointSurface::velocity, 0>, "velocity of surface", surface},
-      PointColumn{"velocity_y", "m/s", float32, of_surface<&PointSurface::velocity, 1>, "velocity of surface", surface},
-      PointColumn{"velocity_z", "m/s", float32, of_surface<&PointSurface::velocity, 2>, "velocity of surface", surface},
-      PointColumn{"part", "", uint32, of_scene<&SurfaceInteraction::part>, "part; largest if unknown", surface},
-      PointColumn{"material", "", uint16, of_scene<&SurfaceInteraction::material_index>, "material; largest if unknown",
-                  surface}};
+      PointColumn{"normal_x", "", float32, of_surface<normal, 0>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_y", "", float32, of_surface<normal, 1>, "normal, 0 if unknown", surface},
+      PointColumn{"normal_z", "", float32, of_surface<normal, 2>, "normal, 0 if unknown", surface},
+      PointColumn{"velocity_x", "m/s", float32, of_surface<velocity, 0>, "velocity of surface", surface},
+      PointColumn{"velocity_y", "m/s", float32, of_surface<velocity, 1>, "velocity of surface", surface},
+      PointColumn{"velocity_z", "m/s", float32, of_surface<velocity, 2>, "velocity of surface", surface},
+      PointColumn{"part", "", uint32, of_scene<part>, "part; largest if unknown", surface},
+      PointColumn{"material", "", uint16, of_scene<material>, "material; largest if unknown", surface}};
 }();
 
-/// Columns that points have by default in Python, and are read from pulse and echo alone: those up to the kind of
-/// light.
+/// Columns of points by default in Python, read from pulse and echo alone: those up to `kind`.
 inline constexpr std::span<const PointColumn> usual_point_columns(point_columns.data(), 17);
 static_assert(usual_point_columns.back().name == "kind");
 
-/// Column of an attribute of the object, by the name of the field that refers to it. NaN if it has none.
+/// Column of the attribute of the object with the name of the field. NaN if it has none.
 inline constexpr PointColumn attribute_column{
     "", "", NumberType::float64, nullptr, "attribute of the object met", PointNeed::attribute};
 /// Column of a field that is not simulated: 0.
@@ -274,11 +261,11 @@ namespace detail {
     if (each.name == name) return &each;
   return nullptr;
 }
-inline void no_point_column_has_this_name() {}  // not constexpr: its call does not compile in `column`
+inline void no_point_column_has_this_name() {}  // not constexpr: does not compile in `column`
 
 }  // namespace detail
 
-/// Column of a name that is known at compile time, as in `column("range")`. Another name does not compile.
+/// Column of a name, as in `column("range")`. A name that no column has does not compile.
 [[nodiscard]] consteval const PointColumn* column(std::string_view name) {
   const PointColumn* const found = detail::column_or_null(name);
   if (!found) detail::no_point_column_has_this_name();

@@ -4,28 +4,25 @@
 #define PULSECAST_IO_POINT_LAYOUT_HPP
 
 #include <algorithm>
-#include <cstdint>
 #include <initializer_list>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/point_columns.hpp>
 
-/// Layouts of point records: fields, types and offsets. PCD, PLY, NPZ and PointCloud2 are headers for such records.
+/// Layouts of point records, as of PCD, PLY, NPZ and PointCloud2: fields, types and offsets.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Size of a number [byte].
 [[nodiscard]] constexpr std::uint32_t size_of(NumberType type) noexcept {
-  return type <= NumberType::uint8 ? 1 : type <= NumberType::uint16 ? 2 : type <= NumberType::float32 ? 4 : 8;
+  using enum NumberType;
+  return type <= uint8 ? 1 : type <= uint16 ? 2 : type <= float32 ? 4 : 8;
 }
 
 /// Field of a point record: a column times a scale.
 struct PointField {
-  std::string name{};                          ///< name in the file or message; of an attribute, its name
-  NumberType type = NumberType::float32;       ///< number type; integers are rounded, and limited to its range
-  const PointColumn* column = &absent_column;  ///< column; that of a field that is not simulated by default
+  std::string name{};                          ///< name in the file; that of an attribute
+  NumberType type = NumberType::float32;       ///< integers are rounded, and limited to its range
+  const PointColumn* column = &absent_column;  ///< column; by default not simulated
   double scale = 1;                            ///< number in the record per unit of the column
   std::uint32_t offset = 0;                    ///< position in the record [byte]
 };
@@ -36,7 +33,7 @@ struct PointLayout {
   std::uint32_t size = 0;            ///< size of a record, which may be padded [byte]
 
   /// Layout of fields one after another, without gaps.
-  [[nodiscard]] static PointLayout packed(const std::vector<PointField>& fields) { return PointLayout{}.with(fields); }
+  [[nodiscard]] static PointLayout packed(const std::vector<PointField>& all) { return PointLayout{}.with(all); }
 
   /// This layout with further fields at its end, without gaps.
   [[nodiscard]] PointLayout with(const std::vector<PointField>& more) const {
@@ -64,10 +61,10 @@ struct PointLayout {
 
   /// True if a column of a field has this need.
   [[nodiscard]] bool needs(PointNeed need) const noexcept {
-    return std::ranges::any_of(fields, [need](const PointField& f) { return f.column->needs == need; });
+    return std::ranges::any_of(fields, [need](auto& f) { return f.column->needs == need; });
   }
 
-  /// This layout with float64 in place of 64-bit integers, for formats without them: exact up to 2^53.
+  /// This layout with float64 in place of 64-bit integers: exact up to 2^53.
   [[nodiscard]] PointLayout without_int64() const {
     PointLayout layout = *this;
     for (PointField& field : layout.fields) field.type = std::min(field.type, NumberType::float64);
@@ -80,7 +77,7 @@ namespace layouts {
 
 using enum NumberType;
 
-/// Coordinates in single precision. Its spacing is 8 um at 100 m, and 0.5 m at 5,000 km: for points about a sensor.
+/// Coordinates about a sensor in single precision, with a spacing of 8 um at 100 m.
 [[nodiscard]] inline std::vector<PointField> xyz_float() {
   return {{"x", float32, column("x")}, {"y", float32, column("y")}, {"z", float32, column("z")}};
 }
@@ -104,23 +101,23 @@ using enum NumberType;
   return PointLayout::packed(xyz_float()).with({{"intensity", float32, column("reflectivity")}});
 }
 
-/// Fields of Velodyne's ROS driver, 22 bytes. Source: ros-drivers/velodyne, PointcloudXYZIRT: time from scan start [s].
+/// Fields of Velodyne's ROS driver, 22 bytes: time in the scan [s]. Source: ros-drivers/velodyne.
 [[nodiscard]] inline PointLayout velodyne() {
   return xyzi().with({{"ring", uint16, column("ring")}, {"time", float32, column("time")}});
 }
 
-/// Fields of the ROS driver of Hesai, 26 bytes. Source: HesaiTechnology/HesaiLidar_ROS_2.0: timestamp by the clock [s].
+/// Fields of the ROS driver of Hesai, 26 bytes, clock [s]. Source: HesaiTechnology/HesaiLidar_ROS_2.0.
 [[nodiscard]] inline PointLayout hesai() {
   return xyzi().with({{"ring", uint16, column("ring")}, {"timestamp", float64, column("clock")}});
 }
 
-/// Fields of the ROS driver of Livox, 26 bytes. Source: Livox-SDK/livox_ros_driver2: timestamp by the clock [ns].
+/// Fields of the ROS driver of Livox, 26 bytes, clock [ns]. Source: Livox-SDK/livox_ros_driver2.
 [[nodiscard]] inline PointLayout livox() {
   return xyzi().with({{"tag", uint8}, {"line", uint8, column("ring")}, {"timestamp", float64, column("clock"), 1e9}});
 }
 
-/// Fields of the ROS driver of Ouster, 48 bytes. Source: ouster-lidar/ouster-ros, its default point type: t since the
-/// scan's start [ns], intensity in photons, range [mm], all in the places that a C++ structure aligned to 16 bytes has.
+/// Fields of the ROS driver of Ouster, 48 bytes: t in the scan [ns], intensity in photons, range
+/// [mm], as in a structure aligned to 16 bytes. Source: ouster-lidar/ouster-ros.
 [[nodiscard]] inline PointLayout ouster() {
   return {{{"x", float32, column("x"), 1, 0},
            {"y", float32, column("y"), 1, 4},
@@ -134,8 +131,8 @@ using enum NumberType;
           48};
 }
 
-/// Fields of Autoware's PointXYZIRCAEDT, 32 bytes. Source: autowarefoundation, data types of point clouds: time_stamp
-/// since the scan's start [ns]; return types are left out.
+/// Fields of Autoware's PointXYZIRCAEDT, 32 bytes. Source: autowarefoundation, data types of point
+/// clouds: time_stamp since the scan's start [ns]; return types are left out.
 [[nodiscard]] inline PointLayout autoware() {
   return PointLayout::packed(xyz_float())
       .with({{"intensity", uint8, column("reflectivity")},
@@ -147,7 +144,7 @@ using enum NumberType;
              {"time_stamp", uint32, column("time"), 1e9}});
 }
 
-/// Columns as the table has them, to append to a layout: `columns({column("pulse"), column("leg")})`.
+/// Columns as in the table, to append to a layout: `columns({column("pulse"), column("leg")})`.
 [[nodiscard]] inline std::vector<PointField> columns(std::initializer_list<const PointColumn*> all) {
   std::vector<PointField> fields;
   for (const PointColumn* each : all) fields.push_back({std::string(each->name), each->type, each});
@@ -160,7 +157,7 @@ using enum NumberType;
   return fields;
 }
 
-/// Columns as the table has them, by their names, to append to a layout; other names are those of `attributes`.
+/// As above, by the names of columns or of `attributes`.
 /// @throws SettingError for a name that neither a column nor an attribute has
 [[nodiscard]] inline std::vector<PointField> columns(std::span<const std::string> names,
                                                      std::span<const std::string> attributes = {}) {
@@ -173,16 +170,16 @@ using enum NumberType;
   return fields;
 }
 
-/// Labels of a point, to append to another layout: `layouts::velodyne().with(layouts::labels())`. Part, material,
-/// normal and velocity need `PointSettings::surfaces`.
+/// Labels of a point, to append to another layout: `layouts::velodyne().with(layouts::labels())`.
+/// Part, material, normal and velocity need `PointSettings::surfaces`.
 [[nodiscard]] inline std::vector<PointField> labels() {
   return columns({column("classification"), column("object"), column("part"), column("material"), column("normal_x"),
                   column("normal_y"), column("normal_z"), column("velocity_x"), column("velocity_y"),
                   column("velocity_z")});
 }
 
-/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY expect, to append to another layout.
-/// Colours need `PointSettings::colours`. 0 if unknown, which is black.
+/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY expect, to
+/// append to another layout. Colours need `PointSettings::colours`. 0 if unknown, which is black.
 [[nodiscard]] inline std::vector<PointField> colours() {
   return {{"red", uint8, column("red"), 1 / 257.0},
           {"green", uint8, column("green"), 1 / 257.0},
@@ -198,7 +195,7 @@ using enum NumberType;
 /// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
 [[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", float32, column("rgb_bits")}}; }
 
-/// Attributes of a point's object, to append to a layout: `ObjectAttributes::names`. NaN if it has none, 0 in integers.
+/// Attributes of a point's object by `ObjectAttributes::names`. NaN if it has none, 0 in integers.
 [[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, NumberType type = float64) {
   std::vector<PointField> fields;
   for (const std::string& name : names) fields.push_back({name, type, &attribute_column});

@@ -4,18 +4,11 @@
 #define PULSECAST_IO_POINT_RECORDS_HPP
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>
@@ -25,6 +18,8 @@
 
 /// Records of points in a layout, which point files and messages consist of.
 namespace PULSECAST_NAMESPACE::io {
+
+static_assert(std::endian::native == std::endian::little, "records hold numbers as they lie in memory");
 
 namespace detail {
 
@@ -36,10 +31,11 @@ void store_number(double value, std::byte* to) noexcept {
     number = static_cast<Number>(value);
   } else {
     using Limits = std::numeric_limits<Number>;
-    constexpr auto beyond_53_bits = static_cast<Number>(static_cast<std::uint64_t>(Limits::max()) >> 53);
-    constexpr auto most_exact = static_cast<Number>(Limits::max() - beyond_53_bits);
-    constexpr double least = static_cast<double>(Limits::min()), most = static_cast<double>(most_exact);
-    number = std::isnan(value) ? Number{} : static_cast<Number>(std::nearbyint(std::clamp(value, least, most)));
+    constexpr auto beyond_53_bits = static_cast<std::uint64_t>(Limits::max()) >> 53;
+    constexpr double least = static_cast<double>(Limits::min());
+    constexpr double most = static_cast<double>(Limits::max() - static_cast<Number>(beyond_53_bits));
+    const double whole = std::nearbyint(std::clamp(value, least, most));
+    number = std::isnan(value) ? Number{} : static_cast<Number>(whole);
   }
   std::memcpy(to, &number, sizeof number);
 }
@@ -47,13 +43,14 @@ void store_number(double value, std::byte* to) noexcept {
 /// Writes a whole number as an integer, limited to its range.
 template <std::integral Number>
 void store_whole(std::uint64_t value, std::byte* to) noexcept {
-  const auto number = static_cast<Number>(std::min<std::uint64_t>(value, std::numeric_limits<Number>::max()));
+  constexpr std::uint64_t most = std::numeric_limits<Number>::max();
+  const auto number = static_cast<Number>(std::min(value, most));
   std::memcpy(to, &number, sizeof number);
 }
 
-/// Calls `visit.operator()<Number>()` with the number type of a field. Inlined, as the type may be a constant.
+/// Calls `visit.operator()<Number>()` with a number type. Inlined, as this may be a constant.
 template <class Visitor>
-[[gnu::always_inline]] inline decltype(auto) visit_number_type(NumberType type, const Visitor& visit) {
+[[gnu::always_inline]] inline auto visit_number_type(NumberType type, const Visitor& visit) {
   switch (type) {
     case NumberType::int8:
       return visit.template operator()<std::int8_t>();
@@ -96,10 +93,10 @@ template <class Visitor>
   return count;
 }
 
-/// Encoder of echoes as point records, in pulse order. Allocates nothing but what the vector of the records needs.
+/// Encoder of echoes as point records, in pulse order. Allocates nothing but their vector.
 class PointEncoder {
  public:
-  /// @throws SettingError for a layout or settings out of range, or a field of an attribute that no object has
+  /// @throws SettingError for a layout or settings out of range, or an attribute that no object has
   explicit PointEncoder(PointLayout layout, PointSettings settings = {})
       : layout_(validated(std::move(layout))), settings_(validated(std::move(settings))) {
     places_ = layout_.needs(PointNeed::position);
@@ -110,11 +107,11 @@ class PointEncoder {
     begin_scan({});
   }
 
-  [[nodiscard]] const PointLayout& layout() const noexcept { return layout_; }  ///< layout of the records
+  [[nodiscard]] const PointLayout& layout() const noexcept { return layout_; }  ///< of the records
   [[nodiscard]] const PointSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] Tick scan_start() const noexcept { return start_; }  ///< start of the scan
 
-  /// Sets the start of the scan, from which its times count. Evaluates the sensor's pose for it now.
+  /// Sets the start of the scan, from which its times count, and the sensor's pose then.
   void begin_scan(Tick start) {
     start_ = start;
     if (settings_.sensor && removed()) frame_ = settings_.sensor(start).inverse();
@@ -126,7 +123,7 @@ class PointEncoder {
     see(batch, shot, echo, frame_of(shot), use);
   }
 
-  /// Writes the record of a point to `layout().size` bytes; those between fields are left as they are.
+  /// Writes the record of a point to `layout().size` bytes, but for those between fields.
   void store(const PointView& view, std::byte* record) const noexcept {
     for (const Number& number : numbers_) number.store(number, view, record);
   }
@@ -147,7 +144,7 @@ class PointEncoder {
     encode(batch, records.data() + at);
   }
 
-  /// Writes a record for each echo of the shots of a batch to `count_echoes(batch)` times `layout().size` bytes.
+  /// Writes them to `count_echoes(batch)` times `layout().size` bytes.
   void encode(const EchoBatch& batch, std::byte* records) const {
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
@@ -160,7 +157,7 @@ class PointEncoder {
   }
 
  private:
-  /// Number of a record: what a field needs of its column, and how it is stored.
+  /// Number of a record: a field, as it is stored.
   struct Number {
     void (*store)(const Number&, const PointView&, std::byte*) noexcept;
     double (*get)(const PointView&) noexcept;           // null for an attribute
@@ -187,7 +184,7 @@ class PointEncoder {
     const PointColumn& column = *field.column;
     Number number{nullptr, column.get, column.whole, 0, field.scale, field.offset};
     if (column.needs == PointNeed::attribute) {
-      const std::vector<std::string>& names = settings_.attributes.names();
+      const auto& names = settings_.attributes.names();
       const auto found = std::ranges::find(names, field.name);
       if (found == names.end())
         throw SettingError("PointSettings::attributes (number of names '" + field.name + "')", 0, "",
@@ -218,7 +215,11 @@ class PointEncoder {
       const Vec3 point = point_of(shot, echo);
       view.position = in_axes(frame ? frame->point(point) : point - settings_.origin);
     }
-    if (surfaces_ && (surface = surface_of(batch, shot, echo, frame))) view.surface = &*surface;
+    if (surfaces_)
+      if (const std::optional<SurfaceInteraction> at = settings_.surfaces(batch, shot, echo)) {
+        const auto turned = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
+        view.surface = &surface.emplace(PointSurface{*at, turned(at->normal), turned(at->velocity)});
+      }
     if (colours_ && (colour = settings_.colours(batch, shot, echo))) view.colour = &*colour;
     if (attributes_) view.attributes = settings_.attributes.of(echo.object).data();
     use(view);
@@ -226,13 +227,6 @@ class PointEncoder {
 
   [[nodiscard]] bool removed() const noexcept { return settings_.distortion == MotionDistortion::removed; }
 
-  [[nodiscard]] std::optional<PointSurface> surface_of(const EchoBatch& batch, const Shot& shot, const Echo& echo,
-                                                       const Frame& frame) const {
-    const std::optional<SurfaceInteraction> surface = settings_.surfaces(batch, shot, echo);
-    if (!surface) return std::nullopt;
-    const auto direction = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
-    return PointSurface{*surface, direction(surface->normal), direction(surface->velocity)};
-  }
   [[nodiscard]] Vec3 in_axes(const Vec3& v) const noexcept {
     return settings_.axes == PointAxes::forward_left_up ? to_forward_left_up(v) : v;
   }
@@ -240,13 +234,13 @@ class PointEncoder {
   PointLayout layout_;
   PointSettings settings_;
   std::vector<Number> numbers_;                                                    // one a field
-  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // true: needed, and known
+  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // needs
   Tick start_{};
   Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
 };
 
-/// Point records in memory: a sink that keeps them, and gives them to the writers of files and messages. Once it has
-/// grown to the longest scan, it allocates nothing.
+/// Point records in memory: a sink that keeps them, and gives them to the writers of files and
+/// messages. Once it has grown to the longest scan, it allocates nothing.
 class PointBuffer {
  public:
   /// @throws SettingError for a layout or settings out of range
@@ -254,7 +248,7 @@ class PointBuffer {
       : encoder_(std::move(layout), std::move(settings)) {}
 
   void operator()(const EchoBatch& batch) { encoder_.encode(batch, records_); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
   /// Drops all points, and sets the start of the next scan.
   void begin_scan(Tick start) {
@@ -265,9 +259,9 @@ class PointBuffer {
   [[nodiscard]] std::size_t size() const noexcept { return records_.size() / layout().size; }
   /// Records, one after another.
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
-  [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }  ///< layout of the records
+  [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }
   [[nodiscard]] const PointSettings& settings() const noexcept { return encoder_.settings(); }
-  [[nodiscard]] Tick scan_start() const noexcept { return encoder_.scan_start(); }  ///< start of the scan
+  [[nodiscard]] Tick scan_start() const noexcept { return encoder_.scan_start(); }
 
   /// Number in a field of this layout of a point, as it is stored.
   [[nodiscard]] double number(std::size_t point, const PointField& field) const noexcept {

@@ -10,9 +10,9 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reads a measured laser pulse: a text of two columns, time [ns] from any origin and power in any unit, by increasing
-/// time. `#` begins a comment, and a first row without numbers is a header. Powers below 0, such as noise about a
-/// baseline, count as 0. Throws a `FileError` with path and line at the first error.
+/// Reads a measured laser pulse: a text of two columns, time [ns] from any origin, ascending, and
+/// power in any unit. `#` begins a comment, and a first row without numbers is a header. Powers
+/// below 0, as of noise, count as 0. Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MeasuredPulse read_pulse_form(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
@@ -34,18 +34,19 @@ PULSECAST_INLINE MeasuredPulse read_pulse_form(const std::filesystem::path& path
     const std::vector<std::string_view>& cells = table.cells();
     if (cells.size() != 2)
       table.fail_here("has " + std::to_string(cells.size()) + " columns: expected time [ns] and power");
-    const std::optional<double> time = text::finite_number_in(cells[0]), power = text::finite_number_in(cells[1]);
+    const std::optional time = text::finite_number_in(cells[0]), power = text::finite_number_in(cells[1]);
     if (std::exchange(first, false) && !time && !power) continue;  // a header
-    for (const std::size_t column : {std::size_t{0}, std::size_t{1}})
-      if (!(column == 0 ? time : power))
-        table.fail_here(column, text::quoted(cells[column]) + ": expected a finite number");
-    if (!(std::fabs(*time) <= 1e9)) table.fail_here(0, text::quoted(cells[0]) + ": expected a time within 1e9 ns");
+    const auto fail = [&](std::size_t column, const char* expected) {
+      table.fail_here(column, text::quoted(cells[column]) + ": expected a " + expected);
+    };
+    if (!time || !power) fail(time ? 1 : 0, "finite number");
+    if (!(std::fabs(*time) <= 1e9)) fail(0, "time within 1e9 ns");
     if (!samples.empty() && !(*time * 1e-9 > samples.back().time))
       table.fail_here(0, "is not later than the row before");
     samples.push_back({*time * 1e-9, std::max(*power, 0.0)});
   }
-  const bool dark = std::none_of(samples.begin(), samples.end(), [](const PulseSample& s) { return s.power > 0; });
-  if (samples.size() < 2 || dark)
+  const bool lit = std::ranges::any_of(samples, [](const PulseSample& s) { return s.power > 0; });
+  if (samples.size() < 2 || !lit)
     table.fail("has no pulse: expected two rows at least, of time [ns] and power, and some power above 0");
   return MeasuredPulse(std::move(samples));
 }

@@ -3,17 +3,15 @@
 #ifndef PULSECAST_IO_SCAN_SPLITTER_HPP
 #define PULSECAST_IO_SCAN_SPLITTER_HPP
 
-#include <cstddef>
 #include <functional>
-#include <utility>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Divides pulses into scans of equal time, for formats with a file or message a scan. Scan n begins at tick n /
-/// `scan_rate`. Scans with pulses are passed on in order, even without points, when the next begins or at `close()`.
+/// Divides pulses into scans of equal time. Scan n begins at n / `scan_rate`. Scans with pulses,
+/// even without points, are passed on in order when the next begins or at `close()`.
 class ScanSplitter {
  public:
   /// Takes the points of a scan, which are valid during the call.

@@ -4,12 +4,6 @@
 #define PULSECAST_IO_TEXT_FILES_HPP
 
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/packed_points.hpp>
@@ -26,37 +20,56 @@ struct TextFileSettings {
   void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
+namespace detail {
+
+/// Text file with a time of its tick 0.
+class TextFileWriter {
+ public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
+  explicit TextFileWriter(std::filesystem::path path, const TextFileSettings& settings = {})
+      : TextFileWriter(OutputFile(std::move(path)), settings) {}
+  explicit TextFileWriter(OutputFile file, const TextFileSettings& settings = {})
+      : settings_(validated(settings)), text_(std::move(file)) {}
+
+  void close() { text_.close(); }
+
+ protected:
+  [[nodiscard]] double clock(const Shot& shot) const { return settings_.start_time + shot.tick.seconds(); }
+
+  TextFileSettings settings_;
+  TextOutput text_;
+};
+
+}  // namespace detail
+
 /// Further columns of a text file of points, after the standard ones.
 struct PointTextColumns {
   std::vector<PointField> columns{};  ///< columns in order, see `layouts::columns`
   PointSettings points{};             ///< their values; the start time is that of the file
 };
 
-/// Writes points as text, one a line, in these columns, separated by blanks, without a header line:
+/// Writes points as text, one a line, in these blank-separated columns, without a header:
 ///
 ///     x y z intensity echo_width returnNumber pulseReturnNumber fullwaveIndex hitObjectId classification gpsTime
 ///
-/// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals;
-/// gpsTime [s] has 9. The others are integers: return number, returns of the pulse, index of the pulse, object, class.
-/// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated
-/// here. Further columns follow on request, in the shortest form that reads back the same, nan if unknown. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-class XyzWriter {
+/// x, y, z [m], intensity (amplitude [nW]) and echo_width [ns], nan if unknown, have 4 decimals;
+/// gpsTime [s] has 9. Then integers: return number, returns of the pulse, its index, object, class.
+/// These are the columns of HELIOS++. Further ones follow on request, in the shortest form that
+/// reads back the same, or nan. `close()` completes the file: see `OutputFile`.
+class XyzWriter : public detail::TextFileWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
+      : XyzWriter(OutputFile(std::move(path)), settings, std::move(more)) {}
   explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}, PointTextColumns more = {})
-      : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(std::move(file)) {}
+      : TextFileWriter(std::move(file), settings), more_(encoder(settings, std::move(more))) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) write(batch, shot, echo);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
-  void close() { text_.close(); }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
  private:
   [[nodiscard]] static std::optional<PointEncoder> encoder(const TextFileSettings& settings, PointTextColumns more) {
@@ -67,9 +80,10 @@ class XyzWriter {
 
   void write(const EchoBatch& batch, const Shot& shot, const Echo& echo) {
     constexpr double nano = 1e9;  // per unit
-    text_.vector("the position of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
+    text_.vector("the position of an echo", point_of(shot, echo), 4);
+    text_.reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
-    text_.reals(9, settings_.start_time + shot.tick.seconds());
+    text_.reals(9, clock(shot));
     if (more_) more_->see(batch, shot, echo, [&](const PointView& view) { write_more(view); });
     text_.end_row();
   }
@@ -85,63 +99,46 @@ class XyzWriter {
     }
   }
 
-  TextFileSettings settings_;
   std::optional<PointEncoder> more_;
-  std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);  // of the further columns
-  TextOutput text_;
+  std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);
 };
 static_assert(EchoSink<XyzWriter>);
 
-/// Writes pulses as text, with or without echoes, one a line, in these blank-separated columns, without a header:
+/// Writes pulses as text, with or without echoes, one a line, in these columns, without a header:
 ///
 ///     ox oy oz dx dy dz time pulseIndex deviceIndex fate
 ///
-/// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; time: departure [ns], 4 decimals, all
-/// exact; pulseIndex: slot, the fullwaveIndex of points and waveforms; deviceIndex: emitter, from 0; fate: number of
-/// its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1)
-/// were never sent, and have no line. The first nine are the columns of HELIOS++ pulse files, so that their readers
-/// work. As there, time is in nanoseconds, unlike in all other files; pulseIndex counts from 0 and over all devices,
-/// and directions have more decimals. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-class PulseTextWriter {
+/// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9; time: departure [ns], 4, all
+/// exact; pulseIndex: slot, the fullwaveIndex of points and waveforms; deviceIndex: emitter, from
+/// 0; fate: number of its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5
+/// absorbed. Pulses blocked by the optic (1) were never sent. The first nine are columns of
+/// HELIOS++; pulseIndex counts over all devices. `close()` completes the file: see `OutputFile`.
+class PulseTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit PulseTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
-  explicit PulseTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     const Tick start = Tick::of_seconds(settings_.start_time);
     for (const Shot& shot : batch.shots) {
-      text_.vector("the origin of a pulse", shot.origin, 4).vector("the direction of a pulse", shot.direction, 9);
-      text_.nanoseconds(start + shot.tick)
-          .wholes(shot.index, shot.channel, static_cast<std::uint8_t>(shot.fate))
-          .end_row();
+      text_.beam(shot).nanoseconds(start + shot.tick);
+      text_.wholes(shot.index, shot.channel, static_cast<std::uint8_t>(shot.fate)).end_row();
     }
   }
-
-  void close() { text_.close(); }
-
- private:
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<PulseTextWriter>);
 
-/// Writes the hits of subrays of a `WithSubrayRecord` footprint as text, one a line, in these blank-separated columns:
+/// Writes hits of subrays of a `WithSubrayRecord` footprint as text in these columns, no header:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
-/// fullwaveIndex: slot of the pulse, as in point files; subray: number in the footprint, from 0; x, y, z: hit point
-/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and
-/// backscatter as in `Hit`, 6 each; object and class. Subrays without a hit have no line. There is no header line. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point
+/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9;
+/// cosIncidence and backscatter as in `Hit`, 6 each; object and class. Subrays without a hit have
+/// no line. `close()` completes the file: see `OutputFile`.
 class SubrayTextWriter {
  public:
   /// Opens the file. @throws FileError
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
   explicit SubrayTextWriter(OutputFile file) : text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -154,16 +151,14 @@ class SubrayTextWriter {
     }
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
   void close() { text_.close(); }
 
  private:
   void write(const Shot& shot, std::size_t subray, const SubrayRecord& hit) {
     constexpr double nano = 1e9;  // per unit
-    text_.wholes(shot.index, subray)
-        .vector("the position of a hit", hit.point, 4)
-        .reals(4, hit.range)
-        .reals(9, hit.power * nano);
+    text_.wholes(shot.index, subray).vector("the position of a hit", hit.point, 4);
+    text_.reals(4, hit.range).reals(9, hit.power * nano);
     text_.reals(6, hit.cos_incidence, hit.backscatter).wholes(hit.object, hit.classification).end_row();
   }
 
@@ -171,48 +166,35 @@ class SubrayTextWriter {
 };
 static_assert(EchoSink<SubrayTextWriter>);
 
-/// Writes waveforms as text, one a line, with or without echoes, in these blank-separated columns, without a header:
+/// Writes waveforms as text, with or without echoes, one a line, in these columns, no header:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///
-/// fullwaveIndex: slot of the pulse, as in point files; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction,
-/// 9 decimals; tmin, tmax: times of the first and last sample [ns], 6 decimals; gpsTime: departure [s], 9 decimals; w:
-/// samples of received power [nW], as the points' intensity, 9 decimals, to the end of the line. These are the columns
-/// of HELIOS++ waveform files, so that their readers work. As there, tmin and tmax are one-way times, range by speed of
-/// light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`, half of its two-way travel time. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
-class WaveformTextWriter {
+/// fullwaveIndex: slot of the pulse; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit
+/// direction, 9; tmin, tmax: one-way times of the first and last sample [ns], 6; gpsTime: departure
+/// [s], 9; w: samples of received power [nW], 9. These are the columns of HELIOS++. Sample i is
+/// from the range `c (tmin + (tmax - tmin) i / (n - 1))`. `close()` completes the file: see
+/// `OutputFile`.
+class WaveformTextWriter : public detail::TextFileWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit WaveformTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
-  explicit WaveformTextWriter(OutputFile file, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(std::move(file)) {}
+  using TextFileWriter::TextFileWriter;
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       if (shot.samples != 0) write(shot, batch);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
-  void close() { text_.close(); }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
  private:
   void write(const Shot& shot, const EchoBatch& batch) {
     constexpr double nano = 1e9, one_way = 0.5;
     const double last = shot.waveform_start + (shot.samples - 1) * batch.sample_interval;
-    text_.wholes(shot.index)
-        .vector("the origin of a pulse", shot.origin, 4)
-        .vector("the direction of a pulse", shot.direction, 9);
-    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano)
-        .reals(9, settings_.start_time + shot.tick.seconds());
+    text_.wholes(shot.index).beam(shot);
+    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano).reals(9, clock(shot));
     for (const float sample : batch.waveform_of(shot)) text_.reals(9, double{sample} * nano);
     text_.end_row();
   }
-
-  TextFileSettings settings_;
-  TextOutput text_;
 };
 static_assert(EchoSink<WaveformTextWriter>);
 

@@ -19,12 +19,12 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a sender.
 struct UdpSettings {
-  double pace = 0;  ///< seconds of the packets' clock in a second: 1 for real time; 0 without waiting
+  double pace = 0;  ///< clock seconds in a second: 1 for real time; 0 without waiting
 
   void validate() const { require_within("UdpSettings::pace", pace, 0, 1e6, ""); }
 };
 
-/// Sends packets by UDP to a port of a host, or of all of a network. Throws a `FileError` that names the receiver.
+/// Sends packets by UDP to a host, or all of a network. Errors: a `FileError` that names it.
 class UdpSender {
  public:
   /// @throws SettingError for settings out of range @throws FileError without a socket

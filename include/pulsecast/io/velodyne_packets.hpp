@@ -4,7 +4,6 @@
 #define PULSECAST_IO_VELODYNE_PACKETS_HPP
 
 #include <cmath>
-#include <span>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/packets/packet_stream.hpp>
@@ -14,8 +13,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Data packets of a VLP-16 or VLP-32C. Source of every offset and value: Velodyne, VLP-16 user manual 63-9243 rev. D,
-/// 2018, 9.3, and VLP-32C user manual 63-9325 rev. C, 2019, 9.3.
+/// Data packets of a VLP-16 or VLP-32C. Source of every offset and value: Velodyne, VLP-16 user
+/// manual 63-9243 rev. D, 2018, 9.3, and VLP-32C user manual 63-9325 rev. C, 2019, 9.3.
 struct VelodyneFormat {
   static constexpr std::uint16_t port = 2368;      // of data packets
   static constexpr std::size_t blocks = 12;        // in a packet
@@ -38,17 +37,19 @@ struct VelodyneFormat {
   static void begin(const PacketSource& source, PulseIndex first, std::span<std::byte> payload) noexcept {
     for (std::size_t block = 0; block < blocks; ++block) {
       put(payload, block * block_size, std::uint16_t{0xEEFF});  // so that the bytes are FF EE
-      const Tick start = source.sensor.sequence_start(first + block / copies(source) * block_sequences(source));
+      const PulseIndex sequence = first + block / copies(source) * block_sequences(source);
+      const Tick start = source.sensor.sequence_start(sequence);
       const double hundredths = std::nearbyint(source.sensor.heading(start) * (36'000 / (2 * pi)));
       put(payload, block * block_size + 2, static_cast<std::uint16_t>(hundredths < 36'000 ? hundredths : 0));
     }
-    put(payload, 1200, static_cast<std::uint32_t>(parts_of(source.clock(first), 1'000'000) % 3'600'000'000));  // [us]
+    const std::uint64_t microseconds = parts_of(source.clock(first), 1'000'000);
+    put(payload, 1200, static_cast<std::uint32_t>(microseconds % 3'600'000'000));
     put(payload, 1204, mode(source.settings.returns));
-    put(payload, 1205, is_vlp_16(source) ? std::uint8_t{0x22} : std::uint8_t{0x28});
+    put(payload, 1205, source.sensor.lasers.size() == 16 ? std::uint8_t{0x22} : std::uint8_t{0x28});
   }
 
   static void write(const PacketSource& source, std::span<std::byte> payload, std::size_t sequence, std::size_t laser,
-                    std::span<const Echo> echoes) noexcept {
+                    Echoes echoes) noexcept {
     const std::size_t block = sequence / block_sequences(source) * copies(source);
     const std::size_t point = sequence % block_sequences(source) * source.sensor.lasers.size() + laser;
     const auto put_return = [&](std::size_t to_block, const Echo& echo) {
@@ -72,9 +73,8 @@ struct VelodyneFormat {
   }
 
  private:
-  [[nodiscard]] static bool is_vlp_16(const PacketSource& source) noexcept { return source.sensor.lasers.size() == 16; }
   /// Blocks of the same firings.
-  [[nodiscard]] static std::size_t copies(const PacketSource& source) noexcept { return source.is_dual() ? 2 : 1; }
+  static std::size_t copies(const PacketSource& source) noexcept { return source.is_dual() ? 2 : 1; }
   /// Firing sequences of a block.
   [[nodiscard]] static std::size_t block_sequences(const PacketSource& source) noexcept {
     return block_points / source.sensor.lasers.size();
@@ -86,11 +86,11 @@ struct VelodyneFormat {
 
 }  // namespace detail
 
-/// Sink that writes the echoes of a VLP-16 or VLP-32C, by the number of its lasers, as its data packets of 1206 bytes:
-/// `VelodynePackets packets(velodyne_vlp_16(), {.returns = PacketReturns::last}, std::ref(file))`. After construction,
-/// it allocates nothing. Of dual returns, even blocks hold the last and odd ones the strongest; the second strongest if
-/// the strongest is the last; the same if there is only one. Distances are from the sensor's axis; beyond what 16 bits
-/// hold, they are 0, as without a return. Decoders take firing times from the manual: other rates are decoded wrong.
+/// Sink that writes the echoes of a VLP-16 or VLP-32C, by the number of its lasers, as its data
+/// packets of 1206 bytes: `VelodynePackets packets(velodyne_vlp_16(), {.returns =
+/// PacketReturns::last}, std::ref(file))`. Of dual returns, even blocks hold the last and odd ones
+/// the strongest; the second strongest if that is the last; the same if there is only one.
+/// Distances are from the sensor's axis; 0 beyond 16 bits, as without a return.
 using VelodynePackets = detail::PacketStream<detail::VelodyneFormat>;
 static_assert(EchoSink<VelodynePackets> && ChoosesShots<VelodynePackets>);
 

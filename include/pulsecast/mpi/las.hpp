@@ -4,7 +4,6 @@
 #define PULSECAST_MPI_LAS_HPP
 
 #include <algorithm>
-#include <optional>
 
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/output_file.hpp>
@@ -37,11 +36,10 @@ class MpiLasPiece final : public MpiPiece {
       if (shot.echoes == 0) continue;
       std::optional<io::LasPacket> packet;
       if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
-      encoder_.encode(
-          shot, batch, packet ? &*packet : nullptr, [&](const io::LasEncoder::Record& record, const Vec3& point) {
-            records_.insert(records_.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(size));
-            points_.push_back(point);
-          });
+      encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](const auto& record, const Vec3& point) {
+        records_.insert(records_.end(), record.data(), record.data() + size);
+        points_.push_back(point);
+      });
     }
   }
 
@@ -53,7 +51,7 @@ class MpiLasPiece final : public MpiPiece {
     return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
   }
 
-  /// Finished records, for a position after `number` points. Throws a `FileError` if coordinates do not fit.
+  /// Finished records, after `number` others. Throws a `FileError` if coordinates do not fit.
   [[nodiscard]] std::span<const std::byte> located(const Vec3& first, std::uint64_t number, std::uint64_t packets_at) {
     const std::size_t size = encoder_.layout().record();
     encoder_.choose_offset(first);
@@ -76,7 +74,7 @@ class MpiLasPiece final : public MpiPiece {
   std::optional<io::LasPackets> packets_;
 };
 
-/// Settings that processes can share. Throws a `SettingError` for an intensity that depends on all points.
+/// Settings that processes can share. @throws SettingError for intensities scaled to the maximum
 [[nodiscard]] inline io::LasSettings mpi_las_settings(io::LasSettings settings) {
   if (settings.intensity == io::LasIntensity::amplitude && !settings.intensity_full_scale)
     throw SettingError("LasSettings::intensity_full_scale", 0, "W", "given, with amplitudes and many processes");
@@ -103,11 +101,11 @@ struct MpiLasShare {
 
 }  // namespace detail
 
-/// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError`
-/// for intensities scaled to the maximum amplitude.
+/// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`.
+/// Throws a `SettingError` for intensities scaled to the maximum amplitude.
 class MpiLas final : public MpiOutput {
  public:
-  /// Collective. @throws SettingError for intensities scaled to the maximum amplitude @throws FileError
+  /// Collective. @throws SettingError for such intensities @throws FileError
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
       : MpiOutput(group),
         settings_(detail::mpi_las_settings(std::move(settings))),

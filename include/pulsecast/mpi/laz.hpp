@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <optional>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las.hpp>
@@ -16,8 +15,8 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// LAZ file written by all processes; its bytes equal those of `LazWriter`. The process with the first point of a chunk
-/// compresses it on its threads; others send their part of that chunk. The first process sums up the sizes of chunks.
+/// LAZ file written by all processes, with the bytes of `LazWriter`. The process with the first
+/// point of a chunk compresses it; others send their parts. The first sums up the sizes.
 class MpiLaz final : public MpiOutput {
  public:
   /// `threads` per process, 0 as in `thread_count`. Throws a `SettingError` or `FileError`.
@@ -37,8 +36,7 @@ class MpiLaz final : public MpiOutput {
     return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_);
   }
 
-  /// Keeps the chunks that begin in the piece, for compression here; sends the points before to the owner of their
-  /// chunk.
+  /// Keeps chunks that begin in the piece; sends the points before to the owner of their chunk.
   void put(MpiPiece& piece, const MpiPlace& place) override {
     auto& own = static_cast<detail::MpiLasPiece&>(piece);
     std::uint64_t at = place.starts[0];
@@ -154,11 +152,11 @@ class MpiLaz final : public MpiOutput {
   void add(std::uint64_t at, std::span<const std::byte> records) {
     const std::uint64_t number = at / chunk_points;
     const auto chunk = gathered_.try_emplace(number, Chunk{number, {}, 0}).first;
-    chunk->second.bytes.resize(
-        std::max<std::size_t>(chunk->second.bytes.size(), (at % chunk_points) * record_ + records.size()));
-    std::copy(records.begin(), records.end(),
-              chunk->second.bytes.begin() + static_cast<std::ptrdiff_t>((at % chunk_points) * record_));
-    chunk->second.points += records.size() / record_;
+    auto& [its_number, bytes, points] = chunk->second;
+    const std::size_t begin = (at % chunk_points) * record_;
+    bytes.resize(std::max(bytes.size(), begin + records.size()));
+    std::copy(records.begin(), records.end(), bytes.data() + begin);
+    points += records.size() / record_;
     finish(chunk);
   }
 
@@ -187,7 +185,7 @@ class MpiLaz final : public MpiOutput {
   detail::MpiLasShare share_;
   Chunks gathered_;                                             // by number, from several processes
   std::deque<Chunk> ready_;                                     // to be compressed
-  std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, waiting for their positions
+  std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, without positions
   std::optional<std::uint64_t> all_points_;                     // of the file, known at the end
   bool all_placed_ = false;
 
@@ -196,7 +194,7 @@ class MpiLaz final : public MpiOutput {
   std::uint64_t points_ = 0, end_ = 0;  // points placed; end of the chunks placed [byte]
   Vec3 first_{};
   int chunk_owner_ = 0;                                         // owner of the chunk begun last
-  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // size and owner of chunks without a position
+  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // size, owner; without a position
   std::vector<std::size_t> sizes_of_placed_;                    // [byte]
   bool all_told_ = false;
 };

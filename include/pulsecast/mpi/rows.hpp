@@ -3,23 +3,20 @@
 #ifndef PULSECAST_MPI_ROWS_HPP
 #define PULSECAST_MPI_ROWS_HPP
 
-#include <optional>
-
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once,
-/// as do `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
+/// File of text rows, written by all processes. `Writer` must write the same for batches one by one
+/// as for all at once, as do `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
 template <class Writer, class... Settings>
 class MpiRows final : public MpiOutput {
  public:
   /// Throws a `FileError` if the file cannot be made.
   MpiRows(MpiGroup& group, std::filesystem::path path, Settings... settings)
       : MpiOutput(group),
-        make_(
-            [... settings = std::move(settings)](io::OutputFile rows) { return Writer(std::move(rows), settings...); }),
+        make_([=](io::OutputFile rows) { return Writer(std::move(rows), settings...); }),
         file_(std::move(path)) {
     if (group.first()) whole_.emplace(file_.path());
   }

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <deque>
 #include <functional>
-#include <optional>
 #include <type_traits>
 
 #include <pulsecast/mpi/detail/blocks.hpp>
@@ -19,7 +18,7 @@
 #include <pulsecast/mpi/rows.hpp>
 #include <pulsecast/run.hpp>
 
-/// Survey runs on the processes of an MPI communicator: one or several per machine, each with its own threads.
+/// Survey runs on the processes of an MPI communicator, each with its own threads.
 ///
 ///     MpiSession mpi;
 ///     MpiGroup group;                                   // of MPI_COMM_WORLD
@@ -27,25 +26,18 @@
 ///     run(group, survey, {.threads = 8}, points);      // the same survey on all processes
 ///     points.close();
 ///
-/// The first process hands out blocks of pulses on request, and simulates, too. Results equal those of one process,
-/// byte for byte. All functions are collective: every process calls them. An exception on one process must end all: see
-/// `MpiSession`.
+/// The first process hands out blocks of pulses on request, and simulates, too. Results equal those
+/// of one process, byte for byte. All functions are collective: every process calls them. An
+/// exception on one process must end all: see `MpiSession`.
 namespace PULSECAST_NAMESPACE::mpi {
 
 /// Sink of part of a survey on one process.
-class MpiPartSink {
- public:
-  /// Takes a function of batches, and whether it reads shots without echoes.
-  MpiPartSink(std::function<void(const EchoBatch&)> take, bool empty_shots)
-      : take_(std::move(take)), empty_shots_(empty_shots) {}
+struct MpiPartSink {
+  std::function<void(const EchoBatch&)> take;  ///< takes a batch
+  bool empty_shots;                            ///< true if it reads shots without echoes
 
-  void operator()(const EchoBatch& batch) const { take_(batch); }
-  /// As the concept ChoosesShots describes.
-  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }
-
- private:
-  std::function<void(const EchoBatch&)> take_;
-  bool empty_shots_;
+  void operator()(const EchoBatch& batch) const { take(batch); }
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots; }
 };
 
 /// Simulation of part of a survey, as `run(survey, options, sink)`.
@@ -124,7 +116,7 @@ class MpiRun {
       if (options_.progress) options_.progress({all.slots, slots_.count, all.echoes, elapsed()});
     } else {
       const auto number = message.next<std::uint64_t>();
-      const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& h) { return h.number == number; });
+      const auto held = std::ranges::find(held_, number, &Held::number);
       message.next(held->places.emplace(), outputs_.size());
     }
   }
@@ -132,10 +124,8 @@ class MpiRun {
   /// First process: sends the places of finished blocks as soon as they are known.
   void place() {
     if (!scheduler_) return;
-    const auto may = [this] {
-      return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); });
-    };
-    scheduler_->settle(may, [this](std::uint64_t number, int owner, const std::vector<MpiExtent>& extents) {
+    const auto may = [this] { return std::ranges::all_of(outputs_, &MpiOutput::may_place); };
+    scheduler_->settle(may, [this](std::uint64_t number, int owner, const auto& extents) {
       MpiMessage message;
       message.add(number);
       for (std::size_t k = 0; k < outputs_.size(); ++k) message.add(outputs_[k]->place(extents[k], owner));
@@ -146,7 +136,7 @@ class MpiRun {
   /// Writes a piece at its place, or does other work that is ready; false if there is none.
   bool work() {
     bool any = false;
-    if (!held_.empty() && held_.front().places) {  // blocks of one process are placed in their order
+    if (!held_.empty() && held_.front().places) {  // a process's blocks are placed in order
       Held due = std::move(held_.front());
       held_.pop_front();
       for (std::size_t k = 0; k < outputs_.size(); ++k) {
@@ -159,9 +149,7 @@ class MpiRun {
     return any;
   }
 
-  [[nodiscard]] bool full() const {
-    return std::any_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->full(); });
-  }
+  [[nodiscard]] bool full() const { return std::ranges::any_of(outputs_, &MpiOutput::full); }
 
   void simulate(const MpiBlock& block) {
     send(0, ask, {});  // requested early, so that it is here when this one is done
@@ -174,21 +162,20 @@ class MpiRun {
                     .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
-    const bool empty_shots = std::any_of(held.pieces.begin(), held.pieces.end(),
-                                         [](const auto& piece) { return piece->reads_empty_shots(); });
+    const bool empty_shots = std::ranges::any_of(held.pieces, [](auto& p) { return p->reads_empty_shots(); });
     const auto take = [&](const EchoBatch& batch) {
       for (std::size_t k = 0; k < outputs_.size(); ++k) {
         EchoBatch some = batch;
         if (const auto channel = outputs_[k]->channel) {
           shots.clear();
-          std::copy_if(batch.shots.begin(), batch.shots.end(), std::back_inserter(shots),
-                       [&](const Shot& s) { return s.channel == *channel; });
+          for (const Shot& s : batch.shots)
+            if (s.channel == *channel) shots.push_back(s);
           some.shots = shots;
         }
         (*held.pieces[k])(some);
       }
     };
-    const RunSummary summary = simulate_(part, MpiPartSink(take, empty_shots));
+    const RunSummary summary = simulate_(part, {take, empty_shots});
     own_.add(summary);
     MpiCost cost{summary.slots, summary.echoes, 0, summary.seconds};
     MpiMessage extents;
@@ -199,7 +186,6 @@ class MpiRun {
     send(0, done, std::move(MpiMessage().add(block.number).add(cost).add(extents.rest())));
   }
 
-  /// Summary over all processes.
   [[nodiscard]] RunSummary sum() {
     const std::vector<RunSummary> all = group_.channel().gather(std::exchange(own_, {}));
     for (const RunSummary& one : all) own_.add(one);
@@ -236,9 +222,9 @@ template <class Sink>
 
 }  // namespace detail
 
-/// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve several runs; their
-/// makers close them. `options.progress` and `options.stop` count on the first process only: a stopped run finishes the
-/// blocks begun, so its results are complete up to some slot. `options.threads` and `options.executor` are per process.
+/// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve
+/// several runs; their makers close them. `options.progress` and `options.stop` count on the first
+/// process only: a stopped run is complete up to some slot. Threads and executor are per process.
 inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
   return detail::MpiRun(group, size, options, simulate, outputs).run();
@@ -248,9 +234,9 @@ inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& 
 template <class S>
 concept MpiSink = std::is_base_of_v<MpiOutput, std::remove_reference_t<S>> || EchoSink<S>;
 
-/// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any
-/// `EchoSink`, called on the first process only, with batches in pulse order, whose choice of shots counts for all.
-/// Every process gets the summary of all.
+/// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written
+/// by all, or any `EchoSink`, called on the first process only, with batches in pulse order, whose
+/// choice of shots counts for all. Every process gets the summary of all.
 template <PulseSurvey Survey, MpiSink... Sinks>
 RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;

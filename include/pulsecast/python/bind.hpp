@@ -4,7 +4,6 @@
 #define PULSECAST_PYTHON_BIND_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -12,12 +11,8 @@
 #include <future>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <stop_token>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
@@ -25,8 +20,7 @@
 #include <pulsecast/python/detail/pulse_rows.hpp>
 #include <pulsecast/run.hpp>
 
-/// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs
-/// return NumPy arrays.
+/// Python bindings of surveys: any compile-time pipeline becomes a class with runs to NumPy arrays.
 ///
 ///     PYBIND11_MODULE(own_scanner, m) {
 ///       pulsecast::python::bind_survey<OwnSurvey>(m, "OwnSurvey").def(pybind11::init(&make_own_survey));
@@ -39,9 +33,8 @@ namespace PULSECAST_NAMESPACE::python {}
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Lets Python handle its signals during work without the GIL, which it does on the main thread alone. A handler that
-/// raises, as that of Ctrl-C, stops the work; one that does not, as that of `asyncio` at the first Ctrl-C, is called
-/// meanwhile.
+/// Lets Python handle its signals during work without the GIL, on the main thread alone. A handler
+/// that raises, as that of Ctrl-C, stops the work; another is called meanwhile.
 class InterruptWatch {
  public:
   /// Will ask `stopping` for the end of the work.
@@ -50,8 +43,7 @@ class InterruptWatch {
     on_main_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
   }
 
-  /// Calls `work()` on a thread of its own and handles signals on this one; on any but the main thread, simply calls
-  /// it. Needs the GIL.
+  /// Calls `work()`; on the main thread, on another one, and handles signals. Needs the GIL.
   template <class Work>
   void during(const Work& work) {
     const pybind11::gil_scoped_release free;
@@ -87,9 +79,9 @@ struct RunRequest {
   std::optional<PulseIndex> end{};               ///< one past the last slot; all if empty
   PulseIndex stride = 1;                         ///< step between slots
   pybind11::object callback = pybind11::none();  ///< called with each batch; None to return one
-  pybind11::object progress = pybind11::none();  ///< called with done, total, echoes and seconds; may be None
+  pybind11::object progress = pybind11::none();  ///< called with done, total, echoes, seconds
   PulseIndex every_pulses = 0;                   ///< pulses per batch of the callback; 0: no limit
-  double every_seconds = 0;                      ///< time per batch of the callback; 0: no limit [s]
+  double every_seconds = 0;                      ///< time per batch; 0: no limit [s]
   bool pulses = true;                            ///< true to keep pulses and waveforms
   /// True to keep points by column, or the names of the columns that are kept
   std::variant<bool, std::vector<std::string>> columns = false;
@@ -106,8 +98,8 @@ struct RunRequest {
 
 namespace detail {
 
-/// Data that a run keeps. Throws a `SettingError` for a name that no column has, or a `ValueError` for columns that
-/// need colours or surfaces of a survey without any.
+/// Data that a run keeps. @throws SettingError for an unknown column @throws ValueError for columns
+/// that need colours or surfaces of a survey without any
 [[nodiscard]] inline KeptData kept_by(const RunRequest& request, io::PointSettings points) {
   const std::vector<std::string>& attributes = points.attributes.names();
   const auto* const names = std::get_if<std::vector<std::string>>(&request.columns);
@@ -129,9 +121,9 @@ namespace detail {
 
 }  // namespace detail
 
-/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points. Rethrows Python
-/// exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the result. Throws a `TypeError`
-/// for a callback that is not callable, and as `kept_by`.
+/// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points.
+/// Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`,
+/// with the result. Throws a `TypeError` for a callback that is not callable, and as `kept_by`.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& request, io::PointSettings points, const Run& run) {
   request.validate();
@@ -161,8 +153,8 @@ template <class Run>
   };
   const auto sink = [&](const EchoBatch& batch) {
     rows(batch);
-    const bool is_due = (request.every_pulses > 0 && rows.pulses() >= request.every_pulses) ||
-                        (request.every_seconds > 0 && seconds_since(delivered) >= request.every_seconds);
+    const auto [pulses, seconds] = std::pair(request.every_pulses, request.every_seconds);
+    const bool is_due = (pulses > 0 && rows.pulses() >= pulses) || (seconds > 0 && seconds_since(delivered) >= seconds);
     if (has_callback && is_due) deliver();
   };
   RunSummary summary;
@@ -181,12 +173,14 @@ inline void bind_common(pybind11::module_& m) {
   if (pybind11::hasattr(m, "Batch")) return;
   bind_rows();
   bind_exceptions(m);
-  m.attr("FATES") = pybind11::tuple(pybind11::cast(fate_names));
+  pybind11::list fates;
+  for (std::size_t f = 0; f < fate_count; ++f) fates.append(fate_name(f));
+  m.attr("FATES") = pybind11::tuple(fates);
   bind_batch(m);
 }
 
-/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink, `extras(self)` the
-/// `io::PointSettings` of its points.
+/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink,
+/// `extras(self)` the `io::PointSettings` of its points.
 template <class Class, class Runner, class Extras>
 void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
   namespace py = pybind11;
@@ -224,26 +218,26 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
 
 namespace PULSECAST_NAMESPACE::python {
 
-/// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by
-/// `.def(pybind11::init(...))`; a survey that refers to a scene held by Python needs `pybind11::keep_alive`.
-/// `extras(survey)` gives the `io::PointSettings` of its points, such as `io::points_of(scene)`.
+/// Adds a class of surveys to a module. Constructors are up to the caller, by
+/// `.def(pybind11::init(...))`; a survey that refers to a scene held by Python needs
+/// `pybind11::keep_alive`. `extras(survey)` gives the `io::PointSettings` of its points, such as
+/// `io::points_of(scene)`.
 template <PulseSurvey Survey, class Extras>
-pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name,
-                                                              const Extras& extras) {
+auto bind_survey(pybind11::module_& m, const char* name, const Extras& extras) {
   python::bind_common(m);
   pybind11::class_<Survey, std::shared_ptr<Survey>> bound(
       m, name, "A survey: a pure function from the number of a pulse to its echoes.");
   bound.def("__len__", &Survey::size, "Number of pulse slots.");
   bound.def_property_readonly("subrays", &Survey::subrays, "Number of subrays of a pulse.");
   const auto runner = [](const Survey& survey) {
-    return [&survey](const RunOptions& options, const auto& sink) { return pulsecast::run(survey, options, sink); };
+    return [&survey](const RunOptions& how, const auto& sink) { return pulsecast::run(survey, how, sink); };
   };
   python::bind_run(bound, runner, extras);
   return bound;
 }
 /// As above, of points without colours and attributes.
 template <PulseSurvey Survey>
-pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
+auto bind_survey(pybind11::module_& m, const char* name) {
   return bind_survey<Survey>(m, name, [](const Survey&) { return io::PointSettings{}; });
 }
 

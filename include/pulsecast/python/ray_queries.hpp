@@ -4,19 +4,11 @@
 #define PULSECAST_PYTHON_RAY_QUERIES_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
@@ -35,23 +27,23 @@
 /// A call releases the GIL and uses several threads. Its results do not depend on their number.
 namespace PULSECAST_NAMESPACE::python::detail {
 
-/// Hit of a ray as a row of a NumPy array. A miss has an infinite range, and -1 as part and primitive.
+/// Hit of a ray as a row of a NumPy array. Of a miss, range is infinite, part and primitive are -1.
 struct HitRow {
-  double range = std::numeric_limits<double>::infinity();          ///< as in `RayHit` [m]
-  double normal[3] = {};                                           ///< as in `SurfaceInteraction`; zero for a miss
-  double weights[3] = {not_a_number, not_a_number, not_a_number};  ///< as in `SurfaceInteraction`; NaN without
-  double texture[2] = {not_a_number, not_a_number};                ///< as in `SurfaceInteraction`; NaN without
-  double velocity[3] = {};                                         ///< as in `SurfaceInteraction` [m/s]
-  std::int64_t ray = 0;                                            ///< number of the ray, from 0
-  std::int64_t primitive = -1;                                     ///< as in `RayHit`
-  std::int32_t part = -1;                                          ///< as in `RayHit`
-  std::uint32_t object = 0;                                        ///< as in `SurfaceInteraction`
-  std::uint16_t classification = 0;                                ///< as in `SurfaceInteraction`
-  std::uint8_t front = 0;      ///< 1 if the shape's own normal is towards the ray's origin
-  std::uint8_t spare[5] = {};  ///< zeros outside the array
+  double range = std::numeric_limits<double>::infinity();  ///< as in `RayHit` [m]
+  double normal[3] = {};                                   ///< as in `SurfaceInteraction`; zero for a miss
+  double weights[3] = {nan, nan, nan};                     ///< as in `SurfaceInteraction`; NaN without
+  double texture[2] = {nan, nan};                          ///< as in `SurfaceInteraction`; NaN without
+  double velocity[3] = {};                                 ///< as in `SurfaceInteraction` [m/s]
+  std::int64_t ray = 0;                                    ///< number of the ray, from 0
+  std::int64_t primitive = -1;                             ///< as in `RayHit`
+  std::int32_t part = -1;                                  ///< as in `RayHit`
+  std::uint32_t object = 0;                                ///< as in `SurfaceInteraction`
+  std::uint16_t classification = 0;                        ///< as in `SurfaceInteraction`
+  std::uint8_t front = 0;                                  ///< 1 if the shape's own normal faces the origin
+  std::uint8_t spare[5] = {};                              ///< zeros outside the array
 
  private:
-  static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace PULSECAST_NAMESPACE::python::detail
@@ -65,7 +57,10 @@ using NumberArray = pybind11::array_t<double, pybind11::array::c_style | pybind1
 
 namespace detail {
 
-/// Rays of one call: shape (n, 6), origins and directions, or both of shape (n, 3). Directions may have any length.
+template <class Argument>
+using Numbers = NumberArray;  // of each argument
+
+/// Rays of one call: shape (n, 6), origins and directions of any length, or both of shape (n, 3).
 class RayTable {
  public:
   /// @throws SettingError for arrays of other shapes, or values out of range
@@ -109,8 +104,9 @@ class RayTable {
 
  private:
   void require_shape(const NumberArray& array, const std::string& name) const {
-    if (array.ndim() != 2 || array.shape(1) != static_cast<pybind11::ssize_t>(stride_))
-      throw SettingError("rays " + name + " (columns)", static_cast<double>(array.ndim() == 2 ? array.shape(1) : 0), "",
+    const pybind11::ssize_t columns = array.ndim() == 2 ? array.shape(1) : 0;
+    if (columns != static_cast<pybind11::ssize_t>(stride_))
+      throw SettingError("rays " + name + " (columns)", static_cast<double>(columns), "",
                          std::to_string(stride_) + ": shape (n, " + std::to_string(stride_) + ")");
   }
 
@@ -197,8 +193,8 @@ template <class World>
 }
 
 /// Poses of a sensor in the world: shape (n, 4, 4), homogeneous transforms from the sensor's frame.
-/// @throws SettingError for an array of another shape, or a pose that is no rotation and translation (to 1e-6)
-[[nodiscard]] inline std::vector<Pose<frame::Instrument, frame::World>> sensor_poses(const NumberArray& array) {
+/// @throws SettingError for another shape, or a pose that is no rotation and translation
+[[nodiscard]] inline auto sensor_poses(const NumberArray& array) {
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
     throw SettingError("poses (dimensions)", static_cast<double>(array.ndim()), "", "shape (n, 4, 4)");
   std::vector<Pose<frame::Instrument, frame::World>> poses;
@@ -219,7 +215,7 @@ template <class World>
   return poses;
 }
 
-/// Ranges of equal sensors at many poses: shape (poses, rays), as `pulsecast::run_batch` gives them.
+/// Ranges of equal sensors at many poses: shape (poses, rays), as of `pulsecast::run_batch`.
 template <class World>
 [[nodiscard]] pybind11::array_t<float> run_batch(const World& scene, const NumberArray& poses, const RayTable& rays,
                                                  unsigned threads) {
@@ -233,18 +229,17 @@ template <class World>
   return ranges;
 }
 
-/// Attributes of objects, such as those of hits: an array a name, of the shape of `objects`, NaN where an object has
-/// none.
+/// Attributes of objects: an array a name, of the shape of `objects`, NaN where an object has none.
 /// @throws SettingError as `ObjectAttributes` @throws TypeError for numbers that are not whole
 template <class World>
 [[nodiscard]] pybind11::dict attributes_of(const World& scene, const pybind11::object& given) {
-  using Numbers = pybind11::array_t<std::int64_t, pybind11::array::c_style | pybind11::array::forcecast>;
   const auto numbers = pybind11::array::ensure(given);
-  if (const char kind = numbers ? numbers.dtype().kind() : ' ';
-      kind != 'i' && kind != 'u' && !(numbers && numbers.size() == 0))
+  const char kind = !numbers ? ' ' : numbers.size() == 0 ? 'i' : numbers.dtype().kind();
+  if (kind != 'i' && kind != 'u')
     throw pybind11::type_error("attributes_of objects: expected whole numbers, not " +
                                std::string(pybind11::repr(given)));
-  const Numbers objects(numbers);
+  using pybind11::array;
+  const pybind11::array_t<std::int64_t, array::c_style | array::forcecast> objects(numbers);
   const ObjectAttributes all(scene.parts());
   const std::vector<pybind11::ssize_t> shape(objects.shape(), objects.shape() + objects.ndim());
   std::vector<pybind11::array_t<double>> columns;
@@ -252,9 +247,9 @@ template <class World>
   for (pybind11::ssize_t i = 0; i < objects.size(); ++i) {
     const std::int64_t object = objects.data()[i];
     const bool is_object = object >= 0 && object <= std::numeric_limits<ObjectId>::max();
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t k = 0; k < columns.size(); ++k)
-      columns[k].mutable_data()[i] =
-          is_object ? all.of(static_cast<ObjectId>(object))[k] : std::numeric_limits<double>::quiet_NaN();
+      columns[k].mutable_data()[i] = is_object ? all.of(static_cast<ObjectId>(object))[k] : none;
   }
   pybind11::dict named;
   for (std::size_t k = 0; k < columns.size(); ++k) named[all.names()[k].c_str()] = columns[k];
@@ -263,8 +258,8 @@ template <class World>
 
 }  // namespace detail
 
-/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a class of scenes, as
-/// `Scene` and `MovingScene`.
+/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a
+/// class of scenes, as `Scene` and `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
@@ -272,53 +267,38 @@ Class& bind_ray_queries(Class&& bound) {
   if (!py::detail::get_numpy_internals().get_type_info<detail::HitRow>(false))
     PYBIND11_NUMPY_DTYPE(detail::HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
                          classification, front);
-  const auto add = [&bound](const char* name, auto query, const std::string& returned) {
-    const std::string doc =
-        returned +
-        " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
-        "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with "
-        "the number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
-        "miss.";
+  const auto add = [&bound]<class... First>(const char* name, auto query, const std::string& doc, First... first) {
     bound.def(
         name,
-        [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near, double far,
-                NumberArray time, std::uint64_t seed, unsigned threads) {
-          return query(scene,
-                       detail::RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
-                       threads);
+        [query](const World& scene, const detail::Numbers<First>&... more, NumberArray rays,
+                std::optional<NumberArray> directions, double near, double far, NumberArray time, std::uint64_t seed,
+                unsigned threads) {
+          const detail::RayTable table(std::move(rays), std::move(directions), std::move(time), near, far, seed);
+          return query(scene, more..., table, threads);
         },
-        py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
+        first..., py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
         py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
         py::arg("threads") = 0, doc.c_str());
   };
   const std::string row =
       "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
       "(3) [m/s], ray, primitive, part, object, classification, front.";
-  add(
-      "closest_hits",
-      [](const World& s, const detail::RayTable& r, unsigned t) { return detail::closest_hits(s, r, t); },
-      "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive.");
-  add(
-      "all_hits", [](const World& s, const detail::RayTable& r, unsigned t) { return detail::all_hits(s, r, t); },
-      "Structured array of all hits, by ray and then by range: " + row);
-  add(
-      "occluded", [](const World& s, const detail::RayTable& r, unsigned t) { return detail::occluded(s, r, t); },
-      "Boolean array: True for each ray with a hit.");
-  bound.def(
-      "run_batch",
-      [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions,
-         double near, double far, NumberArray time, std::uint64_t seed, unsigned threads) {
-        return detail::run_batch(
-            scene, poses, detail::RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed),
-            threads);
-      },
-      py::arg("poses"), py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
-      py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
-      py::arg("threads") = 0,
+  const std::string rays =
+      " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
+      "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with "
+      "the number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
+      "miss.";
+  add("closest_hits", &detail::closest_hits<World>,
+      "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive." +
+          rays);
+  add("all_hits", &detail::all_hits<World>, "Structured array of all hits, by ray and then by range: " + row + rays);
+  add("occluded", &detail::occluded<World>, "Boolean array: True for each ray with a hit." + rays);
+  add("run_batch", &detail::run_batch<World>,
       "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a "
       "hit. poses: shape (n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in "
       "the sensor's frame; else as `closest_hits`. seed: with the index in the array, the key of leaves met at "
-      "random.");
+      "random.",
+      py::arg("poses"));
   bound.def("attributes_of", &detail::attributes_of<World>, py::arg("objects"),
             "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
             "objects: whole numbers, as the column `object` of hits.");

@@ -33,15 +33,14 @@ struct MpiPlace {
   int chunk_owner = 0;           ///< process with the begin of the chunk in which the block begins
 };
 
-/// Cost of a block.
 struct MpiCost {
   PulseIndex slots = 0;
   std::uint64_t echoes = 0, bytes = 0;
   double seconds = 0;  ///< computing time [s]
 };
 
-/// Schedule of a run, on the first process: blocks are handed out in order, and finish in any. They shrink towards the
-/// end, so that all processes end together; memory and time of a block are bounded.
+/// Schedule of a run, on the first process: blocks are handed out in order, and finish in any. They
+/// shrink towards the end, so that all end together; memory and time of each are bounded.
 class MpiBlockScheduler {
  public:
   MpiBlockScheduler(PulseIndex slots, unsigned processes) : slots_(slots), processes_(std::max(1U, processes)) {}
@@ -58,10 +57,8 @@ class MpiBlockScheduler {
     return block;
   }
 
-  /// Stops handing out blocks.
   void stop() noexcept { slots_ = handed_out_; }
 
-  /// Records the results and cost of a block.
   void finish(std::uint64_t number, std::vector<MpiExtent> extents, const MpiCost& cost) {
     finished_.emplace(number, std::move(extents));
     cost_.slots += cost.slots;
@@ -70,8 +67,7 @@ class MpiBlockScheduler {
     cost_.seconds += cost.seconds;
   }
 
-  /// Calls place(number, owner, extents) in order for each finished block without an unfinished one before it, as long
-  /// as may() is true.
+  /// Calls place(number, owner, extents) for blocks up to the first unfinished, while may().
   template <class May, class Place>
   void settle(const May& may, const Place& place) {
     while (may()) {
@@ -84,18 +80,18 @@ class MpiBlockScheduler {
 
   [[nodiscard]] const MpiCost& cost() const noexcept { return cost_; }
 
-  static constexpr PulseIndex min_slots = 2048;  ///< minimum number of slots of a block, except the last
+  static constexpr PulseIndex min_slots = 2048;  ///< of a block, except the last
 
  private:
-  static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // upper limits of a block [byte], [s]
+  static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // of a block [byte], [s]
   static constexpr PulseIndex max_slots = PulseIndex{1} << 18, first_slots = PulseIndex{1} << 13;
 
   /// Upper limit of a block's slots; small until a cost is known.
   [[nodiscard]] PulseIndex most() const noexcept {
     if (cost_.slots == 0) return first_slots;
-    const double slots = static_cast<double>(cost_.slots),
-                 by_bytes = max_bytes / std::max(1.0, static_cast<double>(cost_.bytes)) * slots,
-                 by_seconds = max_seconds / std::max(1e-9, cost_.seconds) * slots;
+    const double slots = static_cast<double>(cost_.slots), bytes = static_cast<double>(cost_.bytes);
+    const double by_bytes = max_bytes / std::max(1.0, bytes) * slots;
+    const double by_seconds = max_seconds / std::max(1e-9, cost_.seconds) * slots;
     const double allowed = std::min({by_bytes, by_seconds, static_cast<double>(max_slots)});
     return std::max(min_slots, static_cast<PulseIndex>(allowed));
   }

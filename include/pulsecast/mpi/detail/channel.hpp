@@ -20,9 +20,13 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// MPI environment: the first object of a program, and the last to go. Destruction by an exception aborts all
-/// processes, as the others would wait for ever; messages to the user must come before. Throws a `SettingError` if MPI
-/// lacks MPI_THREAD_SERIALIZED.
+/// Value whose bytes may be sent.
+template <class T>
+concept Plain = std::is_trivially_copyable_v<T>;
+
+/// MPI environment: the first object of a program, and the last to go. Destruction by an exception
+/// aborts all processes, as the others would wait for ever; messages to the user must come before.
+/// Throws a `SettingError` if MPI lacks MPI_THREAD_SERIALIZED.
 class MpiSession {
  public:
   MpiSession() {
@@ -50,11 +54,15 @@ struct MpiTraffic {
   std::uint64_t messages = 0, bytes = 0;
 };
 
-/// Messages among the processes of a communicator, non-blocking, in order between any two processes. Calls may come
-/// from several threads, one at a time. Errors of MPI itself abort the program (its default).
+/// Messages among the processes of a communicator, non-blocking, in order between any two. Calls
+/// may come from several threads, one at a time. Errors of MPI itself abort the program.
 class MpiChannel {
  public:
   using Bytes = std::vector<std::byte>;
+  struct Arrived {
+    int from, kind;
+    Bytes bytes;
+  };
 
   /// Collective over `communicator`, which is duplicated.
   explicit MpiChannel(MPI_Comm communicator) {
@@ -77,12 +85,13 @@ class MpiChannel {
 
   /// Sends bytes, at most 2 GiB, with a tag `kind`. Throws a `SettingError` above that.
   void send(int to, int kind, Bytes bytes) {
-    require_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
+    constexpr int most = std::numeric_limits<int>::max();
+    require_within("MPI message size", static_cast<double>(bytes.size()), 0, most, "bytes");
     if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
     ++traffic_.messages;
     traffic_.bytes += bytes.size();
-    Sent& sent = sent_.emplace_back(Sent{std::move(bytes), MPI_REQUEST_NULL});
-    MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, kind, communicator_, &sent.request);
+    auto& [own, request] = sent_.emplace_back(Sent{std::move(bytes), MPI_REQUEST_NULL});
+    MPI_Isend(own.data(), static_cast<int>(own.size()), MPI_BYTE, to, kind, communicator_, &request);
   }
 
   /// Calls handle(from, kind, bytes) for every message that has arrived; true if there was any.
@@ -106,8 +115,9 @@ class MpiChannel {
       if (there == 0) return any;
       MPI_Get_count(&status, MPI_BYTE, &size);
       Bytes bytes(static_cast<std::size_t>(size));
-      MPI_Recv(bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, communicator_, MPI_STATUS_IGNORE);
-      handle(status.MPI_SOURCE, status.MPI_TAG, std::move(bytes));
+      const int from = status.MPI_SOURCE, kind = status.MPI_TAG;
+      MPI_Recv(bytes.data(), size, MPI_BYTE, from, kind, communicator_, MPI_STATUS_IGNORE);
+      handle(from, kind, std::move(bytes));
     }
   }
 
@@ -123,8 +133,7 @@ class MpiChannel {
   }
 
   /// Values of all processes by rank, on the first; empty on the others.
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value>
+  template <Plain Value>
   [[nodiscard]] std::vector<Value> gather(const Value& own) const {
     std::vector<Value> all(first() ? static_cast<std::size_t>(size_) : 0);
     constexpr int size = sizeof(Value);
@@ -140,8 +149,7 @@ class MpiChannel {
     MPI_Bcast(text.data(), static_cast<int>(size), MPI_BYTE, 0, communicator_);
     return text;
   }
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value>
+  template <Plain Value>
   [[nodiscard]] Value from_first(Value value) const {
     MPI_Bcast(&value, sizeof value, MPI_BYTE, 0, communicator_);
     return value;
@@ -151,10 +159,6 @@ class MpiChannel {
   struct Sent {
     Bytes bytes;
     MPI_Request request;
-  };
-  struct Arrived {
-    int from, kind;
-    Bytes bytes;
   };
 
   MPI_Comm communicator_ = MPI_COMM_NULL;
@@ -170,18 +174,19 @@ class MpiMessage {
   MpiMessage() = default;
   explicit MpiMessage(MpiChannel::Bytes bytes) : bytes_(std::move(bytes)) {}
 
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value> MpiMessage& add(const Value& value) { return add(std::span(&value, 1)); }
-  template <class Value, std::size_t Extent>
-  requires std::is_trivially_copyable_v<Value> MpiMessage& add(std::span<Value, Extent> values) {
+  template <Plain Value>
+  MpiMessage& add(const Value& value) {
+    return add(std::span(&value, 1));
+  }
+  template <Plain Value, std::size_t Extent>
+  MpiMessage& add(std::span<Value, Extent> values) {
     const auto added = std::as_bytes(values);
     bytes_.insert(bytes_.end(), added.begin(), added.end());
     return *this;
   }
   [[nodiscard]] MpiChannel::Bytes take() && { return std::move(bytes_); }
 
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value>
+  template <Plain Value>
   [[nodiscard]] Value next() {
     Value value{};
     PULSECAST_ASSERT(at_ + sizeof value <= bytes_.size());
@@ -189,8 +194,7 @@ class MpiMessage {
     at_ += sizeof value;
     return value;
   }
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value>
+  template <Plain Value>
   void next(std::vector<Value>& values, std::size_t count) {
     values.resize(count);
     PULSECAST_ASSERT(at_ + count * sizeof(Value) <= bytes_.size());
@@ -198,8 +202,7 @@ class MpiMessage {
     at_ += count * sizeof(Value);
   }
   /// Removes and returns the value appended last.
-  template <class Value>
-  requires std::is_trivially_copyable_v<Value>
+  template <Plain Value>
   [[nodiscard]] Value last() {
     Value value{};
     PULSECAST_ASSERT(at_ + sizeof value <= bytes_.size());

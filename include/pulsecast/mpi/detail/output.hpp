@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <functional>
 #include <map>
-#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
@@ -21,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first
-/// write. Throws a `FileError` that names the final path.
+/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges.
+/// Opened at the first write. Throws a `FileError` that names the final path.
 class MpiFile {
  public:
   explicit MpiFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -57,9 +56,9 @@ class MpiFile {
  private:
   [[noreturn]] void fail(std::size_t bytes) const {
     throw FileError(path_.string(), "",
-                    "cannot be written by all processes: " + std::generic_category().message(errno) +
-                        "; expected room for " + std::to_string(bytes) +
-                        " more bytes in a folder that all machines share");
+                    text::joined({"cannot be written by all processes: ", std::generic_category().message(errno),
+                                  "; expected room for ", std::to_string(bytes),
+                                  " more bytes in a folder that all machines share"}));
   }
 
   std::filesystem::path path_;
@@ -68,7 +67,7 @@ class MpiFile {
 
 class MpiOutput;
 
-/// Processes of a communicator that run surveys together, and their shared outputs. Construction and destruction are
+/// Processes of a communicator, and their shared outputs. Construction and destruction are
 /// collective.
 class MpiGroup {
  public:
@@ -79,14 +78,13 @@ class MpiGroup {
   [[nodiscard]] int size() const noexcept { return channel_.size(); }
   [[nodiscard]] bool first() const noexcept { return channel_.first(); }
 
-  /// Begins a run, whose messages go to `handler`. Other processes may be in the next run already: their messages are
-  /// kept for it.
+  /// Begins a run, whose messages go to `handler`. Those of a later run are kept for it.
   using Handler = void (*)(void* run, int from, int kind, MpiMessage message);
   void begin(void* run, Handler handler) {
     run_ = run;
     handler_ = handler;
     parity_ = 1 - parity_;
-    for (Early& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
+    for (auto& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
   }
   void end() noexcept { handler_ = nullptr; }
   /// Sends a message to the same run on another process; `kind` is from 0 to 7.
@@ -97,7 +95,6 @@ class MpiGroup {
   /// Handles all messages that have arrived; true if there was any.
   bool serve();
 
-  /// Yields the processor for a moment when idle.
   static void pause() noexcept { ::usleep(50); }
 
   /// Sends a message to the same output on any process.
@@ -118,17 +115,13 @@ class MpiGroup {
     handler_(run_, from, (kind - 2) % 8, MpiMessage(std::move(bytes)));
   }
 
-  struct Early {
-    int from, kind;
-    MpiChannel::Bytes bytes;
-  };
   MpiChannel channel_;
   std::map<std::uint32_t, MpiOutput*> outputs_;
   std::uint32_t next_ = 0;
   void* run_ = nullptr;
   Handler handler_ = nullptr;
-  int parity_ = 0;  // of the number of runs so far
-  std::vector<Early> early_;
+  int parity_ = 0;                          // of the number of runs so far
+  std::vector<MpiChannel::Arrived> early_;  // of the next run
 };
 
 /// Results of one block for one output, under construction.
@@ -177,9 +170,9 @@ class MpiWrittenPiece final : public MpiPiece {
   std::optional<Writer> writer_;
 };
 
-/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and writes each at the
-/// place that the first process assigns once all sizes before are known. Construction and `close()` are collective, in
-/// the same order.
+/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks,
+/// and writes each at the place that the first process assigns once all sizes before are known.
+/// Construction and `close()` are collective, in the same order.
 class MpiOutput {
  public:
   explicit MpiOutput(MpiGroup& group) : group_(group), number_(group.enter(*this)) {}
@@ -200,7 +193,7 @@ class MpiOutput {
   [[nodiscard]] virtual std::unique_ptr<MpiPiece> piece() = 0;   ///< new, empty piece
   virtual void put(MpiPiece& piece, const MpiPlace& place) = 0;  ///< writes a piece at its place
 
-  /// First process, in the order of blocks: place of a piece. Called only while `may_place()` is true.
+  /// First process, in the order of blocks: place of a piece, while `may_place()` is true.
   [[nodiscard]] virtual MpiPlace place(const MpiExtent& extent, int owner) = 0;
   [[nodiscard]] virtual bool may_place() const noexcept { return true; }
 

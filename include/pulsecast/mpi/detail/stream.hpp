@@ -13,7 +13,7 @@
 
 namespace PULSECAST_NAMESPACE::mpi {
 
-/// Writes batches in their memory layout, for `for_each_batch` in another process of the same program.
+/// Writes batches in their memory layout, for `for_each_batch` in another process.
 class MpiBatchWriter {
  public:
   /// `empty_shots`: as `reads_empty_shots()` of the sink.
@@ -60,8 +60,8 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   }
 }
 
-/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time. For a
-/// compressed stream: one process must make it, while all simulate and format text.
+/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a
+/// time. For a compressed stream: one process must make it, while all simulate and format text.
 template <class Writer>
 class MpiStream final : public MpiOutput {
  public:

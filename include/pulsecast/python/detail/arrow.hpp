@@ -4,11 +4,8 @@
 #define PULSECAST_PYTHON_DETAIL_ARROW_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <new>
 #include <string>
@@ -17,9 +14,8 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-// The structures of Arrow, under the guards that all its users share.
-// Source: Apache Arrow, The Arrow C Data Interface, Structure definitions; The Arrow C Stream Interface, Structure
-// definition.
+// Structures under the guards that all users share. Source: Apache Arrow, The Arrow C Data
+// Interface, Structure definitions; The Arrow C Stream Interface, Structure definition.
 extern "C" {
 
 #ifndef ARROW_C_DATA_INTERFACE
@@ -70,11 +66,10 @@ struct ArrowArrayStream {
 #endif
 }
 
-// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is shared without copies.
+/// Columns of a table that Arrow takes: names, formats, and NumPy arrays, whose memory is shared.
 class ArrowTable {
  public:
   /// @throws ValueError for an array of another length, type or layout than Arrow takes
@@ -95,9 +90,9 @@ class ArrowTable {
     auto held = std::make_unique<Schemas>();
     held->children.resize(columns_.size());
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      auto texts = std::make_unique<std::pair<std::string, std::string>>(columns_[k].format, columns_[k].name);
-      held->children[k] = {
-          texts->first.c_str(), texts->second.c_str(), nullptr, 0, 0, nullptr, nullptr, &release_column, texts.get()};
+      auto texts = std::make_unique<Texts>(columns_[k].format, columns_[k].name);
+      const auto& [format, name] = *texts;
+      held->children[k] = {format.c_str(), name.c_str(), nullptr, 0, 0, nullptr, nullptr, &release_column, texts.get()};
       (void)texts.release();
       held->pointers.push_back(&held->children[k]);
     }
@@ -129,6 +124,8 @@ class ArrowTable {
     pybind11::array array;
   };
 
+  using Texts = std::pair<std::string, std::string>;
+
   /// Buffers of a column, and the array that they are the memory of.
   struct Buffers {
     const void* all[2];  ///< validity: none, as no number is null; numbers
@@ -159,7 +156,7 @@ class ArrowTable {
     table->release = nullptr;
   }
   static void release_column(ArrowSchema* schema) noexcept {
-    delete static_cast<std::pair<std::string, std::string>*>(schema->private_data);
+    delete static_cast<Texts*>(schema->private_data);
     schema->release = nullptr;
   }
   /// May be called by any thread.
@@ -173,20 +170,12 @@ class ArrowTable {
     array->release = nullptr;
   }
 
-  /// Format string of a number type. Source: Apache Arrow, The Arrow C Data Interface, Data type description.
+  /// Format of a number type. Source: The Arrow C Data Interface, Data type description.
   [[nodiscard]] static std::string format_of(const std::string& name, const pybind11::dtype& type) {
     const std::string numpy = type.byteorder() == '>' ? "" : type.kind() + std::to_string(type.itemsize());
-    for (const auto& [known, format] : {std::pair{"i1", "c"},
-                                        {"u1", "C"},
-                                        {"i2", "s"},
-                                        {"u2", "S"},
-                                        {"i4", "i"},
-                                        {"u4", "I"},
-                                        {"i8", "l"},
-                                        {"u8", "L"},
-                                        {"f4", "f"},
-                                        {"f8", "g"}})
-      if (numpy == known) return format;
+    constexpr std::string_view formats = "i1c u1C i2s u2S i4i u4I i8l u8L f4f f8g";
+    for (std::size_t at = 0; at < formats.size(); at += 4)
+      if (numpy == formats.substr(at, 2)) return std::string(formats.substr(at + 2, 1));
     throw pybind11::value_error("column '" + name + "': expected numbers of this machine, not " +
                                 std::string(pybind11::repr(type)));
   }

@@ -4,33 +4,19 @@
 #define PULSECAST_PYTHON_DETAIL_BATCH_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
+#include <pulsecast/io/misses.hpp>
 #include <pulsecast/python/detail/arrow.hpp>
 #include <pulsecast/python/detail/point_arrays.hpp>
 #include <pulsecast/python/detail/pulse_rows.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/run.hpp>
 
-// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
-
-/// Names of the values of `Fate`, in order.
-inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
-                                                                "out_of_range", "below_threshold", "absorbed"};
 
 /// Results of a run, for Python.
 struct Batch {
@@ -38,9 +24,9 @@ struct Batch {
   pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
   pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
   double sample_interval = 0;          ///< between samples [s]
-  pybind11::dict columns{};  ///< arrays by name, of a number an echo; those of the rows only if `by_column` is set
-  bool by_column = false;    ///< true if points are kept by column, and not as rows
-  RunSummary summary{};      ///< of the whole run; empty in a batch for a callback
+  pybind11::dict columns{};            ///< arrays by name; those of rows only if `by_column`
+  bool by_column = false;              ///< true if points are kept by column, and not as rows
+  RunSummary summary{};                ///< of the whole run; empty in a batch for a callback
 };
 
 /// Kinds of data that a `RowSink` keeps.
@@ -66,9 +52,9 @@ class RowSink {
  public:
   /// @throws SettingError for two columns of a name, or a column of an attribute that no object has
   explicit RowSink(KeptData kept) : keeps_pulses_(validated(kept).pulses) {
-    if (!kept.rows.fields.empty()) points_.emplace(io::PointEncoder(std::move(kept.rows), kept.points));
-    if (!kept.columns.fields.empty())
-      columns_.emplace(io::PointEncoder(std::move(kept.columns), std::move(kept.points)));
+    auto& [pulses, rows, columns, points] = kept;
+    if (!rows.fields.empty()) points_.emplace(io::PointEncoder(std::move(rows), points));
+    if (!columns.fields.empty()) columns_.emplace(io::PointEncoder(std::move(columns), std::move(points)));
   }
 
   void operator()(const EchoBatch& batch) {
@@ -88,7 +74,7 @@ class RowSink {
     }
   }
 
-  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< pulses sent since the last `take`
+  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< since `take`
   /// Data so far, as NumPy arrays; leaves this empty. Requires the GIL.
   [[nodiscard]] Batch take() {
     pulse_count_ = point_count_ = 0;
@@ -115,14 +101,13 @@ class RowSink {
   if (row < 0 || row >= pulses.size())
     throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
   const PulseRow& p = pulses.data()[row];
-  return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
+  const py::slice samples(p.first_sample, p.first_sample + p.samples, 1);
+  return self.attr("waveforms")[samples].cast<py::array_t<float>>();
 }
 
-/// State of a `Batch` for `pickle`.
 [[nodiscard]] inline pybind11::tuple state_of(const Batch& b) {
-  return pybind11::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
-                              pybind11::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary), b.columns,
-                              b.by_column);
+  const pybind11::bytes summary(reinterpret_cast<const char*>(&b.summary), sizeof b.summary);
+  return pybind11::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval, summary, b.columns, b.by_column);
 }
 
 /// Inverse of `state_of`. Throws a `ValueError` for the state of another version.
@@ -154,15 +139,14 @@ class RowSink {
   return all;
 }
 
-/// Number of points.
 [[nodiscard]] inline std::size_t point_count(const Batch& b) {
   if (!b.by_column) return static_cast<std::size_t>(b.points.size());
   for (const auto& [name, column] : b.columns) return pybind11::len(column);
   return 0;
 }
 
-/// Capsule of the columns, as `__arrow_c_stream__` returns it. A requested schema is ignored. Throws a `ValueError` if
-/// points are kept as rows, which Arrow cannot share without copies.
+/// Capsule of the columns, as `__arrow_c_stream__` returns it. A requested schema is ignored.
+/// Throws a `ValueError` if points are kept as rows, which Arrow cannot share without copies.
 [[nodiscard]] inline pybind11::object arrow_stream_of(const Batch& b, const pybind11::object& requested_schema) {
   if (!requested_schema.is_none() && PyCapsule_IsValid(requested_schema.ptr(), "arrow_schema") == 0)
     throw pybind11::type_error("__arrow_c_stream__ requested_schema: expected a capsule 'arrow_schema', not " +
@@ -185,21 +169,24 @@ class RowSink {
 [[nodiscard]] inline std::string described(std::span<const io::PointColumn> columns) {
   std::string all;
   for (const io::PointColumn& column : columns) {
-    const std::string_view unit = column.unit;
-    all +=
-        text::joined({all.empty() ? "" : ", ", column.name, unit.empty() ? "" : " [", unit, unit.empty() ? "" : "]"});
+    all += text::joined({all.empty() ? "" : ", ", column.name});
+    if (!column.unit.empty()) all += text::joined({" [", column.unit, "]"});
   }
   return all;
 }
 
-/// Adds the class `Batch` to a module.
+[[nodiscard]] inline pybind11::str fate_name(std::size_t fate) {
+  return std::string(io::name_of(static_cast<Fate>(fate)));
+}
+
 inline void bind_batch(pybind11::module_& m) {
   namespace py = pybind11;
   const auto fates = [](const Batch& b) {
     py::dict all;
-    for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = b.summary.fates[f];
+    for (std::size_t f = 0; f < fate_count; ++f) all[fate_name(f)] = b.summary.fates[f];
     return all;
   };
+  const auto summary = [](auto member) { return [member](const Batch& b) { return b.summary.*member; }; };
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
       .def_property_readonly(
           "points", &points_of,
@@ -225,14 +212,10 @@ inline void bind_batch(pybind11::module_& m) {
       .def_readonly("waveforms", &Batch::waveforms, "Samples of all pulses, concatenated, shape (n,) [W].")
       .def_readonly("sample_interval", &Batch::sample_interval,
                     "Sample spacing of the waveforms [s]; 0 without waveforms.")
-      .def_property_readonly(
-          "slots", [](const Batch& b) { return b.summary.slots; }, "Pulse slots done.")
-      .def_property_readonly(
-          "rays", [](const Batch& b) { return b.summary.rays; }, "Subrays traced.")
-      .def_property_readonly(
-          "seconds", [](const Batch& b) { return b.summary.seconds; }, "Elapsed time of the run [s].")
-      .def_property_readonly(
-          "complete", [](const Batch& b) { return b.summary.complete; }, "False if the run was stopped.")
+      .def_property_readonly("slots", summary(&RunSummary::slots), "Pulse slots done.")
+      .def_property_readonly("rays", summary(&RunSummary::rays), "Subrays traced.")
+      .def_property_readonly("seconds", summary(&RunSummary::seconds), "Elapsed time of the run [s].")
+      .def_property_readonly("complete", summary(&RunSummary::complete), "False if the run was stopped.")
       .def_property_readonly("fates", fates, "Pulse slots by fate.")
       .def_property_readonly(
           "energy", [](const Batch& b) { return dict_of(b.summary.energy); },

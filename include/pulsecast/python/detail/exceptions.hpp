@@ -6,12 +6,9 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
-#include <string>
-#include <utility>
 
 #include <pulsecast/base/error.hpp>
 
-// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
@@ -25,7 +22,6 @@ namespace [[gnu::visibility("hidden")]] python {
   return made;
 }
 
-/// Raises a Python exception with attributes.
 template <class... Values>
 void raise(pybind11::handle type, const std::string& message, std::pair<const char*, Values>... attributes) {
   const pybind11::object exception = type(message);

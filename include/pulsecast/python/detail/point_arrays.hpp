@@ -4,20 +4,13 @@
 #define PULSECAST_PYTHON_DETAIL_POINT_ARRAYS_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <array>
-#include <cstddef>
 #include <cstring>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/io/point_records.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 
-// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
@@ -28,13 +21,11 @@ namespace [[gnu::visibility("hidden")]] python {
   return layout;
 }
 
-/// NumPy's type of a number.
 [[nodiscard]] inline pybind11::dtype dtype_of(io::NumberType type) {
   constexpr std::array names{"", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8", "i8", "u8"};
   return pybind11::dtype(names[static_cast<std::size_t>(type)]);
 }
 
-/// NumPy's type of a record.
 [[nodiscard]] inline pybind11::dtype dtype_of(const io::PointLayout& layout) {
   pybind11::list names, formats, offsets;
   for (const io::PointField& field : layout.fields) {

@@ -4,16 +4,12 @@
 #define PULSECAST_PYTHON_DETAIL_PULSE_ROWS_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
-#include <cstdint>
 
 #include <pulsecast/base/namespace.hpp>
 
 namespace PULSECAST_NAMESPACE::python {
 
-/// Pulse sent, as a row of a NumPy array. Numbers for calculation are signed, as NumPy makes fractions of unsigned
-/// ones.
+/// Pulse sent, as a row of a NumPy array. Signed, as NumPy makes fractions of unsigned numbers.
 struct PulseRow {
   std::int64_t pulse;                            ///< number of the slot
   double time;                                   ///< departure, since the survey's start [s]
@@ -29,20 +25,13 @@ struct PulseRow {
   std::uint8_t spare[3]{};                       ///< zeros outside the array
 };
 
-}  // namespace PULSECAST_NAMESPACE::python
-
-// hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace PULSECAST_NAMESPACE {
-namespace [[gnu::visibility("hidden")]] python {
-
 /// Declares the rows to NumPy, in one registry for all modules.
-inline void bind_rows() {
+[[gnu::visibility("hidden")]] inline void bind_rows() {
   if (pybind11::detail::get_numpy_internals().get_type_info<PulseRow>(false)) return;
   PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle,
                        waveform_start, first_sample, first_point, samples, points, leg, channel, fate);
 }
 
-}  // namespace gnu::visibility("hidden")]]python
-}  // namespace PULSECAST_NAMESPACE
+}  // namespace PULSECAST_NAMESPACE::python
 
 #endif

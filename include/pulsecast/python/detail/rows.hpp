@@ -4,10 +4,8 @@
 #define PULSECAST_PYTHON_DETAIL_ROWS_HPP
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -17,15 +15,16 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Bytes of rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array
-/// never takes twice its memory.
+/// Bytes of rows that become a NumPy array in place. Growth avoids copies as far as the C library
+/// can: a large array never takes twice its memory.
 class RawRows {
  public:
   explicit RawRows(std::size_t row_size) noexcept : row_size_(row_size) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// Room for `count` further rows, in sequence.
   [[nodiscard]] std::byte* append(std::size_t count) {
@@ -65,21 +64,12 @@ template <class Row>
 requires std::is_trivially_copyable_v<Row>
 class Rows {
  public:
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-
-  void push_back(const Row& row) {
-    std::memcpy(rows_.append(1), &row, sizeof row);
-    ++size_;
-  }
-
-  [[nodiscard]] pybind11::array_t<Row> take() {
-    size_ = 0;
-    return rows_.take(pybind11::dtype::of<Row>());
-  }
+  [[nodiscard]] std::size_t size() const noexcept { return rows_.size(); }
+  void push_back(const Row& row) { std::memcpy(rows_.append(1), &row, sizeof row); }
+  [[nodiscard]] pybind11::array_t<Row> take() { return rows_.take(pybind11::dtype::of<Row>()); }
 
  private:
   RawRows rows_{sizeof(Row)};
-  std::size_t size_ = 0;
 };
 
 }  // namespace gnu::visibility("hidden")]]python

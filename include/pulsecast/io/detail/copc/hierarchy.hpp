@@ -13,7 +13,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Entry of the hierarchy: a node, or a page (`points` -1). Source: https://copc.io, COPC 1.0, hierarchy VLR.
+/// Entry: a node, or a page (`points` -1). Source: copc.io, COPC 1.0, hierarchy VLR.
 struct CopcEntry {
   CopcKey key{};
   std::uint64_t offset = 0;  ///< offset of its chunk or page in the file, 0 without points [byte]
@@ -23,13 +23,13 @@ struct CopcEntry {
 
 inline constexpr std::size_t copc_entry_size = 32;  ///< [byte]
 
-/// Hierarchy in pages. A page lists nodes of four levels and small subtrees below; others have pages after it.
+/// Hierarchy in pages: nodes of four levels and small subtrees below; others have pages after it.
 class CopcHierarchy {
  public:
   /// `page_nodes` of a subtree that has no page of its own; at least one entry.
   CopcHierarchy(std::vector<CopcEntry> entries, std::size_t page_nodes)
       : entries_(std::move(entries)), page_nodes_(page_nodes) {
-    std::ranges::sort(entries_, [](const CopcEntry& a, const CopcEntry& b) { return copc_before(a.key, b.key); });
+    std::ranges::sort(entries_, copc_before, &CopcEntry::key);
     ranges_.push_back({0, entries_.size()});
     for (std::size_t i = 0; i < ranges_.size(); ++i) list(ranges_[i]);  // ranges_ grows meanwhile
   }
@@ -74,17 +74,14 @@ class CopcHierarchy {
     while (range.begin < range.end) {
       const CopcEntry& entry = entries_[range.begin];
       std::size_t end = range.begin + 1;
-      if (entry.key.level == below) {
-        while (end < range.end && entries_[end].key.level > below) ++end;  // up to the next of its level
-        if (end - range.begin > page_nodes_) {
-          page.push_back({entry.key, ranges_.size(), 0, -1});  // the number of its page, for now
-          ranges_.push_back({range.begin, end});
-          range.begin = end;
-          continue;
-        }
+      if (entry.key.level == below)
+        while (end < range.end && entries_[end].key.level > below) ++end;  // to the next
+      if (entry.key.level == below && end - range.begin > page_nodes_) {
+        page.push_back({entry.key, ranges_.size(), 0, -1});  // the number of its page, for now
+        ranges_.push_back({range.begin, end});
+      } else {
+        page.insert(page.end(), &entry, &entry + (end - range.begin));
       }
-      page.insert(page.end(), entries_.begin() + static_cast<std::ptrdiff_t>(range.begin),
-                  entries_.begin() + static_cast<std::ptrdiff_t>(end));
       range.begin = end;
     }
     pages_.push_back(std::move(page));

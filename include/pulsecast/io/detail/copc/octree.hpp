@@ -10,8 +10,8 @@
 
 #include <pulsecast/base/namespace.hpp>
 
-/// Octree of a COPC file, in whole steps of the stored coordinates. Sides are powers of two; borders are half a step
-/// below whole steps, so no point is on one. Source of the keys: https://copc.io, COPC 1.0, hierarchy VLR.
+/// Octree of a COPC file, in steps of the stored coordinates. Sides are powers of two; borders are
+/// half a step below whole steps, so no point is on one. Source: copc.io, COPC 1.0, hierarchy VLR.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Key of a point, and its number. In the order of keys, and of numbers among equal keys.
@@ -25,16 +25,15 @@ struct CopcRank {
 /// Place in the space of stored coordinates, shifted by 2^31: from 0 to 2^32 - 1 for points.
 using CopcPlace = std::array<std::int64_t, 3>;
 
-/// Place of a point record.
 [[nodiscard]] inline CopcPlace copc_place(const std::byte* record) noexcept {
   std::array<std::int32_t, 3> stored{};
   std::memcpy(stored.data(), record, sizeof stored);
   CopcPlace place{};
-  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = std::int64_t{stored[axis]} + (std::int64_t{1} << 31);
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = stored[axis] + (std::int64_t{1} << 31);
   return place;
 }
 
-inline constexpr unsigned copc_grid_bits = 7;  ///< a node has 128 cells an axis, of at most a point each but in leaves
+inline constexpr unsigned copc_grid_bits = 7;     ///< a node has 128 cells an axis
 inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Morton number
 
 /// Spreads the lowest 21 bits of a number: bit i becomes bit 3i.
@@ -59,21 +58,23 @@ inline constexpr unsigned copc_morton_bits = 21;  ///< bits of an axis in a Mort
 
 /// Morton number of a place, of up to 21 bits an axis.
 [[nodiscard]] constexpr std::uint64_t copc_morton(const CopcPlace& p) noexcept {
-  return copc_spread(static_cast<std::uint64_t>(p[0])) | copc_spread(static_cast<std::uint64_t>(p[1])) << 1 |
-         copc_spread(static_cast<std::uint64_t>(p[2])) << 2;
+  std::uint64_t morton = 0;
+  for (unsigned k = 0; k < 3; ++k) morton |= copc_spread(static_cast<std::uint64_t>(p[k])) << k;
+  return morton;
 }
 
-/// Place of a Morton number.
 [[nodiscard]] constexpr CopcPlace copc_place_of(std::uint64_t morton) noexcept {
-  return {static_cast<std::int64_t>(copc_compact(morton)), static_cast<std::int64_t>(copc_compact(morton >> 1)),
-          static_cast<std::int64_t>(copc_compact(morton >> 2))};
+  CopcPlace place{};
+  for (unsigned k = 0; k < 3; ++k) place[k] = static_cast<std::int64_t>(copc_compact(morton >> k));
+  return place;
 }
 
 /// Squared distance of a place from the centre of its aligned cube of side 2^bits, in half steps.
 [[nodiscard]] constexpr std::uint64_t copc_off_centre(const CopcPlace& place, unsigned bits) noexcept {
   std::uint64_t sum = 0;
+  const std::int64_t side = std::int64_t{1} << bits;
   for (const std::int64_t p : place) {
-    const std::int64_t within = p & ((std::int64_t{1} << bits) - 1), off = 2 * within + 1 - (std::int64_t{1} << bits);
+    const std::int64_t off = 2 * (p & (side - 1)) + 1 - side;
     sum += static_cast<std::uint64_t>(off * off);
   }
   return sum;
@@ -92,25 +93,23 @@ struct CopcKey {
   }
   /// Child of a Morton number from 0 to 7.
   [[nodiscard]] constexpr CopcKey child(unsigned i) const noexcept {
-    return {level + 1, 2 * x + static_cast<std::int32_t>(i & 1U), 2 * y + static_cast<std::int32_t>(i >> 1 & 1U),
-            2 * z + static_cast<std::int32_t>(i >> 2 & 1U)};
+    const auto n = static_cast<std::int32_t>(i);
+    return {level + 1, 2 * x + (n & 1), 2 * y + (n >> 1 & 1), 2 * z + (n >> 2 & 1)};
   }
 };
 
-/// True if a node comes before another from the root down: parents before children, these by Morton numbers.
+/// Order of nodes: parents before children, these by Morton numbers.
 [[nodiscard]] constexpr bool copc_before(const CopcKey& a, const CopcKey& b) noexcept {
   const std::int32_t level = a.level < b.level ? a.level : b.level;
   const CopcKey p = a.ancestor(level), q = b.ancestor(level);
-  const std::array<std::uint32_t, 3> other{static_cast<std::uint32_t>(p.z ^ q.z), static_cast<std::uint32_t>(p.y ^ q.y),
-                                           static_cast<std::uint32_t>(p.x ^ q.x)};
+  const std::array of_a{p.z, p.y, p.x}, of_b{q.z, q.y, q.x};
+  const auto other = [&](std::size_t i) { return std::bit_width(static_cast<std::uint32_t>(of_a[i] ^ of_b[i])); };
   std::size_t first = 0;  // axis of the highest bit that differs
   for (std::size_t i = 1; i < 3; ++i)
-    if (std::bit_width(other[i]) > std::bit_width(other[first])) first = i;
-  if (other[first] == 0) return a.level < b.level;
-  return first == 0 ? p.z < q.z : first == 1 ? p.y < q.y : p.x < q.x;
+    if (other(i) > other(first)) first = i;
+  return other(first) == 0 ? a.level < b.level : of_a[first] < of_b[first];
 }
 
-/// Cube of the root.
 struct CopcRoot {
   CopcPlace corner{};  ///< least place within
   unsigned bits = 0;   ///< its side is 2^bits steps

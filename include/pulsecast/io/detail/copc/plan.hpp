@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
-#include <vector>
 
 #include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/detail/copc/runs.hpp>
@@ -15,11 +13,11 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Sizes that shape the octree and the work on it.
 struct CopcSizes {
-  std::size_t leaf_points = 50'000;               ///< points of a leaf, unless it is so small that it is not divided
+  std::size_t leaf_points = 50'000;               ///< points of a leaf, unless it is too small
   std::size_t block_points = 1U << 19;            ///< points of a subtree that is built in memory
   std::size_t run_bytes = std::size_t{64} << 20;  ///< size of a run [byte]
   std::size_t most_cells = 1U << 20;              ///< cells of all runs
-  std::size_t page_nodes = 64;                    ///< nodes of a subtree that is listed in the page above
+  std::size_t page_nodes = 64;                    ///< nodes of a subtree listed in the page above
 };
 
 /// Subtree that is built in memory: its root, and its points in the runs.
@@ -55,16 +53,16 @@ class CopcPlan {
 
  private:
   struct Cell {
-    std::uint64_t key = 0, path = 0;  // Morton numbers: in all space, and from the corner of what is divided
+    std::uint64_t key = 0, path = 0;  // Morton numbers: in all space, and from `corner_`
     std::uint64_t count = 0;
     std::size_t block = 0;
   };
 
   void divide_all(const CopcRuns& runs) {
     for (Cell& cell : cells_) cell.path = copc_morton(from_corner(cell.key));
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.path < b.path; });
+    std::ranges::sort(cells_, {}, &Cell::path);
     divide(cells_, top_);
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    std::ranges::sort(cells_, {}, &Cell::key);
     find_extents(runs);
     cells_ = {};
   }
@@ -72,7 +70,7 @@ class CopcPlan {
   void gather_cells(const CopcRuns& runs) {
     for (const auto& run : runs.cells())
       for (const CopcCell& cell : run) cells_.push_back({cell.key, 0, cell.count, 0});
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    std::ranges::sort(cells_, {}, &Cell::key);
     std::size_t used = 0;
     for (const Cell& cell : cells_) {
       if (used > 0 && cells_[used - 1].key == cell.key)
@@ -84,7 +82,7 @@ class CopcPlan {
     cells_.shrink_to_fit();
   }
 
-  /// Chooses the least cube of a power of two of cells that holds all, with about as much room on either side.
+  /// Chooses the least cube that holds all, of a power of two of cells, with room on either side.
   void choose_root(unsigned cell_bits) {
     CopcPlace least = copc_place_of(cells_[0].key), most = least;
     for (const Cell& cell : cells_) {
@@ -94,13 +92,14 @@ class CopcPlan {
         most[axis] = std::max(most[axis], place[axis]);
       }
     }
-    std::int64_t widest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) widest = std::max(widest, most[axis] - least[axis]);
+    const std::int64_t widest = std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2]});
     depth_ = static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(widest)));
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      corner_[axis] = least[axis] - ((std::int64_t{1} << depth_) - 1 - (most[axis] - least[axis])) / 2;
     root_.bits = depth_ + cell_bits;
-    for (std::size_t axis = 0; axis < 3; ++axis) root_.corner[axis] = corner_[axis] * (std::int64_t{1} << cell_bits);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t width = most[axis] - least[axis];
+      corner_[axis] = least[axis] - ((std::int64_t{1} << depth_) - 1 - width) / 2;
+      root_.corner[axis] = corner_[axis] * (std::int64_t{1} << cell_bits);
+    }
   }
 
   [[nodiscard]] CopcPlace from_corner(std::uint64_t key) const noexcept {
@@ -122,22 +121,20 @@ class CopcPlan {
     }
     const unsigned shift = 3 * (depth_ - level - 1);
     for (unsigned i = 0; i < 8; ++i) {
-      const auto end =
-          std::partition_point(cells.begin(), cells.end(), [&](const Cell& c) { return (c.path >> shift & 7U) <= i; });
+      const auto end = std::ranges::partition_point(cells, [&](auto& c) { return (c.path >> shift & 7U) <= i; });
       const auto some = static_cast<std::size_t>(end - cells.begin());
       if (some > 0) divide(cells.first(some), key.child(i));
       cells = cells.subspan(some);
     }
   }
 
-  /// Finds the points of each block in the runs, whose cells are in the order of the keys, as `cells_` are.
+  /// Finds the points of each block in the runs, whose cells are ordered by keys, as `cells_`.
   void find_extents(const CopcRuns& runs) {
     std::uint64_t at = 0;
     for (const auto& run : runs.cells()) {
       auto known = cells_.begin();
       for (const CopcCell& cell : run) {
-        known = std::lower_bound(known, cells_.end(), cell.key,
-                                 [](const Cell& c, std::uint64_t key) { return c.key < key; });
+        known = std::ranges::lower_bound(known, cells_.end(), cell.key, {}, &Cell::key);
         std::vector<CopcExtent>& extents = blocks_[known->block].extents;
         if (!extents.empty() && extents.back().begin + extents.back().count == at)
           extents.back().count += cell.count;

@@ -23,12 +23,12 @@ struct CopcExtent {
   std::uint64_t begin = 0, count = 0;  ///< number of the first point, and of points
 };
 
-/// Point records on their way into the octree, in a temporary file. They are gathered to runs of some megabytes, and
-/// each run is sorted by cells: aligned cubes of 2^bits steps. So all points of a node are found in few pieces of the
-/// file, whatever order they came in, before its bounds are known. Cells double whenever all runs have too many.
+/// Point records on their way into the octree, in a temporary file: runs of some megabytes, each
+/// sorted by cells, which are aligned cubes of 2^bits steps. So all points of a node are in few
+/// pieces of the file, whatever order they came in. Cells double whenever all runs have too many.
 class CopcRuns {
  public:
-  /// Records of `record` bytes, in runs of about `run_bytes`; `most_cells` counts those of all runs.
+  /// Records of `record` bytes, in runs of about `run_bytes`, with some `most_cells` in all.
   CopcRuns(const std::filesystem::path& path, std::size_t record, unsigned threads, std::size_t run_bytes,
            std::size_t most_cells)
       : file_(path),
@@ -53,7 +53,7 @@ class CopcRuns {
     ranks_ = {};
   }
 
-  /// Runs of some of the points, in a file of their own, with cells as small as can be. @throws FileError
+  /// Runs of some of the points, in a file of their own, with the smallest cells. @throws FileError
   [[nodiscard]] CopcRuns finer(std::span<const CopcExtent> extents) const {
     CopcRuns runs(file_.path().string() + ".finer", record_, threads_, run_bytes_, most_cells_);
     for (const CopcExtent& e : extents)
@@ -68,7 +68,7 @@ class CopcRuns {
 
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
   static constexpr unsigned least_bits = 32 - copc_morton_bits;   ///< of cells, at first
-  [[nodiscard]] unsigned bits() const noexcept { return bits_; }  ///< side of the cells: 2^bits steps
+  [[nodiscard]] unsigned bits() const noexcept { return bits_; }  ///< cells have 2^bits steps
 
   /// Cells of each run, in the order of the file: ascending within a run.
   [[nodiscard]] const std::vector<std::vector<CopcCell>>& cells() const noexcept { return cells_; }
@@ -104,13 +104,13 @@ class CopcRuns {
     cell_count_ += cells.size();
     points_ += count;
     gathered_.clear();
-    const std::size_t most = std::max<std::size_t>(most_cells_, static_cast<std::size_t>(points_ / 256));
+    const auto most = std::max<std::uint64_t>(most_cells_, points_ / 256);
     while (cell_count_ > most && bits_ < 32) double_cells();
   }
 
   /// Writes the gathered in the order of the ranks, a block at a time.
   void write_run() {
-    const std::size_t at_once = std::max<std::size_t>((std::size_t{8} << 20) / record_, 1), pieces = threads_;
+    const std::size_t at_once = std::max<std::size_t>((8 << 20) / record_, 1), pieces = threads_;
     for (std::size_t first = 0; first < ranks_.size(); first += at_once) {
       const std::size_t some = std::min(at_once, ranks_.size() - first);
       sorted_.resize(some * record_);

@@ -13,12 +13,11 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Picks one point of each cell of a node: that nearest to the cell's centre, the first of several. The points are
-/// those of the node's children, `counts` of each, in order of the cells: `cell(child, i)` is the cell of a point,
-/// `off(child, i)` its distance from the centre. Returns the picked points of each child, ascending.
+/// Picks the point nearest to the centre of each cell of a node, the first of several, from
+/// `counts` points of its children, in order of the cells: `cell(child, i)` is the cell of a point,
+/// `off(child, i)` its distance from the centre. Returns those of each child, ascending.
 template <class CellOf, class OffOf>
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> copc_sample(std::span<const std::size_t> counts,
-                                                                  const CellOf& cell, const OffOf& off) {
+[[nodiscard]] auto copc_sample(std::span<const std::size_t> counts, const CellOf& cell, const OffOf& off) {
   std::vector<std::vector<std::uint32_t>> picked(counts.size());
   bool any = false;
   std::uint64_t now = 0, least = 0;
@@ -60,8 +59,8 @@ struct CopcNode {
   std::vector<std::uint32_t> points{};  ///< numbers of its records
 };
 
-/// Octree of some points below one node. A node is a leaf if it has few points, or its cells are no longer than a step.
-/// Points of other nodes are picked from their children, from below.
+/// Octree of some points below one node. A node is a leaf if it has few points, or its cells are no
+/// longer than a step. Points of other nodes are picked from their children, from below.
 class CopcSubtree {
  public:
   /// Whole records of `record` bytes within the node `key` of `root`.
@@ -87,7 +86,7 @@ class CopcSubtree {
   [[nodiscard]] std::vector<CopcNode>& nodes() noexcept { return nodes_; }
 
  private:
-  /// Builds the node of the points in a range of `ranks_`; returns its number. Until the end, points are ranks.
+  /// Builds the node of a range of `ranks_`; returns its number. Until the end, points are ranks.
   std::size_t build(std::size_t begin, std::size_t end, const CopcKey& key, unsigned depth) {
     CopcNode node{key, false, {}};
     if (end - begin <= leaf_points_ || bits_ - depth <= copc_grid_bits) {
@@ -99,11 +98,9 @@ class CopcSubtree {
     std::vector<std::size_t> children;
     const unsigned shift = 3 * (bits_ - depth - 1);
     for (unsigned i = 0; i < 8; ++i) {
-      const auto from = ranks_.begin() + static_cast<std::ptrdiff_t>(begin),
-                 to = ranks_.begin() + static_cast<std::ptrdiff_t>(end);
-      const auto border =
-          std::partition_point(from, to, [&](const CopcRank& rank) { return (rank.key >> shift & 7U) <= i; });
-      const std::size_t next = begin + static_cast<std::size_t>(border - from);
+      const auto some = std::span(ranks_).subspan(begin, end - begin);
+      const auto border = std::ranges::partition_point(some, [&](auto& r) { return (r.key >> shift & 7U) <= i; });
+      const std::size_t next = begin + static_cast<std::size_t>(border - some.begin());
       if (next > begin) children.push_back(build(begin, next, key.child(i), depth + 1));
       begin = next;
     }
@@ -116,16 +113,15 @@ class CopcSubtree {
   void sample(CopcNode& node, std::span<const std::size_t> children, unsigned cell_bits) {
     std::vector<std::size_t> counts;
     for (const std::size_t child : children) counts.push_back(nodes_[child].points.size());
-    const auto key = [&](std::size_t child, std::uint32_t i) { return ranks_[nodes_[children[child]].points[i]].key; };
-    const auto picked = copc_sample(
-        counts, [&](std::size_t child, std::uint32_t i) { return key(child, i) >> (3 * cell_bits); },
-        [&](std::size_t child, std::uint32_t i) { return copc_off_centre(copc_place_of(key(child, i)), cell_bits); });
+    const auto key = [&](auto child, auto i) { return ranks_[nodes_[children[child]].points[i]].key; };
+    const auto cell = [&](auto child, auto i) { return key(child, i) >> (3 * cell_bits); };
+    const auto off = [&](auto child, auto i) { return copc_off_centre(copc_place_of(key(child, i)), cell_bits); };
+    const auto picked = copc_sample(counts, cell, off);
     for (std::size_t child = 0; child < children.size(); ++child) {
       CopcNode& below = nodes_[children[child]];
       std::size_t left = 0;
-      copc_part(
-          counts[child], picked[child], [&](std::uint32_t i) { node.points.push_back(below.points[i]); },
-          [&](std::uint32_t i) { below.points[left++] = below.points[i]; });
+      const auto take = [&](auto i) { node.points.push_back(below.points[i]); };
+      copc_part(counts[child], picked[child], take, [&](auto i) { below.points[left++] = below.points[i]; });
       below.points.resize(left);
       node.has_children = node.has_children || below.has_children || left > 0;
     }

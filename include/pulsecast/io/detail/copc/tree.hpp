@@ -20,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Writes the nodes of a plan as chunks of a file. Blocks are built in parallel, some at a time, and written in order;
-/// a node above them is written when all below it are. Points of a chunk are in order of their times.
+/// Writes the nodes of a plan as chunks of a file. Blocks are built in parallel and written in
+/// order, nodes above them when all below are. Points of a chunk are in order of time.
 class CopcTree {
  public:
   using Change = std::function<void(std::span<std::byte>)>;
@@ -43,9 +43,9 @@ class CopcTree {
   }
 
   [[nodiscard]] std::vector<CopcEntry>& entries() noexcept { return entries_; }  ///< nodes
-  /// Of the chunks, in order [byte]
+  /// Sizes [byte] and points of the chunks.
   [[nodiscard]] const std::vector<std::size_t>& sizes() const noexcept { return chunk_sizes_; }
-  [[nodiscard]] const std::vector<std::uint32_t>& points() const noexcept { return chunk_points_; }  ///< of the chunks
+  [[nodiscard]] const std::vector<std::uint32_t>& points() const noexcept { return chunk_points_; }
 
  private:
   /// Compressed node; without bytes if it has no point, but nodes below it have.
@@ -79,14 +79,13 @@ class CopcTree {
         close_above(plan, end++);
         continue;
       }
-      for (std::uint64_t points = 0; end < blocks.size() && (end == first || points + blocks[end].points <= at_once);
-           ++end) {
-        if (dense(blocks[end])) break;
+      for (std::uint64_t points = 0; end < blocks.size() && !dense(blocks[end]); ++end) {
         points += blocks[end].points;
+        if (end > first && points > at_once) break;
       }
       std::vector<Built> built(end - first);
-      for_each_index(built.size(), threads_,
-                     [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); });
+      const auto build_one = [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); };
+      for_each_index(built.size(), threads_, build_one);
       for (std::size_t i = first; i < end; ++i) {
         Built& one = built[i - first];
         for (const Chunk& chunk : one.chunks) put(chunk);
@@ -111,8 +110,8 @@ class CopcTree {
     const std::span<const CopcBlock> blocks = plan.blocks();
     for (std::int32_t level = blocks[i].key.level; level-- > plan.top().level;) {
       const CopcKey above = blocks[i].key.ancestor(level);
-      if (i + 1 < blocks.size() && blocks[i + 1].key.level > level && blocks[i + 1].key.ancestor(level) == above)
-        return;
+      if (i + 1 < blocks.size())
+        if (const CopcKey& next = blocks[i + 1].key; next.level > level && next.ancestor(level) == above) return;
       merge(plan.root(), above);
     }
   }
@@ -142,7 +141,7 @@ class CopcTree {
 
   [[nodiscard]] Chunk chunk_of(const OpenNode& node) const {
     std::vector<std::uint32_t> points(node.records.size() / record_);
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<std::uint32_t>(i);
+    std::iota(points.begin(), points.end(), 0U);
     return chunk_of(node.key, node.has_children, node.records, points);
   }
 
@@ -171,7 +170,7 @@ class CopcTree {
   /// Picks the points of a node from its children, the last of the open nodes, and writes these.
   void merge(const CopcRoot& root, const CopcKey& key) {
     std::size_t first = open_.size();
-    while (first > 0 && open_[first - 1].key.level == key.level + 1 && open_[first - 1].key.parent() == key) --first;
+    while (first > 0 && open_[first - 1].key.parent() == key) --first;
     const std::span<OpenNode> children = std::span(open_).subspan(first);
     const CopcPlace corner = root.corner_of(key);
     const unsigned cell_bits = root.bits_of(key) - copc_grid_bits;
@@ -187,8 +186,8 @@ class CopcTree {
     };
     std::vector<std::size_t> counts;
     for (const OpenNode& child : children) counts.push_back(child.records.size() / record_);
-    const auto picked = copc_sample(
-        counts, cell, [&](std::size_t child, std::uint32_t i) { return copc_off_centre(place(child, i), cell_bits); });
+    const auto off = [&](auto child, auto i) { return copc_off_centre(place(child, i), cell_bits); };
+    const auto picked = copc_sample(counts, cell, off);
 
     OpenNode node{key, false, {}};
     std::vector<Chunk> chunks(children.size());
@@ -196,9 +195,9 @@ class CopcTree {
       OpenNode& below = children[child];
       std::byte* const records = below.records.data();
       std::size_t left = 0;
-      copc_part(
-          counts[child], picked[child], [&](std::uint32_t i) { append(node.records, below.records, i); },
-          [&](std::uint32_t i) { std::memmove(records + left++ * record_, records + i * record_, record_); });
+      const auto take = [&](auto i) { append(node.records, below.records, i); };
+      const auto leave = [&](auto i) { std::memmove(records + left++ * record_, records + i * record_, record_); };
+      copc_part(counts[child], picked[child], take, leave);
       below.records.resize(left * record_);
       node.has_children = node.has_children || below.has_children || left > 0;
     }
@@ -230,7 +229,7 @@ class CopcTree {
   unsigned threads_;
   CopcSizes sizes_;
   Change change_;
-  std::vector<OpenNode> open_;  // from the left to the right, of the nodes on the way to the next block
+  std::vector<OpenNode> open_;  // in order, on the way to the next block
   std::vector<CopcEntry> entries_;
   std::vector<std::size_t> chunk_sizes_;
   std::vector<std::uint32_t> chunk_points_;

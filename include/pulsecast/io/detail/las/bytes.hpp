@@ -4,24 +4,18 @@
 #define PULSECAST_IO_DETAIL_LAS_BYTES_HPP
 
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <string_view>
 
 #include <pulsecast/base/namespace.hpp>
 
-/// Byte layout of LAS files. Source of every offset: ASPRS LAS Specification 1.4 R15, or 1.0 where named.
+/// Byte layout of LAS files. Source of every offset: ASPRS LAS 1.4 R15, or 1.0 where named.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::endian::native == std::endian::little,
-              "LAS files are little-endian, and are written as the numbers lie in memory");
-
-/// Byte array filled in by offsets.
-template <std::size_t Size>
-struct LasBytes : std::array<std::byte, Size> {
+/// Bytes filled in by offsets.
+template <class Bytes>
+struct LasFields : Bytes {
   template <class Number>
   void put(std::size_t position, Number value) noexcept {
     std::memcpy(this->data() + position, &value, sizeof value);
@@ -30,6 +24,8 @@ struct LasBytes : std::array<std::byte, Size> {
     std::memcpy(this->data() + position, text.data(), text.size());
   }
 };
+template <std::size_t Size>
+using LasBytes = LasFields<std::array<std::byte, Size>>;
 
 /// Nearest integer, clamped to [low, high]; NaN becomes `low`.
 template <class Integer>
@@ -39,10 +35,9 @@ template <class Integer>
 
 inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
 
-/// Header of a variable-length record with a body of `size` bytes. Source: LAS 1.4 R15, Variable Length Records.
-[[nodiscard]] inline LasBytes<las_vlr_header_size> las_vlr_header(std::string_view user, std::uint16_t record,
-                                                                  std::size_t size,
-                                                                  std::string_view description) noexcept {
+/// Header of a record with a body of `size` bytes. Source: LAS 1.4 R15, Variable Length Records.
+[[nodiscard]] inline auto las_vlr_header(std::string_view user, std::uint16_t record, std::size_t size,
+                                         std::string_view description) noexcept {
   LasBytes<las_vlr_header_size> h{};
   h.put_text(2, user);
   h.put(18, record);

@@ -7,18 +7,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
@@ -27,15 +19,14 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Point statistics for the header of a LAS file. Those of parts add up to those of the whole, in any order.
+/// Point statistics for the header of a LAS file. Those of parts add up, in any order.
 struct LasTally {
-  std::array<std::int32_t, 3> least{}, most{};       ///< extent of the stored coordinates, in steps of the scale
+  std::array<std::int32_t, 3> least{}, most{};       ///< extent of stored coordinates, in steps
   std::uint64_t points = 0;                          ///< number of points
   std::array<std::uint64_t, 15> points_by_return{};  ///< number of points by return number, from 1
   float max_amplitude = -200;                        ///< highest amplitude [dB]
-  std::uint64_t pulses_cut = 0;                      ///< pulses with more returns than the format numbers
+  std::uint64_t pulses_cut = 0;                      ///< pulses with too many returns
 
-  /// Adds the statistics of another part.
   void add(const LasTally& other) noexcept {
     if (other.points == 0) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -43,23 +34,17 @@ struct LasTally {
       most[axis] = points == 0 ? other.most[axis] : std::max(most[axis], other.most[axis]);
     }
     points += other.points;
-    for (std::size_t i = 0; i < points_by_return.size(); ++i) points_by_return[i] += other.points_by_return[i];
+    for (std::size_t i = 0; i < 15; ++i) points_by_return[i] += other.points_by_return[i];
     max_amplitude = std::max(max_amplitude, other.max_amplitude);
     pulses_cut += other.pulses_cut;
   }
 };
 
-/// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them. Coordinates come last,
-/// so that all else is done before their offset is known.
+/// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them.
+/// Coordinates come last, so that all else is done before their offset is known.
 class LasEncoder {
  public:
-  /// Point record, filled in by offsets.
-  struct Record : std::vector<std::byte> {
-    template <class Number>
-    void put(std::size_t position, Number value) noexcept {
-      std::memcpy(data() + position, &value, sizeof value);
-    }
-  };
+  using Record = detail::LasFields<std::vector<std::byte>>;  ///< point record
 
   /// `settings` must be valid.
   explicit LasEncoder(LasSettings settings)
@@ -73,8 +58,8 @@ class LasEncoder {
     return detail::LasLayout(settings).record();
   }
 
-  /// Calls put(record, point) for every echo of a shot, in order. `record` has `layout().record()` bytes, and lacks the
-  /// coordinates of `point`; it is reused. `packet` is the place of the shot's waveform, null without one.
+  /// Calls put(record, point) for every echo of a shot. `record`, which is reused, has no
+  /// coordinates yet. `packet` is null without a waveform.
   template <class Put>
   void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
     Record& record = record_;
@@ -90,7 +75,8 @@ class LasEncoder {
       record.put(20, time);
     } else {  // Point Data Record Format 6
       record.put(15, static_cast<std::uint8_t>((shot.channel & 3U) << 4));
-      record.put(18, detail::las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
+      const double steps = degrees(shot.scan_angle) / 0.006;
+      record.put(18, detail::las_rounded<std::int16_t>(steps, -30000, 30000));
       record.put(20, source);
       record.put(22, time);
     }
@@ -99,13 +85,12 @@ class LasEncoder {
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
-      record.put(layout_.legacy ? 15 : 16,
-                 static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.max_class)));
-      if (packet)
-        record.put(layout_.packet + 13,
-                   static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
-      put_extras({shot, echo, columns_.settings(), columns_.scan_start()}, record.data() + layout_.extras,
-                 std::make_index_sequence<detail::las_usual_extras.size()>());
+      const auto classification = std::min<std::uint32_t>(echo.classification, layout_.max_class);
+      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(classification));
+      const double delay = 2 / speed_of_light * echo.range - shot.waveform_start;
+      if (packet) record.put(layout_.packet + 13, static_cast<float>(delay * 1e12));
+      const PointView view{shot, echo, columns_.settings(), columns_.scan_start()};
+      put_extras(view, record.data() + layout_.extras, std::make_index_sequence<detail::las_usual_extras.size()>());
       if (!layout_.columns.fields.empty()) columns_.store(batch, shot, echo, record.data());
       tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude_in(record.data()));
       ++tally_.points_by_return[number - 1];
@@ -133,9 +118,8 @@ class LasEncoder {
     while (axis < 2 && fits(steps_of(point, axis))) ++axis;
     const auto text = [](double value) {
       std::array<char, 32> digits;
-      return std::string(
-          digits.data(),
-          std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 12).ptr);
+      constexpr auto general = std::chars_format::general;
+      return std::string(digits.begin(), std::to_chars(digits.begin(), digits.end(), value, general, 12).ptr);
     };
     const int k = static_cast<int>(axis);
     return text::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
@@ -145,12 +129,12 @@ class LasEncoder {
                          " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
   }
 
-  /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far
-  /// from the origin, and the offset is round: with a scale of 0.1 mm a multiple of 100 m.
+  /// Chooses the offset of the coordinates by the first point, unless set: stored numbers stay
+  /// small. It is round: with a scale of 0.1 mm a multiple of 100 m.
   void choose_offset(const Vec3& first) noexcept {
     const double unit = settings_.scale * 1e6;
-    const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // + 0.0 avoids -0
-    if (!settings_.offset && finite(first)) offset_ = {nearest(first.x), nearest(first.y), nearest(first.z)};
+    for (int axis = 0; !settings_.offset && finite(first) && axis < 3; ++axis)
+      offset_[axis] = std::nearbyint(first[axis] / unit) * unit + 0.0;  // + 0.0 avoids -0
   }
 
   /// True if intensities are 0 until `scale_intensities`.
@@ -158,12 +142,12 @@ class LasEncoder {
     return settings_.intensity == LasIntensity::amplitude && !settings_.intensity_full_scale;
   }
 
-  /// Sets the intensities of whole records from the amplitudes in their extra bytes, once the maximum is known.
+  /// Sets the intensities of whole records by their amplitudes, once the maximum is known.
   void scale_intensities(std::span<std::byte> bytes) const noexcept {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       const double level = amplitude_in(bytes.data() + at);
-      const auto scaled =
-          detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (level - tally_.max_amplitude) / 10), 0, 65535);
+      const double share = std::pow(10, (level - tally_.max_amplitude) / 10);
+      const auto scaled = detail::las_rounded<std::uint16_t>(65535 * share, 0, 65535);
       std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
     }
   }
@@ -181,18 +165,18 @@ class LasEncoder {
 
   [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::LasLayout& layout() const noexcept { return layout_; }
-  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }    ///< of the coordinates [m]
-  [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }  ///< of the points located so far
-  [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< for a sum over several encoders
+  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }    ///< of coordinates [m]
+  [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }  ///< of the points so far
+  [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< to sum over encoders
 
  private:
-  /// Writes the extra values that each point has. Their columns are constants, so that no call is indirect.
+  /// Writes the usual extra values. Their columns are constants, so that no call is indirect.
   template <std::size_t... K>
   static void put_extras(const PointView& view, std::byte* to, std::index_sequence<K...>) noexcept {
     ((to = put_extra<K>(view, to)), ...);
   }
   template <std::size_t K>
-  [[nodiscard, gnu::always_inline]] static std::byte* put_extra(const PointView& view, std::byte* to) noexcept {
+  [[gnu::always_inline]] static std::byte* put_extra(const PointView& view, std::byte* to) noexcept {
     constexpr detail::LasUsualExtra extra = detail::las_usual_extras[K];
     constexpr auto get = extra.column->get;
     constexpr auto whole = extra.column->whole;
@@ -211,23 +195,23 @@ class LasEncoder {
     return level;
   }
 
-  /// Writes what all returns share of a wave packet. Offsets in it: LAS 1.4 R15, Point Data Record Format 4.
+  /// Writes what all returns share of a packet. Offsets: LAS 1.4 R15, Point Data Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
     record.put(layout_.packet, packet.descriptor);
     record.put(layout_.packet + 1, packet.offset);
     record.put(layout_.packet + 9, packet.size);
     const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12);
-    for (int axis = 0; axis < 3; ++axis)
-      record.put(layout_.packet + 17 + 4 * static_cast<std::size_t>(axis), static_cast<float>(back[axis]));
+    const std::array<float, 3> b{static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)};
+    record.put(layout_.packet + 17, b);
   }
 
   [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
     if (automatic_intensity()) return 0;
     const double ranges = echo.range / settings_.intensity_range;
-    const double value = settings_.intensity == LasIntensity::reflectance ? echo.reflectance
-                         : settings_.intensity == LasIntensity::amplitude ? echo.amplitude
-                                                                          : echo.amplitude * ranges * ranges;
-    return detail::las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
+    double value = settings_.intensity == LasIntensity::reflectance ? echo.reflectance : echo.amplitude;
+    if (settings_.intensity == LasIntensity::range_normalized) value = value * ranges * ranges;
+    value = value / settings_.intensity_full_scale.value_or(1) * 65535;
+    return detail::las_rounded<std::uint16_t>(value, 0, 65535);
   }
 
   [[nodiscard]] double steps_of(const Vec3& point, std::size_t axis) const noexcept {
@@ -235,7 +219,8 @@ class LasEncoder {
     return std::nearbyint((point[k] - offset_[k]) / settings_.scale);
   }
   [[nodiscard]] static bool fits(double steps) noexcept {
-    return steps >= std::numeric_limits<std::int32_t>::min() && steps <= std::numeric_limits<std::int32_t>::max();
+    using Limits = std::numeric_limits<std::int32_t>;
+    return steps >= Limits::min() && steps <= Limits::max();
   }
 
   LasSettings settings_;

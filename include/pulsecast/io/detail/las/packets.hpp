@@ -5,15 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <initializer_list>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/output_file.hpp>
@@ -27,25 +19,25 @@ struct LasPacket {
   std::uint32_t size = 0;       ///< size of the packet [byte]
 };
 
-/// Writes waveforms as packets of a `.wdp` file beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform
-/// Packet Descriptor, Waveform Data Packets, and Extended Variable Length Records.
+/// Writes waveforms as packets of a `.wdp` file beside the LAS file. Source: LAS 1.4 R15, Waveform
+/// Packet Descriptor, Waveform Data Packets, Extended Variable Length Records.
 ///
-/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`. Number 4096 is zero power, so that
-/// noise may be negative. Each packet has the smallest gain of eleven that its samples fit: powers of 16 from 2^-52 W
-/// to 2^-12 W. The error is at most 1/7680 of the packet's peak, or 2^-53 W, unless noise reaches 1/15 of the peak.
-/// Samples above 15 W are clipped. A descriptor states the number of samples of its packets, so there are 23 sizes, two
-/// an octave, from 16 to 32768; packets are padded with zero power. Every file has all 253 descriptors, so that none
-/// need be known before the first packet.
+/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`. Number 4096 is
+/// zero power, so noise may be negative. Each packet has the smallest gain that its samples fit, of
+/// eleven powers of 16 from 2^-52 to 2^-12 W. The error is at most 1/7680 of the packet's peak, or
+/// 2^-53 W, unless noise reaches 1/15 of the peak. Samples above 15 W are clipped. Packets are
+/// padded with zero power to one of 23 sizes, two an octave, from 16 to 32768 samples. Every file
+/// has all 253 descriptors, so that none need be known before the first packet.
 class LasPackets {
  public:
   /// Throws a `FileError` if the file cannot be made.
-  explicit LasPackets(std::filesystem::path path) : file_(std::move(path)) { file_.write(header()); }
+  explicit LasPackets(std::filesystem::path to) : file_(std::move(to)) { file_.write(header()); }
 
   /// Piece of such a file without header; offsets count from the beginning of the piece.
   explicit LasPackets(OutputFile piece) : file_(std::move(piece)) {}
   void end_piece() { file_.commit(); }  ///< ends such a piece
 
-  /// Takes over packets that others wrote to the temporary file up to `end` [byte]; `spacing` of samples [ps].
+  /// Takes over packets that others wrote up to `end` [byte]; `spacing` of samples [ps].
   void adopt(std::uint64_t end, std::uint32_t spacing) {
     file_.continue_at(end);
     spacing_ = spacing;
@@ -56,11 +48,12 @@ class LasPackets {
   /// Interval of samples, 0 without packets [ps]
   [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }
 
-  /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError` for more than
-  /// `max_samples`, or an interval other than before or not of whole picoseconds.
+  /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError`
+  /// for more than `max_samples`, or an interval other than before or not of whole picoseconds.
   [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
     require_interval(interval);
-    const unsigned size_class = size_class_of(waveform.size()), gain_class = gain_class_of(waveform);
+    const unsigned size_class = size_class_of(waveform.size());
+    const unsigned gain_class = gain_class_of(waveform);
     raw_.assign(samples_of(size_class), no_light);
     const double per_watt = 1 / gain_of(gain_class);
     for (std::size_t i = 0; i < waveform.size(); ++i) {
@@ -68,13 +61,12 @@ class LasPackets {
       raw_[i] = static_cast<std::uint16_t>(number > 0 ? (number < 65535 ? number : 65535) : 0);
     }
     const std::span<const std::byte> bytes = std::as_bytes(std::span(raw_));
-    const LasPacket packet{index_of(size_class, gain_class), file_.position(),
-                           static_cast<std::uint32_t>(bytes.size())};
     file_.write(bytes);
-    return packet;
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    return {index_of(size_class, gain_class), file_.position() - size, size};
   }
 
-  /// Descriptor records with headers, for the LAS file. Only their bodies change from packet to packet.
+  /// Descriptor records with headers, for the LAS file, whose bodies change with packets.
   [[nodiscard]] std::vector<std::byte> descriptors() const {
     std::vector<std::byte> bytes;
     for (unsigned size_class = 0; size_class < size_classes; ++size_class)
@@ -87,8 +79,8 @@ class LasPackets {
         d.put(6, spacing_);
         d.put(10, gain_of(gain_class));
         d.put(18, -no_light * gain_of(gain_class));
-        bytes.insert(bytes.end(), head.data(), head.data() + head.size());
-        bytes.insert(bytes.end(), d.data(), d.data() + d.size());
+        bytes.insert(bytes.end(), head.begin(), head.end());
+        bytes.insert(bytes.end(), d.begin(), d.end());
       }
     return bytes;
   }
@@ -100,7 +92,8 @@ class LasPackets {
   }
 
   static constexpr double max_samples = 32768;  ///< samples of a waveform, at most
-  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
+  static constexpr unsigned size_classes = 23, gain_classes = 11;
+  static constexpr unsigned descriptor_count = size_classes * gain_classes;
 
  private:
   static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]
@@ -112,7 +105,7 @@ class LasPackets {
   [[nodiscard]] static double gain_of(unsigned gain_class) noexcept {
     return std::ldexp(1.0, static_cast<int>(4 * gain_class) - 52);
   }
-  [[nodiscard]] static constexpr std::uint8_t index_of(unsigned size_class, unsigned gain_class) noexcept {
+  static constexpr std::uint8_t index_of(unsigned size_class, unsigned gain_class) noexcept {
     return static_cast<std::uint8_t>(1 + size_class * gain_classes + gain_class);
   }
 
@@ -134,12 +127,12 @@ class LasPackets {
   /// Checks the sample interval, one per file, in whole picoseconds up to a rounding of 1e-6 ps.
   void require_interval(double interval) {
     const double picoseconds = interval * 1e12, whole = std::nearbyint(picoseconds);
-    const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
+    const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole < 0x1p32;
     if (can_be && spacing_ == 0) spacing_ = static_cast<std::uint32_t>(whole);
     if (can_be && spacing_ == whole) return;
-    const std::string allowed =
-        spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before";
-    reject({"samples are ", text::to_text(picoseconds), " ps apart; expected ", allowed});
+    const std::string before = std::to_string(spacing_) + " ps, as before";
+    reject({"samples are ", text::to_text(picoseconds), " ps apart; expected ",
+            spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : before});
   }
 
   [[noreturn]] void reject(std::initializer_list<std::string_view> problem) {

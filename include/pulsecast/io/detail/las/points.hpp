@@ -7,23 +7,17 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as withheld (deleted)
-/// are skipped. Sizes in the header are checked against the file's size; bounds in it are ignored. Throws a `FileError`
-/// with path and byte. Source of every field: ASPRS LAS Specification 1.4 R15, and 1.0 to 1.3 for their headers.
+/// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as
+/// withheld (deleted) are skipped; bounds in the header are ignored. Throws a `FileError` with path
+/// and byte. Source: ASPRS LAS 1.4 R15, and 1.0 to 1.3 for headers.
 class LasPoints {
  public:
   /// True if the file begins with the LAS signature.
@@ -50,11 +44,11 @@ class LasPoints {
     return false;
   }
 
-  /// Position of the current point, in units of the file, which should be metres. Throws a `FileError` beyond 1e12.
+  /// Position of the current point, which should be in metres. Throws a `FileError` beyond 1e12.
   [[nodiscard]] Vec3 position() const {
     Vec3 p{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      p[static_cast<int>(axis)] = number<std::int32_t>(record_, 4 * axis) * scale_[axis] + offset_[axis];
+    for (int k = 0; k < 3; ++k)
+      p[k] = number<std::int32_t>(record_, 4 * static_cast<std::size_t>(k)) * scale_[k] + offset_[k];
     if (!(max_norm(p) <= 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
     return p;
   }
@@ -65,8 +59,8 @@ class LasPoints {
 
   /// Red, green and blue of the current point, from 0 to `max_colour`.
   [[nodiscard]] Vec3 colour() const noexcept {
-    return {number<std::uint16_t>(record_, colour_at_), number<std::uint16_t>(record_, colour_at_ + 2),
-            number<std::uint16_t>(record_, colour_at_ + 4)};
+    const auto [red, green, blue] = number<std::array<std::uint16_t, 3>>(record_, colour_at_);
+    return {red, green, blue};
   }
   static constexpr double max_colour = 65535;
 
@@ -91,6 +85,10 @@ class LasPoints {
     return value;
   }
 
+  [[noreturn]] void fail(std::size_t byte, std::initializer_list<std::string_view> problem) const {
+    file_.fail_at_byte(byte, text::joined(problem));
+  }
+
   void read_header() {
     constexpr std::array<std::size_t, 5> header_sizes{227, 227, 227, 235, 375};  // by minor version
     constexpr std::array<std::size_t, 11> sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -98,54 +96,51 @@ class LasPoints {
 
     const std::string bytes(file_.take(header_sizes.back()));
     if (bytes.size() < header_sizes.front())
-      file_.fail_at_byte(bytes.size(), "the file ends: expected the " + std::to_string(header_sizes.front()) +
-                                           " bytes of a LAS header");
+      file_.fail_at_byte(bytes.size(), "the file ends: expected the 227 bytes of a LAS header");
     const auto major = number<std::uint8_t>(bytes, 24);
     minor_ = number<std::uint8_t>(bytes, 25);
     if (major != 1 || minor_ > 4)
-      file_.fail_at_byte(24, "is LAS " + std::to_string(major) + "." + std::to_string(minor_) +
-                                 ": expected a version from 1.0 to 1.4");
+      fail(24, {"is LAS ", std::to_string(major), ".", std::to_string(minor_), ": expected a version from 1.0 to 1.4"});
     const std::size_t header_size = number<std::uint16_t>(bytes, 94);
     if (header_size < header_sizes[minor_] || bytes.size() < header_sizes[minor_])
-      file_.fail_at_byte(94, "the header has " + std::to_string(std::min(header_size, bytes.size())) +
-                                 " bytes: expected at least " + std::to_string(header_sizes[minor_]));
+      fail(94, {"the header has ", std::to_string(std::min(header_size, bytes.size())), " bytes: expected at least ",
+                std::to_string(header_sizes[minor_])});
     format_ = number<std::uint8_t>(bytes, 104);
     if (format_ >= 128)  // mark of LASzip
-      file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip and pdal translate convert it");
+      fail(104, {"the points are compressed (LAZ): expected LAS; laszip and pdal translate convert it"});
     if (format_ >= sizes.size())
-      file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
+      fail(104, {"has the point format ", std::to_string(format_), ": expected one from 0 to 10"});
     colour_at_ = colours[format_];
     record_size_ = number<std::uint16_t>(bytes, 105);
     if (record_size_ < sizes[format_])
-      file_.fail_at_byte(105, "a point has " + std::to_string(record_size_) + " bytes: expected at least the " +
-                                  std::to_string(sizes[format_]) + " of format " + std::to_string(format_));
+      fail(105, {"a point has ", std::to_string(record_size_), " bytes: expected at least the ",
+                 std::to_string(sizes[format_]), " of format ", std::to_string(format_)});
 
     const std::uint64_t begin = number<std::uint32_t>(bytes, 96);
     count_ = minor_ == 4 ? number<std::uint64_t>(bytes, 247) : 0;
     const std::size_t count_at = count_ > 0 ? 247 : 107;
     if (count_ == 0) count_ = number<std::uint32_t>(bytes, 107);
+    const std::string first = std::to_string(begin), size = std::to_string(file_.size());
     if (begin < header_size || begin > file_.size())
-      file_.fail_at_byte(96, "the points begin at byte " + std::to_string(begin) + ": expected one from " +
-                                 std::to_string(header_size) + " to the file's size of " +
-                                 std::to_string(file_.size()));
+      fail(96, {"the points begin at byte ", first, ": expected one from ", std::to_string(header_size),
+                " to the file's size of ", size});
     if (count_ == 0) file_.fail_at_byte(107, "holds no point: expected at least one");
     if (count_ > (file_.size() - begin) / record_size_)
-      file_.fail_at_byte(count_at, "claims " + std::to_string(count_) + " points of " + std::to_string(record_size_) +
-                                       " bytes from byte " + std::to_string(begin) +
-                                       ": expected no more than fit into the file's " + std::to_string(file_.size()) +
-                                       " bytes");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      scale_[axis] = number<double>(bytes, 131 + 8 * axis);
-      offset_[axis] = number<double>(bytes, 155 + 8 * axis);
-      if (!(scale_[axis] > 0) || !std::isfinite(scale_[axis]))
-        file_.fail_at_byte(131 + 8 * axis, "the scale is " + text::to_text(scale_[axis]) + ": expected one above 0");
-      if (!std::isfinite(offset_[axis]))
-        file_.fail_at_byte(155 + 8 * axis, "the offset is " + text::to_text(offset_[axis]) + ": expected a finite one");
+      fail(count_at, {"claims ", std::to_string(count_), " points of ", std::to_string(record_size_),
+                      " bytes from byte ", first, ": expected no more than fit into the file's ", size, " bytes"});
+    scale_ = number<Vec3>(bytes, 131);
+    offset_ = number<Vec3>(bytes, 155);
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(131 + 8 * k);
+      if (!(scale_[k] > 0) || !std::isfinite(scale_[k]))
+        file_.fail_at_byte(at, "the scale is " + text::to_text(scale_[k]) + ": expected one above 0");
+      if (!std::isfinite(offset_[k]))
+        file_.fail_at_byte(at + 24, "the offset is " + text::to_text(offset_[k]) + ": expected a finite one");
     }
     file_.seek(begin);
   }
 
-  /// True if the current point is marked as withheld; LAS 1.0 has no such bit, as it belongs to the class.
+  /// True if the current point is marked as withheld; LAS 1.0 has no such bit.
   [[nodiscard]] bool withheld() const noexcept {
     const auto bits = number<std::uint8_t>(record_, 15);
     return format_ >= 6 ? (bits & 4U) != 0 : minor_ > 0 && (bits & 128U) != 0;
@@ -154,7 +149,7 @@ class LasPoints {
   InputFile file_;
   unsigned minor_ = 0, format_ = 0;
   std::size_t record_size_ = 0, colour_at_ = 0;  // [byte]; 0 without colours
-  std::array<double, 3> scale_{}, offset_{};
+  Vec3 scale_{}, offset_{};
   std::uint64_t count_ = 0, taken_ = 0, withheld_ = 0;
   std::uint64_t at_ = 0;  // offset of the current point [byte]
   std::string_view record_;

@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/error.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Well-known text of a UTM system on WGS 84, ETRS89 or NAD83; empty for other codes, whose definitions fill a register
-/// of thousands. Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
+/// Well-known text of UTM on WGS 84, ETRS89 or NAD83, else empty. Source: EPSG; OGC 01-009, 7.
 [[nodiscard]] inline std::string las_utm(std::uint16_t epsg) {
   struct Family {
     unsigned first, last;  // codes of its zones
@@ -29,31 +25,27 @@ namespace PULSECAST_NAMESPACE::io::detail {
        "298.257222101", "7019"},
       {26901, 26923, 1, "NAD83", "4269", "North_American_Datum_1983", "6269", "GRS 1980", "298.257222101", "7019"},
   }};
-  const auto family = std::find_if(families.begin(), families.end(),
-                                   [&](const Family& f) { return epsg >= f.first && epsg <= f.last; });
+  const auto has = [epsg](const Family& f) { return epsg >= f.first && epsg <= f.last; };
+  const auto* const family = std::ranges::find_if(families, has);
   if (family == families.end()) return {};
-  const unsigned zone = epsg - family->first + family->zone;
-  const auto code = [](std::string_view number) { return text::joined({"AUTHORITY[\"EPSG\",\"", number, "\"]"}); };
-  const std::string ellipsoid = text::joined(
-      {"SPHEROID[\"", family->ellipsoid, "\",6378137,", family->flattening, ",", code(family->ellipsoid_code), "]"});
+  const Family& of = *family;
+  const unsigned zone = epsg - of.first + of.zone;
   const std::string datum =
-      text::joined({"DATUM[\"", family->datum, "\",", ellipsoid, ",", code(family->datum_code), "]"});
-  const std::string geographic =
-      text::joined({"GEOGCS[\"", family->system, "\",", datum, ",PRIMEM[\"Greenwich\",0,", code("8901"),
-                    "],UNIT[\"degree\",0.0174532925199433,", code("9122"), "],", code(family->system_code), "]"});
-  const std::string name = text::joined(
-      {"PROJCS[\"", family->system, " / UTM zone ", std::to_string(zone), family->south ? "S" : "N", "\","});
-  const std::string projection = text::joined(
-      {",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",",
-       std::to_string(6 * static_cast<int>(zone) - 183),
-       "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",",
-       family->south ? "10000000" : "0", "],"});
-  const std::string axes =
-      text::joined({"UNIT[\"metre\",1,", code("9001"), "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH],"});
-  return text::joined({name, geographic, projection, axes, code(std::to_string(epsg)), "]"});
+      text::joined({R"(DATUM[")", of.datum, R"(",SPHEROID[")", of.ellipsoid, R"(",6378137,)", of.flattening,
+                    R"(,AUTHORITY["EPSG",")", of.ellipsoid_code, R"("]],AUTHORITY["EPSG",")", of.datum_code, R"("]])"});
+  const std::string geographic = text::joined(
+      {R"(GEOGCS[")", of.system, R"(",)", datum, R"(,PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]])",
+       R"(,UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG",")", of.system_code, R"("]])"});
+  return text::joined(
+      {R"(PROJCS[")", of.system, " / UTM zone ", std::to_string(zone), of.south ? "S\"," : "N\",", geographic,
+       R"(,PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",)",
+       std::to_string(6 * static_cast<int>(zone) - 183), R"(],PARAMETER["scale_factor",0.9996])",
+       R"(,PARAMETER["false_easting",500000],PARAMETER["false_northing",)", of.south ? "10000000" : "0",
+       R"(],UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["Easting",EAST],AXIS["Northing",NORTH])",
+       R"(,AUTHORITY["EPSG",")", std::to_string(epsg), R"("]])"});
 }
 
-/// GeoTIFF key directory: header and keys (projected model, its code, metre). Source: OGC GeoTIFF 1.1, 7.1.2, annex B.
+/// GeoTIFF keys (projected model, its code, metre). Source: OGC GeoTIFF 1.1, 7.1.2, annex B.
 [[nodiscard]] constexpr std::array<std::uint16_t, 16> las_geo_keys(std::uint16_t epsg) noexcept {
   return {1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 3076, 0, 1, 9001};
 }

@@ -6,24 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
 #include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
-struct LasSettings;
-}
 
-namespace PULSECAST_NAMESPACE::io::detail {
+struct LasSettings;
+
+namespace detail {
 
 /// Extra value that each point has.
 struct LasUsualExtra {
@@ -60,22 +53,20 @@ inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
 /// Extra values of each point, in order.
 [[nodiscard]] std::vector<PointField> las_extras(const LasSettings& settings);
 
-}  // namespace PULSECAST_NAMESPACE::io::detail
-
-namespace PULSECAST_NAMESPACE::io {
+}  // namespace detail
 
 /// Version and point format of a LAS file.
 enum class LasFormat : std::uint8_t {
-  las_1_4,         ///< version 1.4, point format 6; 7 with colours, 8 with near infrared; 9 with waveforms
-  las_1_4_legacy,  ///< version 1.4, point format 1, or 4 with waveforms: 5 returns, 32 classes, angles in whole degrees
-  las_1_0,  ///< version 1.0, point format 1, for old readers: as above, but no waveforms, WKT and kind of GPS time
+  las_1_4,         ///< point format 6; 7 with colours, 8 with near infrared; 9 with waveforms
+  las_1_4_legacy,  ///< point format 1, 4 with waveforms: 5 returns, 32 classes, whole degrees
+  las_1_0,         ///< point format 1: as above, without waveforms, WKT, kind of GPS time
 };
 
 /// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
   amplitude,    ///< received power of the echo, as most instruments report it
-  /// Received power times the squared share of the range in `intensity_range`: as of the surface there, but for the air
+  /// Received power times the squared ratio of the range to `intensity_range`
   range_normalized,
 };
 
@@ -91,26 +82,27 @@ struct LasSettings {
 
   LasFormat format = LasFormat::las_1_4;  ///< version and point format
   bool waveforms = false;                 ///< true to write waveforms to a .wdp file beside it
-  bool light_kinds = false;               ///< true to write `Echo::kind` as an extra byte: `ReflectionKind` by number
-  PointColours colours = {};   ///< colours of the points; an unknown one is black. Empty: points without colours
-  bool near_infrared = false;  ///< true to write the near infrared of the colours, too
-  /// Attributes of objects, one extra value of a point for each name; NaN where unknown. Null for none.
+  bool light_kinds = false;               ///< true to write `Echo::kind` as an extra byte
+  PointColours colours = {};              ///< colours, black if unknown. Empty: no colours
+  bool near_infrared = false;             ///< true to write the near infrared of the colours, too
+  /// Attributes of objects, an extra value for each name; NaN where unknown. Null for none.
   std::shared_ptr<const ObjectAttributes> attributes = nullptr;
-  std::vector<PointField> columns = {};  ///< further extra values of a point, see `layouts::columns`
-  /// Values of `columns`; start time, reference power, and colours and attributes if any, are those of the file.
+  std::vector<PointField> columns = {};  ///< further extra values, see `layouts::columns`
+  /// Values of `columns`, but for start time, reference power, colours and attributes of the file.
   PointSettings points = {};
-  double scale = 1e-4;              ///< step of the coordinates [m]
-  std::optional<Vec3> offset = {};  ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
-  std::string wkt = {};             ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
-  std::uint16_t epsg = 0;           ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
+  double scale = 1e-4;  ///< step of the coordinates [m]
+  /// Origin of the coordinates [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  std::optional<Vec3> offset = {};
+  std::string wkt = {};                                ///< OGC well-known text; if empty, by `epsg`
+  std::uint16_t epsg = 0;                              ///< EPSG code of a system in metres; 0: none
   GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
-  /// Value stored as 65535, the maximum, and clipped above; if empty, a reflectance of 1, or the maximum amplitude [W]
+  /// Value stored as 65535, clipped above; empty: reflectance 1, or the maximum amplitude [W]
   std::optional<double> intensity_full_scale = {};
   double intensity_range = 1;                  ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;           ///< reference power of amplitudes in dB [W]
-  std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0, for equal bytes of equal surveys
+  std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
@@ -120,8 +112,8 @@ struct LasSettings {
     points.validate();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // and a terminator
-    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // EPSG codes; source: OGC GeoTIFF 1.1
+    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");
+    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");
     if (intensity == LasIntensity::range_normalized && !intensity_full_scale)
@@ -151,7 +143,7 @@ struct LasSettings {
                    65535 / detail::las_descriptor_size, "");
     for (auto extra = all.begin(); extra != all.end(); ++extra) {
       const std::string_view name = detail::las_cut(extra->name);
-      const auto has_name = [&](const PointField& other) { return detail::las_cut(other.name) == name; };
+      const auto has_name = [&](auto& other) { return detail::las_cut(other.name) == name; };
       if (name.empty() || std::any_of(all.begin(), extra, has_name))
         throw SettingError(text::joined({"LasSettings, length of the name '", extra->name, "' of an extra value"}),
                            static_cast<double>(name.size()), "bytes",
@@ -167,8 +159,9 @@ inline std::vector<PointField> las_extras(const LasSettings& s) {
   for (const LasUsualExtra& usual : las_usual_extras)
     all.push_back({std::string(usual.name), usual.type, usual.column, usual.scale});
   if (s.light_kinds) all.push_back({"LightKind", NumberType::uint8, column("kind")});
-  if (s.attributes) std::ranges::copy(layouts::attributes(s.attributes->names()), std::back_inserter(all));
-  std::ranges::copy(s.columns, std::back_inserter(all));
+  const auto add = [&](const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+  if (s.attributes) add(layouts::attributes(s.attributes->names()));
+  add(s.columns);
   return all;
 }
 
@@ -182,8 +175,8 @@ inline std::vector<PointField> las_extras(const LasSettings& s) {
   return points;
 }
 
-/// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 to 9;
-/// LAS 1.0, Public Header Block, Point Data Start Signature.
+/// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record
+/// Formats 1, 4, 6 to 9; LAS 1.0, Public Header Block, Point Data Start Signature.
 struct LasLayout {
   explicit LasLayout(const LasSettings& s)
       : legacy(s.format != LasFormat::las_1_4),
@@ -218,9 +211,9 @@ struct LasLayout {
   bool legacy;                           ///< true for point formats older than version 1.4
   std::uint8_t minor, format;            ///< version 1.`minor`, point format
   std::size_t header;                    ///< size of the header [byte]
-  std::size_t start_signature;           ///< size of the signature between the last record and the first point [byte]
-  std::size_t colour, colour_size;       ///< offset and size of red, green, blue and near infrared in a point [byte]
-  std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
+  std::size_t start_signature;           ///< size of the signature before the first point [byte]
+  std::size_t colour, colour_size;       ///< offset and size of the colour in a point [byte]
+  std::size_t packet, extras;            ///< offsets of wave packet and extra bytes [byte]
   std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
   PointLayout columns{};                 ///< colours and further extra values in a point
 };

@@ -6,16 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
@@ -28,7 +19,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Reads back records of `record` bytes from offset `begin` on: `task(at, bytes)` gets blocks of whole records.
+/// Reads back records of `record` bytes from `begin` on, some at a time: `task(at, bytes)`.
 template <class Task>
 void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, const Task& task) {
   const std::uint64_t at_once = (std::size_t{1} << 20) / record * record, end = file.position();
@@ -46,25 +37,25 @@ struct LasExtendedRecords {
   std::uint32_t count = 0;
 };
 
-/// Writes points as LAS with extra bytes. `Records`, as `LasRecords`, `LazRecords` or `CopcRecords`, stores the point
-/// records, in pulse order or another, and may change them once all are known. Source of every field: ASPRS LAS
-/// Specification 1.4 R15. Choices that it leaves open:
-/// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
-/// - intensity is linear in the quantity of `LasIntensity`; Amplitude and Reflectance are levels [dB], -200 for zero;
-/// - return numbers and counts end at 15, or 5, by format: later returns are written as the last, see `pulses_cut`;
-/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most
-/// 255, and scanner channel its lowest two bits: pulses of one GPS time differ in them;
+/// Writes points as LAS with extra bytes. `Records`, as `LasRecords`, `LazRecords` or
+/// `CopcRecords`, stores the point records, in pulse order or another, and may change them once all
+/// are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves open:
+/// - coordinates are rounded to nearest; one beyond 32 bits, or not finite, is a `FileError`;
+/// - intensity is linear in `LasIntensity`; Amplitude, Reflectance are levels [dB], -200 for zero;
+/// - returns end at 15, or 5, by format: later ones are written as the last, see `pulses_cut`;
+/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the
+/// channel, at most 255, and scanner channel its lowest two bits;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
-/// - a reference system given by its code alone, other than UTM, becomes GeoTIFF keys, with the WKT bit clear. The
-/// specification demands text with formats 6 to 9; a code is better than none. Legacy formats take any code as keys;
-/// - colours are those of `LasSettings::colours`, black if unknown; attributes of objects are doubles, NaN if unknown;
+/// - a reference system given by its code alone, other than UTM, becomes GeoTIFF keys, with the WKT
+/// bit clear, though formats 6 to 9 should have text. Legacy formats take any code as keys;
+/// - colours are black, and attributes of objects, which are doubles, NaN if unknown;
 /// - flags, scan direction and edge of flight line are 0, as echoes have no such fields.
 ///
-/// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point
-/// could refer to it. The return point waveform location L is the two-way time from the first sample to the echo [ps].
-/// The vector d points back to the instrument, with half the speed of light as length [m/ps]. Then, as in the
-/// specification, `P + L d` is the anchor, the origin of the first sample, and sample i is from `P + (L - i spacing)
-/// d`, for point P. Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed first.
+/// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not without
+/// echoes. The return point waveform location L is the two-way time from the first sample to the
+/// echo [ps]. The vector d points back to the instrument, with half the speed of light as length
+/// [m/ps]. Then `P + L d` is the origin of the first sample, and sample i is from `P + (L - i
+/// spacing) d`, for point P. `close()` completes the `.wdp` file, then this one: see `OutputFile`.
 template <class Records>
 class LasFileWriter {
  public:
@@ -72,8 +63,7 @@ class LasFileWriter {
       : encoder_(settled(validated(std::move(how)))), records_(std::move(records)), file_(std::move(path)) {
     if (settings().waveforms) packets_.emplace(packets_path());
     write_header();
-    file_.write(Records::first_descriptors());
-    variable_records_ += Records::first_descriptor_count;
+    write_descriptor(Records::first_descriptor());
     write_extra_bytes_record();
     if (!settings().wkt.empty()) write_wkt_record();
     if (by_keys()) write_keys_record();
@@ -82,9 +72,8 @@ class LasFileWriter {
       file_.write(packets_->descriptors());
       variable_records_ += LasPackets::descriptor_count;
     }
-    file_.write(Records::descriptors(layout()));
-    variable_records_ += Records::descriptor_count;
-    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: as `LasLayout`
+    write_descriptor(Records::descriptor(layout()));
+    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // as `LasLayout`
     points_at_ = file_.position();
     records_.begin(file_, layout(), encoder_.automatic_intensity());
     records_at_ = file_.position();
@@ -95,19 +84,19 @@ class LasFileWriter {
       if (shot.echoes != 0) write(shot, batch);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
   /// Offset of `Records` in the file, and size of the waveform file so far [byte].
   [[nodiscard]] std::uint64_t records_at() const noexcept { return records_at_; }
   [[nodiscard]] std::uint64_t packets_at() const noexcept { return packets_ ? packets_->position() : 0; }
 
-  /// Pulses with more than 15 returns, or 5, by format: their later returns have the number of the last that counts.
+  /// Pulses with more than 15 returns, or 5, by format: later returns have the number of the last.
   [[nodiscard]] std::uint64_t pulses_cut() const noexcept { return encoder_.tally().pulses_cut; }
 
   [[nodiscard]] Records& records() noexcept { return records_; }
 
-  /// Takes over content that others wrote to the temporary files: points with the statistics `tally`, up to offset
-  /// `end`, and waveforms up to `packets_end` [byte] with samples `spacing` apart [ps]. Only `close()` may follow.
+  /// Takes over what others wrote: points up to offset `end`, and waveforms up to `packets_end`
+  /// [byte] with samples `spacing` apart [ps]. Only `close()` may follow.
   void adopt(const LasTally& tally, const Vec3& first_point, std::uint64_t end, std::uint64_t packets_end = 0,
              std::uint32_t spacing = 0) {
     encoder_.tally() = tally;
@@ -116,7 +105,7 @@ class LasFileWriter {
     if (packets_) packets_->adopt(packets_end, spacing);
   }
 
-  /// Completes the header and automatic intensities, and gives the file its name. Throws a `FileError`.
+  /// Completes header and intensities, and gives the file its name. @throws FileError
   void close() {
     if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
       throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
@@ -146,7 +135,7 @@ class LasFileWriter {
   void write(const Shot& shot, const EchoBatch& batch) {
     std::optional<LasPacket> packet;
     if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
-    encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](LasEncoder::Record& record, const Vec3& point) {
+    encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](auto& record, const Vec3& point) {
       if (encoder_.tally().points == 0) encoder_.choose_offset(point);
       if (!encoder_.locate(record.data(), point)) misfit(point);
       records_.write(file_, std::span<const std::byte>(record).first(layout().record()));
@@ -165,9 +154,9 @@ class LasFileWriter {
                     encoder_.misfit(point));
   }
 
-  /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes are 0, as required
-  /// of legacy counts with formats 6 to 9, and of the start of waveforms in a file of their own. Version 1.0 ends
-  /// before it, and has no global encoding.
+  /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes
+  /// are 0, as required of legacy counts with formats 6 to 9, and of the start of waveforms in a
+  /// file of their own. Version 1.0 ends before it, and has no global encoding.
   void write_header() {
     const LasTally& tally = encoder_.tally();
     Header h{};
@@ -204,7 +193,7 @@ class LasFileWriter {
     h.put(235, records_.extended().begin);
     h.put(243, records_.extended().count);
     h.put(247, tally.points);
-    for (std::size_t i = 0; i < tally.points_by_return.size(); ++i) h.put(255 + 8 * i, tally.points_by_return[i]);
+    h.put(255, tally.points_by_return);
     const std::span<const std::byte> bytes = std::span(h).first(layout().header);
     if (file_.position() == 0)
       file_.write(bytes);
@@ -212,12 +201,18 @@ class LasFileWriter {
       file_.overwrite(0, bytes);
   }
 
-  /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit 4 is set with
-  /// well-known text, and with formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
+  /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit
+  /// 4 is set with well-known text, and with formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
   [[nodiscard]] std::uint16_t global_encoding() const noexcept {
     const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
-    return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) |
-                                      (wkt ? 1U << 4 : 0U));
+    const auto time = static_cast<unsigned>(settings().gps_time);
+    return static_cast<std::uint16_t>(time | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
+  }
+
+  /// Writes a whole record, or nothing.
+  void write_descriptor(std::span<const std::byte> record) {
+    file_.write(record);
+    variable_records_ += record.empty() ? 0 : 1;
   }
 
   void write_record_header(std::string_view user, std::uint16_t record, std::size_t size,
@@ -249,7 +244,6 @@ class LasFileWriter {
     file_.write(std::string_view(settings().wkt.c_str(), settings().wkt.size() + 1));
   }
 
-  /// True if the reference system is given by its code alone.
   [[nodiscard]] bool by_keys() const noexcept { return settings().wkt.empty() && settings().epsg != 0; }
 
   /// Writes the GeoTIFF keys. Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
@@ -263,7 +257,7 @@ class LasFileWriter {
   Records records_;
   OutputFile file_;
   std::optional<LasPackets> packets_;
-  std::uint32_t variable_records_ = 0;                                 // number of variable-length records
+  std::uint32_t variable_records_ = 0;                                 // number of them
   std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // offsets in the file [byte]
 };
 

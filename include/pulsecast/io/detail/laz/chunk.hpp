@@ -8,8 +8,6 @@
 #include <cstring>
 #include <memory>
 #include <span>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
@@ -18,12 +16,12 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from its version 3 on. Each attribute
-/// is a layer, left out if constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension),
-/// specification; files of it, items POINT14, RGB14, RGBNIR14 and BYTE14 in version 3, for details left open there.
+/// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from version 3 on.
+/// Each attribute is a layer, left out if constant. Source: Isenburg 2013, LASzip; LASzip for LAS
+/// 1.4 (native extension), specification; its files, items of version 3.
 class LazChunk {
  public:
-  /// One or more whole records of `record` bytes, contiguous; `colour` bytes of them are a colour: 0, 6 or 8.
+  /// One or more whole records of `record` bytes, `colour` of which are a colour: 0, 6 or 8.
   LazChunk(std::span<const std::byte> records, std::size_t record, std::size_t colour = 0)
       : records_(records), record_(record), colour_(colour) {
     points_.reserve(records.size() / record);
@@ -35,19 +33,21 @@ class LazChunk {
     std::vector<std::vector<std::byte>> layers;
     layers.push_back(positions());
     layers.push_back(heights());
-    layers.push_back(classes());
-    layers.push_back(flags());
+    layers.push_back(bytes<256>(&LazPoint::classification, [](auto& p, auto& before) {
+      return (before.classification & 31U) << 1 | (p.first() && p.last() ? 1U : 0U);
+    }));
+    layers.push_back(bytes<64>(&LazPoint::flags, [](auto&, auto& before) { return before.flags; }));
     layers.push_back(intensities());
-    layers.push_back(angles());
-    layers.push_back(users());
-    layers.push_back(sources());
+    layers.push_back(changes<2>(&LazPoint::angle));
+    layers.push_back(bytes<256>(&LazPoint::user, [](auto&, auto& before) { return before.user / 4; }));
+    layers.push_back(changes<1>(&LazPoint::source));
     layers.push_back(times());
     if (colour_ > 0) layers.push_back(layer_at<LazColours>(laz_point_size));
     if (colour_ > 6) layers.push_back(layer_at<LazNearInfrared>(laz_point_size + 6));
     add_extra_bytes(layers);
 
     std::vector<std::byte> bytes(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(record_));
-    const auto add = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+    const auto add = [&](std::span<const std::byte> b) { bytes.insert(bytes.end(), b.begin(), b.end()); };
     const auto add_number = [&](std::size_t number) {
       const auto n = static_cast<std::uint32_t>(number);
       add(std::as_bytes(std::span(&n, 1)));
@@ -59,12 +59,12 @@ class LazChunk {
   }
 
  private:
-  /// State of the positions layer for the other layers. Each scanner channel is predicted by itself.
+  /// State of the positions layer for others. Each scanner channel is predicted by itself.
   struct Step {
     const LazPoint* before;  ///< last point of this channel, or of any if there is none
     bool new_time;           ///< true if the time differs from that of `before`
     std::uint8_t out;        ///< error of the prediction in x and y: mean number of bits
-    std::uint8_t told;       ///< channel for extra bytes: that of the point if other than the last point's, else 0
+    std::uint8_t told;       ///< channel for extra bytes: that of the point if new, else 0
   };
 
   /// Models by channel, initialized with the point before the channel's first.
@@ -80,7 +80,7 @@ class LazChunk {
     std::array<std::unique_ptr<Models>, 4> models_;
   };
 
-  /// Kind of a return's place in its pulse, one of six: rows by the number of returns, columns by the return number.
+  /// Kind of a return's place in its pulse: rows by number of returns, columns by return number.
   [[nodiscard]] static std::size_t kind(const LazPoint& p) noexcept {
     static constexpr std::array<std::string_view, 16> kinds{
         "0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
@@ -90,9 +90,9 @@ class LazChunk {
     return static_cast<std::size_t>(kinds[p.returns][p.number] - '0');
   }
 
-  /// Context from a number of bits, rounded down to even and limited; plus 1 for the only return of a pulse.
-  [[nodiscard]] static std::size_t context(unsigned bits, unsigned greatest, const LazPoint& p) noexcept {
-    return (bits < greatest ? bits & ~1U : greatest) + (p.only() ? 1U : 0U);
+  /// Context from a number of bits, rounded down to even and limited; plus 1 for an only return.
+  [[nodiscard]] static std::size_t context(unsigned bits, unsigned most, const LazPoint& p) noexcept {
+    return (bits < most ? bits & ~1U : most) + (p.only() ? 1U : 0U);
   }
 
   /// Encodes change flags, x and y. Fills `steps_`.
@@ -115,15 +115,15 @@ class LazChunk {
     bool new_time = false;  // of the last point
     for (std::size_t i = 1; i < points_.size(); ++i) {
       const LazPoint &p = points_[i], &last = points_[i - 1];
-      const LazPoint& before = last_of_channel[p.channel] != nullptr ? *last_of_channel[p.channel] : last;
-      last_of_channel[p.channel] = &p;
+      const LazPoint* const seen = std::exchange(last_of_channel[p.channel], &p);
+      const LazPoint& before = seen ? *seen : last;
       const unsigned place = (last.first() ? 1U : 0U) | (last.last() ? 2U : 0U) | (new_time ? 4U : 0U);
       new_time = p.time != before.time;
       const unsigned up = (p.number - before.number) & 15U;
       const unsigned number = up < 2 ? up : up == 15 ? 2U : 3U;  // same, next, previous, other
-      const unsigned news = number | (p.returns != before.returns ? 4U : 0U) | (p.angle != before.angle ? 8U : 0U) |
-                            (new_time ? 16U : 0U) | (p.source != before.source ? 32U : 0U) |
-                            (p.channel != last.channel ? 64U : 0U);
+      const auto bit = [](bool is, unsigned value) { return is ? value : 0U; };
+      const unsigned news = number | bit(p.returns != before.returns, 4) | bit(p.angle != before.angle, 8) |
+                            bit(new_time, 16) | bit(p.source != before.source, 32) | bit(p.channel != last.channel, 64);
       Models& of_last = channels.of(last.channel, last);
       encoder.encode(of_last.news[place], news);
       if (p.channel != last.channel) encoder.encode(of_last.channel, (p.channel - last.channel - 1U) & 3U);
@@ -134,10 +134,7 @@ class LazChunk {
       if (number == 3 && !new_time) encoder.encode(m.number_at_same_time, up - 2);
 
       const std::size_t series = 2 * kind(p) + (new_time ? 1 : 0);
-      const auto step = [](std::int32_t from, std::int32_t to) {
-        return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
-      };
-      const std::int32_t dx = step(before.x, p.x), dy = step(before.y, p.y);
+      const std::int32_t dx = laz_step(before.x, p.x), dy = laz_step(before.y, p.y);
       m.x.encode(encoder, m.x_step[series].value(), dx, p.only() ? 1 : 0);
       m.x_step[series].add(dx);
       m.y.encode(encoder, m.y_step[series].value(), dy, context(m.x.last_length(), 20, p));
@@ -148,7 +145,7 @@ class LazChunk {
     return std::move(encoder).finish();
   }
 
-  /// Encodes a layer of all points but the first: `encode(encoder, models, point, step)` encodes one.
+  /// Encodes all points but the first: `encode(encoder, models, point, step)` encodes one.
   template <class Models, class Encode>
   [[nodiscard]] std::vector<std::byte> layer(const Encode& encode) const {
     Channels<Models> channels;
@@ -173,34 +170,23 @@ class LazChunk {
       LazIntegers z{32, 20};
       std::array<std::int32_t, 8> last;  // by number of returns to come, approximately
     };
-    return layer<Models>([](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      std::int32_t& last =
-          m.last[std::min<unsigned>(p.returns > p.number ? p.returns - p.number : p.number - p.returns, 7)];
+    return layer<Models>([](auto& encoder, auto& m, auto& p, auto& step) {
+      const unsigned to_come = p.returns > p.number ? p.returns - p.number : p.number - p.returns;
+      std::int32_t& last = m.last[std::min(to_come, 7U)];
       m.z.encode(encoder, last, p.z, context(step.out, 18, p));
       last = p.z;
     });
   }
 
-  /// Models by kind of point.
-  template <std::size_t Symbols>
-  struct SymbolModels {
-    explicit SymbolModels(const LazPoint&) {}
-    std::array<LazModel<Symbols>, 64> of;
-  };
-
-  [[nodiscard]] std::vector<std::byte> classes() const {
-    using Models = SymbolModels<256>;
-    return layer_of<Models>(
-        &LazPoint::classification, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-          encoder.encode(m.of[(step.before->classification & 31U) << 1 | (p.first() && p.last() ? 1U : 0U)],
-                         p.classification);
-        });
-  }
-
-  [[nodiscard]] std::vector<std::byte> flags() const {
-    using Models = SymbolModels<64>;
-    return layer_of<Models>(&LazPoint::flags, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      encoder.encode(m.of[step.before->flags], p.flags);
+  /// Encodes a layer of bytes by models of `context(point, point before)`.
+  template <std::size_t Symbols, class ContextOf>
+  [[nodiscard]] std::vector<std::byte> bytes(std::uint8_t LazPoint::*value, const ContextOf& context) const {
+    struct Models {
+      explicit Models(const LazPoint&) {}
+      std::array<LazModel<Symbols>, 64> of;
+    };
+    return layer_of<Models>(value, [&](auto& encoder, auto& m, auto& p, auto& step) {
+      encoder.encode(m.of[context(p, *step.before)], p.*value);
     });
   }
 
@@ -210,39 +196,25 @@ class LazChunk {
       LazIntegers intensity{16, 4};
       std::array<std::uint16_t, 8> last;
     };
-    return layer_of<Models>(&LazPoint::intensity,
-                            [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-                              const unsigned end = (p.first() ? 2U : 0U) | (p.last() ? 1U : 0U);
-                              std::uint16_t& last = m.last[end << 1 | (step.new_time ? 1U : 0U)];
-                              m.intensity.encode(encoder, last, p.intensity, end);
-                              last = p.intensity;
-                            });
-  }
-
-  [[nodiscard]] std::vector<std::byte> angles() const {
-    struct Models {
-      explicit Models(const LazPoint&) {}
-      LazIntegers angle{16, 2};
-    };
-    return layer_of<Models>(&LazPoint::angle, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      if (p.angle != step.before->angle) m.angle.encode(encoder, step.before->angle, p.angle, step.new_time ? 1 : 0);
+    return layer_of<Models>(&LazPoint::intensity, [](auto& encoder, auto& m, auto& p, auto& step) {
+      const unsigned end = (p.first() ? 2U : 0U) | (p.last() ? 1U : 0U);
+      std::uint16_t& last = m.last[end << 1 | (step.new_time ? 1U : 0U)];
+      m.intensity.encode(encoder, last, p.intensity, end);
+      last = p.intensity;
     });
   }
 
-  [[nodiscard]] std::vector<std::byte> users() const {
-    using Models = SymbolModels<256>;
-    return layer_of<Models>(&LazPoint::user, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      encoder.encode(m.of[step.before->user / 4], p.user);
-    });
-  }
-
-  [[nodiscard]] std::vector<std::byte> sources() const {
+  /// Encodes a layer of values as changes; of two contexts, the second is for a new time.
+  template <std::size_t Contexts, class Value>
+  [[nodiscard]] std::vector<std::byte> changes(Value LazPoint::*value) const {
     struct Models {
       explicit Models(const LazPoint&) {}
-      LazIntegers source{16, 1};
+      LazIntegers value{16, Contexts};
     };
-    return layer_of<Models>(&LazPoint::source, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
-      if (p.source != step.before->source) m.source.encode(encoder, step.before->source, p.source);
+    return layer_of<Models>(value, [&](auto& encoder, auto& m, auto& p, auto& step) {
+      const Value before = step.before->*value;
+      const std::size_t context = Contexts == 2 && step.new_time ? 1 : 0;
+      if (p.*value != before) m.value.encode(encoder, before, p.*value, context);
     });
   }
 
@@ -251,12 +223,11 @@ class LazChunk {
       explicit Models(const LazPoint& before) : times(before.time) {}
       LazTimes times;
     };
-    return layer_of<Models>(&LazPoint::time, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+    return layer_of<Models>(&LazPoint::time, [](auto& encoder, auto& m, auto& p, auto& step) {
       if (step.new_time) m.times.encode(encoder, p.time);
     });
   }
 
-  /// Adds a layer for each extra byte.
   void add_extra_bytes(std::vector<std::vector<std::byte>>& layers) const {
     const std::size_t begin = laz_point_size + colour_, extras = record_ - begin, count = points_.size();
     std::vector<std::uint8_t> columns(extras * count);  // contiguous for each byte
@@ -287,9 +258,9 @@ class LazChunk {
     });
   }
 
-  /// Encodes a layer of a value of each point, or nothing if they are constant. As in all files of version 3, after a
-  /// change of the scanner channel the last value is still that of the channel before, and is stored there, unless the
-  /// channel is new.
+  /// Encodes a layer of a value of each point, or nothing if they are constant. As in all files of
+  /// version 3, after a change of the scanner channel the last value is still that of the channel
+  /// before, and is stored there, unless the channel is new.
   template <class Models, class ValueOf>
   [[nodiscard]] std::vector<std::byte> layer_by_told(const ValueOf& value) const {
     std::size_t same = 1;

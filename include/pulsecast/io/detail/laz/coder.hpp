@@ -11,8 +11,8 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// Arithmetic coder of LAZ. Source: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3; of
-/// the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and files of LASzip.
+/// Arithmetic coder of LAZ. Source: Said 2004, Introduction to Arithmetic Coding, 2.2 and 3; of
+/// constants: Isenburg 2013, LASzip, and its files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Adaptive frequency model of some symbols. Updates of the shares become rarer while coding.
@@ -29,7 +29,7 @@ class LazModel {
     until_renewal_ = cycle_ = (symbols_ + 6) / 2;
   }
 
-  /// Cumulative share of all symbols below this one, in 2^-15; the range of the last symbol ends at 1.
+  /// Cumulative share of the symbols below this one, in 2^-15; that of the last ends at 1.
   [[nodiscard]] std::uint32_t below(std::size_t symbol) const noexcept { return below_[symbol]; }
   [[nodiscard]] bool last(std::size_t symbol) const noexcept { return symbol + 1 == symbols_; }
 
@@ -57,7 +57,6 @@ class LazModel {
   std::array<std::uint16_t, Capacity> below_, count_;
 };
 
-/// Adaptive model of a bit.
 class LazBitModel {
  public:
   static constexpr unsigned share_bits = 13;
@@ -97,7 +96,7 @@ class LazEncoder {
     model.learn(bit);
   }
 
-  /// Encodes the lowest `count` bits of a number, from 1 to 32, as equally likely; the others must be 0.
+  /// Encodes the lowest `count` bits of a number, from 1 to 32, as equally likely; others are 0.
   void encode_bits(std::uint32_t value, unsigned count) {
     if (count > 19) {  // more would exceed the interval
       encode_bits(value & 0xFFFFU, 16);
@@ -110,7 +109,7 @@ class LazEncoder {
 
   /// Bytes of all coded symbols; bytes after them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
-    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // to 24 zeros at the end: the interval is at least 2^24 long
+    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // to 24 zeros: length_ >= 2^24
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);
@@ -127,7 +126,7 @@ class LazEncoder {
     std::array<std::byte, 4> bytes{};
     for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<std::byte>(base >> (24 - 8 * i));
     std::memcpy(out_.data() + size_, bytes.data(), bytes.size());
-    const unsigned done = static_cast<unsigned>(std::countl_zero(length)) & 24U;  // settled bits, in whole bytes
+    const unsigned done = static_cast<unsigned>(std::countl_zero(length)) & 24U;  // settled
     size_ += done / 8;
     base_ = base << done;
     length_ = length << done;

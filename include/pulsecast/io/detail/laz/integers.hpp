@@ -7,16 +7,14 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
-/// Coders of the numbers of a LAZ file.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the
-/// median. From then on it replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1.
+/// Running median of five numbers, zeros at first. A new one replaces the greatest until one is not
+/// below the median, then the least until one is not above it. Source: Isenburg 2013, LASzip, 4.1.
 class LazMedian {
  public:
   [[nodiscard]] std::int32_t value() const noexcept { return sorted_[2]; }
@@ -39,8 +37,13 @@ class LazMedian {
   bool drop_greatest_ = true;
 };
 
-/// Coder of integers as corrections to a prediction: first the bit length, by a model for each context, then the rank
-/// among those of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
+/// Step between two integers, which wraps around.
+[[nodiscard]] inline std::int32_t laz_step(std::int32_t from, std::int32_t to) noexcept {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
+}
+
+/// Coder of integers as corrections to a prediction: bit length, by a model for each context, then
+/// rank, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4.
 class LazIntegers {
  public:
   /// `bits` of the integers, 16 or 32; number of contexts.
@@ -50,16 +53,16 @@ class LazIntegers {
 
   /// Encodes a number; 16-bit ones may be signed or unsigned. Arithmetic wraps around.
   void encode(LazEncoder& encoder, std::int32_t expected, std::int32_t number, std::size_t context = 0) {
-    auto correction =
-        static_cast<std::int32_t>(static_cast<std::uint32_t>(number) - static_cast<std::uint32_t>(expected));
+    std::int32_t correction = laz_step(expected, number);
     if (bits_ == 16) correction = static_cast<std::int16_t>(correction);
-    // corrections of k bits are those in [1 - 2^k, -2^(k-1)] and [2^(k-1) + 1, 2^k]; with k = 0, 0 and 1
-    const auto size = static_cast<std::uint32_t>(correction > 0 ? correction - 1 : -std::int64_t{correction});
+    // corrections of k bits: in [1 - 2^k, -2^(k-1)] or [2^(k-1) + 1, 2^k]; with k = 0, 0 and 1
+    const std::int64_t above = correction > 0 ? correction - 1 : -std::int64_t{correction};
+    const auto size = static_cast<std::uint32_t>(above);
     length_ = static_cast<unsigned>(std::bit_width(size));
     encoder.encode(lengths_[context], length_);
     if (length_ == 0) return encoder.encode(zero_or_one_, correction == 1);
-    if (length_ == 32) return;                                                       // a single one: -2^31
-    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;  // among its length, from 0
+    if (length_ == 32) return;  // a single one: -2^31
+    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;
     LazModel<>& model = corrections_[length_ - 1];
     if (length_ <= modelled_bits) return encoder.encode(model, place);
     const unsigned others = length_ - modelled_bits;
@@ -79,8 +82,8 @@ class LazIntegers {
   std::vector<LazModel<>> corrections_;  // by length, from 1
 };
 
-/// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its
-/// last time and usual step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+/// Coder of times, as 64-bit patterns: continuations of one of four series, each with its last time
+/// and usual step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
 class LazTimes {
  public:
   explicit LazTimes(std::int64_t first) { last_[0] = first; }
@@ -99,7 +102,7 @@ class LazTimes {
   }
 
  private:
-  /// Symbols of a step as a multiple of the usual one: 0 to 499, at least 500, -9 to -1, at most -10; or a new series.
+  /// Multiples of the usual step: 0 to 499, at least 500, -9 to -1, at most -10; or a new series.
   static constexpr int most = 500, least = -10, new_series = most - least + 1;
   static constexpr int symbols = new_series + 4;  // plus the three other series
 

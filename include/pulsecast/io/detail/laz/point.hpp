@@ -5,18 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
-/// Fields of a point, and coders of its colour.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-static_assert(std::endian::native == std::endian::little,
-              "LAZ files are little-endian, and numbers are taken as they lie in memory");
-
-inline constexpr std::size_t laz_point_size = 30;  ///< size of point format 6 without extra bytes [byte]
+inline constexpr std::size_t laz_point_size = 30;  ///< of format 6, without extra bytes [byte]
 
 /// Standard fields of a point. Offsets: LAS 1.4 R15, Point Data Record Format 6.
 struct LazPoint {
@@ -48,31 +43,31 @@ struct LazPoint {
   std::uint16_t intensity = 0, source = 0;
   std::int16_t angle = 0;
   std::uint8_t number = 0, returns = 0;  ///< return number and number of returns of its pulse
-  std::uint8_t flags = 0;                ///< class flags, then scan direction and edge of flight line
+  std::uint8_t flags = 0;                ///< class flags, scan direction, edge of flight line
   std::uint8_t channel = 0, classification = 0, user = 0;
   std::int64_t time = 0;  ///< bit pattern of the double
 };
 
-// Coders of a point's colour, byte by byte: which differ from those before, and by how much. Source: LASzip for LAS 1.4
-// (native extension), specification, RGB and NIR layers; for the prediction of blue, the decoder of laz-perf.
+// Coders of colours by bytes: which differ from those before, and by how much. Source: LASzip for
+// LAS 1.4 (native extension), RGB and NIR layers; for the prediction of blue, laz-perf.
 
 /// Low and high byte of a 16-bit number.
 [[nodiscard]] constexpr std::array<std::uint8_t, 2> laz_halves(std::uint16_t value) noexcept {
   return {static_cast<std::uint8_t>(value & 255U), static_cast<std::uint8_t>(value >> 8)};
 }
 
-/// Coder of red, green and blue.
 class LazColours {
  public:
   using Value = std::array<std::uint16_t, 3>;
 
   void encode(LazEncoder& encoder, const Value& before, const Value& now) {
     std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
-    unsigned changed = 0;  // a bit a byte: low and high of red, green and blue; one more if not grey
+    unsigned changed = 0;  // low and high byte of red, green and blue; one more bit if not grey
     for (std::size_t c = 0; c < 3; ++c) {
       old[c] = laz_halves(before[c]);
       next[c] = laz_halves(now[c]);
-      for (std::size_t half = 0; half < 2; ++half) changed |= old[c][half] != next[c][half] ? 1U << (2 * c + half) : 0U;
+      for (std::size_t half = 0; half < 2; ++half)
+        if (old[c][half] != next[c][half]) changed |= 1U << (2 * c + half);
     }
     if (next[0] != next[1] || next[0] != next[2]) changed |= 64U;
     encoder.encode(changed_, changed);
@@ -100,7 +95,6 @@ class LazColours {
   std::array<LazModel<256>, 6> steps_;  // low and high byte of red, green and blue
 };
 
-/// Coder of the near infrared.
 class LazNearInfrared {
  public:
   using Value = std::uint16_t;

@@ -43,7 +43,7 @@ class CalibrationFile {
   }
 
   /// Map of a name in the root, of a file with sections; the root itself of one without.
-  [[nodiscard]] YAML::Node section(const std::string& name) const { return find(root_, name).value_or(root_); }
+  [[nodiscard]] YAML::Node section(const std::string& key) const { return find(root_, key).value_or(root_); }
 
   /// Text of a scalar, which is called `name` in messages. @throws FileError for anything else
   [[nodiscard]] std::string word(const YAML::Node& node, const std::string& name) const {
@@ -56,9 +56,8 @@ class CalibrationFile {
     const std::string scalar = word(node, name);
     const std::optional<double> value = text::finite_number_in(scalar);
     if (!value || *value < low || *value > high) {
-      const std::string allowed =
-          low < high ? "a number from " + text::to_text(low) + " to " + text::to_text(high) : text::to_text(high);
-      fail(node, text::joined({name, " is ", text::quoted(scalar), ": expected ", allowed}));
+      const std::string from = low < high ? "a number from " + text::to_text(low) + " to " : "";
+      fail(node, text::joined({name, " is ", text::quoted(scalar), ": expected ", from, text::to_text(high)}));
     }
     return *value;
   }

@@ -16,7 +16,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Data packet of a sensor.
 struct SensorPacket {
-  Tick time{};                           ///< clock time of sending: the end of its last firing sequence
+  Tick time{};                           ///< clock time at the end of its last firing sequence
   std::uint16_t port = 0;                ///< UDP port of the receiver
   std::span<const std::byte> payload{};  ///< UDP payload, valid during the call that passes it on
 };
@@ -32,7 +32,6 @@ namespace detail {
 static_assert(std::endian::native == std::endian::little,
               "packets are little-endian, and are written as the numbers lie in memory");
 
-/// Writes a number at a position of a packet.
 template <class Number>
 void put(std::span<std::byte> bytes, std::size_t position, Number value) noexcept {
   std::memcpy(bytes.data() + position, &value, sizeof value);

@@ -22,7 +22,7 @@ enum class PacketReturns : std::uint8_t {
 /// Settings of the packets of a sensor.
 struct PacketSettings {
   PacketReturns returns = PacketReturns::strongest;  ///< returns of a pulse
-  double start_time = 0;                             ///< clock time at tick 0, as since 1970 in UTC, from 0 to 4e9 [s]
+  double start_time = 0;                             ///< clock time at tick 0, as since 1970, to 4e9 [s]
 
   void validate() const { require_within("PacketSettings::start_time", start_time, 0, 4e9, "s"); }
 };
@@ -41,24 +41,26 @@ struct PacketSource {
   }
 };
 
+using Echoes = std::span<const Echo>;
+
 /// Strongest echo but one; null if there is no other.
-[[nodiscard]] inline const Echo* strongest_but(const Echo* one, std::span<const Echo> echoes) noexcept {
+[[nodiscard]] inline const Echo* strongest_but(const Echo* one, Echoes echoes) noexcept {
   const Echo* strongest = nullptr;
   for (const Echo& echo : echoes)
-    if (&echo != one && (strongest == nullptr || echo.amplitude > strongest->amplitude)) strongest = &echo;
+    if (&echo != one && (!strongest || echo.amplitude > strongest->amplitude)) strongest = &echo;
   return strongest;
 }
 
 /// The return of a pulse with echoes, of single returns.
-[[nodiscard]] inline const Echo& single_return(std::span<const Echo> echoes, PacketReturns returns) noexcept {
+[[nodiscard]] inline const Echo& single_return(Echoes echoes, PacketReturns returns) noexcept {
   return returns == PacketReturns::last ? echoes.back() : *strongest_but(nullptr, echoes);
 }
 
-/// Layout of a sensor's packets, each of the same number of firing sequences. `begin` writes what is known before any
-/// echo to a payload of zeros, and `write` the returns of one laser in one sequence of the packet.
+/// Layout of packets, each of the same number of firing sequences. `begin` writes what is known
+/// before any echo to a payload of zeros, and `write` the returns of one laser in one sequence.
 template <class Format>
 concept PacketFormat = requires(const PacketSource& source, std::span<std::byte> payload, std::size_t number,
-                                PulseIndex first, std::span<const Echo> echoes) {
+                                PulseIndex first, Echoes echoes) {
   { Format::port } -> std::convertible_to<std::uint16_t>;
   { Format::validate(source.sensor) } -> std::same_as<void>;
   { Format::size(source) } -> std::same_as<std::size_t>;
@@ -67,8 +69,8 @@ concept PacketFormat = requires(const PacketSource& source, std::span<std::byte>
   { Format::write(source, payload, number, number, echoes) } -> std::same_as<void>;
 };
 
-/// Sink that writes the echoes of a sensor as its packets. Packet n holds the same firing sequences, whatever the run
-/// begins with. From that of the first echo on, all are passed on, in order, also those without echoes.
+/// Sink that writes the echoes of a sensor as its packets. Packet n holds the same firing sequences
+/// in any run. From the first echo on, all are passed on, in order, also those without echoes.
 template <PacketFormat Format>
 class PacketStream {
  public:
@@ -79,7 +81,7 @@ class PacketStream {
     payload_.resize(Format::size(source_));
   }
 
-  /// Writes the echoes of a batch. @throws SettingError for pulses out of order; and whatever the consumer throws
+  /// Writes the echoes of a batch. @throws SettingError for pulses out of order
   void operator()(const EchoBatch& batch) {
     const std::size_t lasers = source_.sensor.lasers.size(), sequences = Format::sequences(source_);
     for (const Shot& shot : batch.shots) {
@@ -94,9 +96,9 @@ class PacketStream {
                     static_cast<std::size_t>(shot.index % lasers), batch.echoes_of(shot));
     }
   }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
-  /// Passes the last packet on, whose missing firings are empty. The next pulse begins a new stream.
+  /// Passes on the last packet, even if incomplete. The next pulse begins a new stream.
   void close() {
     if (is_open_) send();
     is_open_ = false;

@@ -7,21 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <string>
-#include <string_view>
-#include <utility>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/vector.hpp>
+#include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Row of a text table: numbers with a separator between, a blank by default, independent of the locale.
+/// Row of a text table, with a separator between the cells. Independent of the locale.
 class TextRow {
  public:
   explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
@@ -32,24 +25,22 @@ class TextRow {
   /// Adds a number in fixed notation, rounded to nearest; zero and NaN have no sign.
   TextRow& add(double value, int decimals) {
     if (std::isnan(value)) return append("nan");
-    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as the general case
-      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)],
-                   units = size * unit;
+    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast
+      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)];
+      const double units = size * unit;
       if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
     }
     std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // of the longest number
-    const auto [end, error] =
-        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
-    std::string_view text(digits.data(), end);
-    if (text.find_first_not_of("-0.") == std::string_view::npos && text.front() == '-') text.remove_prefix(1);
+    constexpr auto fixed = std::chars_format::fixed;
+    std::string_view text(digits.begin(), std::to_chars(digits.begin(), digits.end(), value, fixed, decimals).ptr);
+    if (text.find_first_not_of("-0.") == text.npos && text.front() == '-') text.remove_prefix(1);
     return append(text);
   }
 
   template <std::integral Integer>
   TextRow& add(Integer value) {
     std::array<char, std::numeric_limits<Integer>::digits10 + 3> digits;
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    return append({digits.data(), end});
+    return append({digits.begin(), std::to_chars(digits.begin(), digits.end(), value).ptr});
   }
 
   /// Adds a word, which must not contain the separator.
@@ -65,10 +56,11 @@ class TextRow {
  private:
   static constexpr std::array powers_of_ten{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error decides ties, and
-  /// exact ties go to even, so the digits are those of the exact product.
+  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error
+  /// decides ties, and exact ties go to even, so the digits are those of the exact product.
   TextRow& append_units(bool negative, double size, double unit, double units, int decimals) {
-    const double below = std::floor(units), over_half = (units - below - 0.5) + std::fma(size, unit, -units);
+    const double below = std::floor(units);
+    const double over_half = (units - below - 0.5) + std::fma(size, unit, -units);
     auto whole = static_cast<std::uint64_t>(below);
     if (over_half > 0 || (over_half == 0 && whole % 2 == 1)) ++whole;
     std::array<char, 24> digits;
@@ -103,10 +95,15 @@ class TextOutput {
  public:
   explicit TextOutput(OutputFile file) : file_(std::move(file)) {}
 
-  /// Adds a position or direction. If it is not finite, discards the table and throws a `FileError` about `what`.
+  /// Adds a vector. If it is not finite, discards the table and throws a `FileError` about `what`.
   TextOutput& vector(std::string_view what, const Vec3& v, int decimals) {
     if (!finite(v)) reject(what);
     return reals(decimals, v.x, v.y, v.z);
+  }
+
+  /// Adds origin and direction of a pulse, with 4 and 9 decimals.
+  TextOutput& beam(const Shot& shot) {
+    return vector("the origin of a pulse", shot.origin, 4).vector("the direction of a pulse", shot.direction, 9);
   }
 
   /// Adds numbers with a fixed number of decimals.
@@ -116,20 +113,16 @@ class TextOutput {
     return *this;
   }
 
-  /// Adds a time [ns] with 4 decimals, rounded to nearest, all exact: a double would lose some of them after minutes.
+  /// Adds a time [ns] with 4 exact decimals: a double would lose some of them after minutes.
   TextOutput& nanoseconds(const Tick& time) {
     const bool negative = time.second < 0;
     constexpr std::int64_t unit = 10'000;  // per nanosecond: 0.1 ps
-    const auto units =
-        static_cast<std::int64_t>(std::nearbyint((negative ? 1 - time.fraction : time.fraction) * 1e9 * unit));
-    const std::int64_t whole = (negative ? -1 - time.second : time.second) * 1'000'000'000 + units / unit;
-    std::array<char, 32> digits;
-    char* end = digits.data();
-    if (negative) *end++ = '-';
-    end = std::to_chars(end, digits.data() + digits.size(), whole).ptr;
-    *end = '.';
-    for (std::int64_t i = 4, rest = units % unit; i > 0; --i, rest /= 10) end[i] = static_cast<char>('0' + rest % 10);
-    row_.add(std::string_view(digits.data(), end + 5));
+    const double fraction = negative ? 1 - time.fraction : time.fraction;
+    const auto units = static_cast<std::int64_t>(std::nearbyint(fraction * 1e9 * unit));
+    const std::int64_t seconds = negative ? -1 - time.second : time.second;
+    const std::string whole = std::to_string(seconds * 1'000'000'000 + units / unit);
+    const std::string decimals = std::to_string(unit + units % unit);  // after a leading 1
+    row_.add(text::joined({negative ? "-" : "", whole, ".", std::string_view(decimals).substr(1)}));
     return *this;
   }
 
@@ -139,7 +132,6 @@ class TextOutput {
     return *this;
   }
 
-  /// Adds a word without blanks.
   TextOutput& word(std::string_view word) {
     row_.add(word);
     return *this;
@@ -158,7 +150,7 @@ class TextOutput {
   [[noreturn]] void reject(std::string_view what) {
     file_.discard();
     throw FileError(file_.path().string(), "line " + std::to_string(rows_ + 1),
-                    "cannot be written: " + std::string(what) + " is not finite; expected finite coordinates");
+                    text::joined({"cannot be written: ", what, " is not finite; expected finite coordinates"}));
   }
 
   OutputFile file_;

@@ -5,11 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -21,11 +16,11 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped; so is a first
-/// row that is one whole number, as a count, or has no number, as the names of columns, with a warning. Default
-/// separators are semicolons if the first row has any, else commas, else blanks. Blanks and tabs around a cell are
-/// ignored; as separators, several count as one. The first row decides on normals and colours; others need the columns
-/// in use. Throws a `FileError` with path, line and column.
+/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are
+/// skipped; so is, with a warning, a first row that is a whole number, as a count, or has no
+/// number, as the names of columns. Default separators are semicolons if the first row has any,
+/// else commas, else blanks, several as one. Blanks around a cell are ignored. The first row
+/// decides on normals and colours. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, TextPointColumns columns)
@@ -37,7 +32,8 @@ class TextPoints {
       const std::string_view text = text::trimmed(*line);
       if (text.empty()) continue;
       if (text.front() == '#' || text.starts_with("//")) {
-        if (names_other_columns(text.substr(std::min(text.find_first_not_of("#/ \t"), text.size()))))
+        const std::size_t begin = text.find_first_not_of("#/ \t");
+        if (begin != text.npos && names_other_columns(text.substr(begin)))
           note("names x, y and z of other columns than those that are read");
         continue;
       }
@@ -75,7 +71,6 @@ class TextPoints {
  private:
   using Columns = TextPointColumns::Columns;
 
-  /// Of the current row.
   [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }
 
   void note(const std::string& oddity) {
@@ -93,7 +88,7 @@ class TextPoints {
     cells_.split(text, TextPointColumns::max_column + 1);
   }
 
-  /// True if a row of names has x, y and z, and one of them in another column than that which is read.
+  /// True if a row of names has x, y and z, not all in the columns that are read.
   [[nodiscard]] bool names_other_columns(std::string_view text) {
     split(text);
     bool is_other = false;
@@ -103,7 +98,8 @@ class TextPoints {
         return text::is_same_word(cell, std::string_view("xyz").substr(axis, 1));
       });
       if (named == cells().end()) return false;
-      is_other = is_other || static_cast<std::size_t>(named - cells().begin()) != columns_.position[axis];
+      const auto column = static_cast<std::size_t>(named - cells().begin());
+      is_other = is_other || column != columns_.position[axis];
     }
     return is_other;
   }
@@ -111,22 +107,22 @@ class TextPoints {
   /// True for a first row that is a count of points or has the names of columns. Notes it.
   [[nodiscard]] bool is_heading(std::string_view text) {
     if (std::exchange(has_heading_, true)) return false;
-    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && c != '\t'; })) return false;
+    if (std::ranges::any_of(text, [](unsigned char c) { return c < ' ' && c != '\t'; })) return false;
     split(text);
     const bool is_count = cells().size() == 1 && text::number_in<std::uint64_t>(text);
-    const bool has_number = std::any_of(cells().begin(), cells().end(),
-                                        [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; });
+    const auto is_number = [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; };
+    const bool has_number = std::ranges::any_of(cells(), is_number);
     if (!is_count && (has_number || cells().size() < 3)) return false;
     if (!is_count && names_other_columns(text))
       fail_here("names x, y and z of other columns than those that are read: expected these first");
-    note(text::quoted(text) + (is_count ? " is skipped, as a count of points" : " is skipped, as names of columns"));
+    note(text::quoted(text) + " is skipped, as " + (is_count ? "a count of points" : "names of columns"));
     return true;
   }
 
   /// Detects the separators and columns from the first row.
   void begin(std::string_view text) {
     split(text);
-    const auto last = [](const Columns& columns) { return *std::max_element(columns.begin(), columns.end()) + 1; };
+    const auto last = [](const Columns& columns) { return std::ranges::max(columns) + 1; };
     needed_ = last(columns_.position);
     if (cells().size() < needed_) too_few();
     for (std::optional<Columns>* columns : {&columns_.normal, &columns_.colour}) {
@@ -136,14 +132,12 @@ class TextPoints {
     begun_ = true;
   }
 
-  [[nodiscard]] Vec3 vector(const Columns& columns) const {
-    return {number(columns[0]), number(columns[1]), number(columns[2])};
-  }
+  [[nodiscard]] Vec3 vector(const Columns& of) const { return {number(of[0]), number(of[1]), number(of[2])}; }
 
   [[nodiscard]] double number(std::size_t column) const {
     const std::optional<double> value = text::number_in<double>(cells()[column]);
     if (value && std::fabs(*value) <= 1e12) return *value;
-    if (std::any_of(cells()[column].begin(), cells()[column].end(), [](unsigned char c) { return c < ' '; }))
+    if (std::ranges::any_of(cells()[column], [](unsigned char c) { return c < ' '; }))
       fail_here("holds binary data: expected the text of a point cloud");
     file_.fail_at_column(
         column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
@@ -155,10 +149,10 @@ class TextPoints {
 
   InputFile file_;
   TextPointColumns columns_;
-  RowCells cells_;
+  RowCells cells_{"", true};
   std::size_t needed_ = 0;  // columns in use
   std::vector<std::string> notes_;
-  bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: the first row has been looked at
+  bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: first row looked at
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

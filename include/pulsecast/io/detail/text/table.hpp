@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include <pulsecast/io/input_file.hpp>
@@ -15,17 +14,14 @@ namespace PULSECAST_NAMESPACE::io {
 /// Splitter of rows into cells.
 class RowCells {
  public:
-  RowCells() = default;
-
-  /// Any of the characters `separators` ends a cell. If `joins_blanks` is set, blanks and tabs around cells do not
-  /// count, and as separators several count as one.
+  /// Any of the characters `separators` ends a cell. If `joins_blanks` is set, blanks and tabs
+  /// around cells do not count, and as separators several count as one.
   RowCells(std::string_view separators, bool joins_blanks) : joins_blanks_(joins_blanks) {
     for (const char c : separators) separates_[static_cast<unsigned char>(c)] = true;
   }
 
-  /// Splits a row into `max_cells` cells at most, without blanks around them. Valid as long as the row, until the next.
-  const std::vector<std::string_view>& split(std::string_view row,
-                                             std::size_t max_cells = std::numeric_limits<std::size_t>::max()) {
+  /// Splits a row into at most `max_cells` cells, without blanks around them; valid until the next.
+  const std::vector<std::string_view>& split(std::string_view row, std::size_t max_cells = std::string_view::npos) {
     cells_.clear();
     const auto skip_blanks = [&](std::size_t at) {
       while (joins_blanks_ && at < row.size() && text::is_blank(row[at])) ++at;
@@ -44,7 +40,6 @@ class RowCells {
     return cells_;
   }
 
-  /// Of the row that was split last.
   [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_; }
 
  private:
@@ -64,13 +59,12 @@ struct Oddity {
   }
 };
 
-/// Reader of a text table, row by row, independent of the locale, with line and column for errors. The separator is
-/// given, or found in the first row: semicolon, else comma, else tab, else blanks, several as one. Quotation marks do
-/// not protect separators. Lines may end as on any system; blank ones are skipped.
+/// Reader of a text table, row by row, independent of the locale. The separator is given, or found
+/// in the first row: semicolon, else comma, else tab, else blanks, several as one. Quotation marks
+/// do not protect separators. Lines may end as on any system; blank ones are skipped.
 class TextTable {
  public:
-  /// `expected` content for error messages, as in "a trajectory". Throws a `FileError` if there is no such file, or it
-  /// is empty.
+  /// `expected` content, as in "a trajectory". @throws FileError for no file, or an empty one
   TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
       : file_(path, expected), expected_(expected) {
     if (separator) cells_ = cells_between(*separator);
@@ -80,7 +74,7 @@ class TextTable {
   bool next() {
     while (const std::optional<std::string_view> line = file_.take_line()) {
       line_text_ = *line;
-      if (std::any_of(line->begin(), line->end(), [](unsigned char c) { return c < ' ' && c != '\t'; }))
+      if (std::ranges::any_of(*line, [](unsigned char c) { return c < ' ' && c != '\t'; }))
         fail_here("holds binary data: expected the text of " + expected_);
       if (!text().empty()) return true;
     }
@@ -90,12 +84,11 @@ class TextTable {
   /// Current line without surrounding blanks.
   [[nodiscard]] std::string_view text() const { return text::trimmed(line_text_); }
 
-  [[nodiscard]] std::size_t line() const noexcept { return file_.line(); }  ///< number of the line, from 1
-  /// True for a last line without end.
+  [[nodiscard]] std::size_t line() const noexcept { return file_.line(); }  ///< number, from 1
   [[nodiscard]] bool line_is_open() const noexcept { return file_.line_is_open(); }
-  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }  ///< path of the file
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
-  /// Cells of the current line without surrounding blanks and quotation marks. Valid until the next line.
+  /// Cells of the current line, without blanks and quotation marks around; valid until the next.
   [[nodiscard]] const std::vector<std::string_view>& cells() {
     if (!cells_) cells_ = cells_between(separator_in(text()));
     unquoted_ = cells_->split(line_text_);

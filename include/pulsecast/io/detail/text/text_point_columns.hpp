@@ -4,10 +4,7 @@
 #define PULSECAST_IO_DETAIL_TEXT_TEXT_POINT_COLUMNS_HPP
 
 #include <array>
-#include <cstddef>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/require.hpp>
 
@@ -17,8 +14,8 @@ namespace PULSECAST_NAMESPACE::io {
 struct TextPointColumns {
   using Columns = std::array<std::size_t, 3>;
 
-  std::string separators = {};  ///< any of these characters; if empty, found in the first row: see `TextPoints`
-  Columns position{0, 1, 2};    ///< columns of x, y and z
+  std::string separators = {};                       ///< characters; if empty, as `TextPoints` finds
+  Columns position{0, 1, 2};                         ///< columns of x, y and z
   std::optional<Columns> normal = Columns{3, 4, 5};  ///< columns of its x, y and z
   std::optional<Columns> colour = Columns{6, 7, 8};  ///< columns of red, green and blue
   static constexpr std::size_t max_column = 999;     ///< upper limit of a column
@@ -31,7 +28,7 @@ struct TextPointColumns {
                            "that of a character outside numbers, comments and line ends");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
       for (const std::size_t column : columns)
-        require_within("TextPointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
+        require_within("TextPointColumns::column", static_cast<double>(column), 0, max_column, "");
   }
 };
 
