@@ -66,6 +66,11 @@ inline void require_within(std::string_view field, double value, double low, dou
   if (!(value >= low && value <= high)) detail::refuse_outside(field, value, low, high, unit);
 }
 
+/// As above, of a count.
+void require_within(std::string_view field, std::integral auto value, double low, double high, std::string_view unit) {
+  require_within(field, static_cast<double>(value), low, high, unit);
+}
+
 /// Throws a `SettingError` unless the angle is within a turn: in [-2 pi, 2 pi].
 inline void require_angle(std::string_view field, double value) {
   if (!(std::fabs(value) <= max_angle)) throw_setting_error(field, value, "rad", "from -2 pi to 2 pi");

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>

@@ -6,12 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <limits>
 #include <memory>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 #define PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 
-#include <cmath>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
@@ -34,7 +30,7 @@ struct FmcwSettings {
     require_positive("FmcwSettings::threshold", threshold, "W");
     require_positive("FmcwSettings::quantum_efficiency", quantum_efficiency, "");
     require_within("FmcwSettings::quantum_efficiency", quantum_efficiency, 0, 1, "");
-    require_within("FmcwSettings::returns_max", static_cast<double>(returns_max), 1, 64, "");
+    require_within("FmcwSettings::returns_max", returns_max, 1, 64, "");
   }
 
   /// Range that changes the beat by one period in a sweep: c / 2B [m].

@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>

@@ -5,14 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <span>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
@@ -24,7 +19,7 @@ struct PhaseShiftSettings {
   double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
 
   void validate() const {
-    require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
+    require_within("PhaseShiftSettings::frequencies (number)", frequencies.size(), 1, 8, "");
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
       require_within("PhaseShiftSettings::frequencies", frequencies[k], 1e3, 1e11, "Hz");
       if (k > 0)

@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
@@ -40,15 +35,15 @@ struct PhotonCountingSettings {
     require_within("PhotonCountingSettings::efficiency", efficiency, 0, 1, "");
     require_within("PhotonCountingSettings::dark_rate", dark_rate, 0, 1e12, "1/s");
     require_within("PhotonCountingSettings::background", background, 0, 1, "W");
-    require_within("PhotonCountingSettings::pixels", static_cast<double>(pixels), 1, 4096, "");
+    require_within("PhotonCountingSettings::pixels", pixels, 1, 4096, "");
     require_within("PhotonCountingSettings::dead_time", dead_time, 0, std::numeric_limits<double>::infinity(), "s");
     require_within("PhotonCountingSettings::afterpulse", afterpulse, 0, 0.99, "");
     require_not_negative("PhotonCountingSettings::afterpulse_time", afterpulse_time, "s");
     require_not_negative("PhotonCountingSettings::jitter", jitter, "s");
-    require_within("PhotonCountingSettings::shots", static_cast<double>(shots), 1, 1e4, "");
+    require_within("PhotonCountingSettings::shots", shots, 1, 1e4, "");
     require_within("PhotonCountingSettings::bin", bin, 1e-13, 1e-3, "s");
-    require_within("PhotonCountingSettings::threshold", static_cast<double>(threshold), 1, 1e6, "");
-    require_within("PhotonCountingSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
+    require_within("PhotonCountingSettings::threshold", threshold, 1, 1e6, "");
+    require_within("PhotonCountingSettings::returns_max", returns_max, 1, 255, "");
   }
 };
 

@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_PULSE_FORM_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <numbers>
 #include <vector>
@@ -70,7 +69,7 @@ class MeasuredPulse {
   /// `samples`: at least two, by increasing time. @throws SettingError for another order, negative powers, or no power
   /// at all
   explicit MeasuredPulse(std::vector<PulseSample> samples) : samples_(std::move(samples)) {
-    require_within("MeasuredPulse (number of samples)", static_cast<double>(samples_.size()), 2, 1e6, "");
+    require_within("MeasuredPulse (number of samples)", samples_.size(), 2, 1e6, "");
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       require_within("MeasuredPulse: time", samples_[i].time, -1, 1, "s");
       require_not_negative("MeasuredPulse: power", samples_[i].power, "");

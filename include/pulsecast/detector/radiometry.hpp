@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DETECTOR_RADIOMETRY_HPP
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
-#include <cmath>
 #include <limits>
 #include <span>
 

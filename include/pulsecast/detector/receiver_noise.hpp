@@ -3,10 +3,6 @@
 #ifndef PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 #define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/ideal_samples.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>

@@ -4,11 +4,7 @@
 #define PULSECAST_DETECTOR_RETURNS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -32,7 +28,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   /// `number` is that of `n_nearest` and `n_strongest`, from 1 to 255. @throws SettingError
   SelectedReturns(ReturnMode mode, Inner inside, std::size_t number = 3)
       : DetectorAdaptor<Inner>{validated(std::move(inside))}, mode_(mode), number_(number) {
-    require_within("SelectedReturns (number)", static_cast<double>(number), 1, 255, "");
+    require_within("SelectedReturns (number)", number, 1, 255, "");
   }
 
   /// Selected echoes of the detector inside.

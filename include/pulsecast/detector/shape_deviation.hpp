@@ -4,13 +4,7 @@
 #define PULSECAST_DETECTOR_SHAPE_DEVIATION_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/full_waveform.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
 #define PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/detector/detail/kept_returns.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
@@ -47,7 +45,7 @@ struct WaveformSettings {
     require_not_negative("WaveformSettings::window", window, "s");
     require_within("WaveformSettings::fraction", fraction, 0.01, 0.99, "");
     require_not_negative("WaveformSettings::dead_time", dead_time, "s");
-    require_within("WaveformSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
+    require_within("WaveformSettings::returns_max", returns_max, 1, 255, "");
     require_within("WaveformSettings::record_length", record_length, 0, max_kept * sample_interval, "s");
     require_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
   }

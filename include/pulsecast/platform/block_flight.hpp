@@ -4,11 +4,7 @@
 #define PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 
 namespace PULSECAST_NAMESPACE {

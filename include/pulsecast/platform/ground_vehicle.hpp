@@ -4,10 +4,7 @@
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
@@ -114,7 +111,7 @@ namespace detail {
 /// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers`
 /// receives their indices in the list. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
-  require_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_ground_vehicle: waypoints (number)", waypoints.size(), 1, 1e7, "");
   std::vector<Vec2> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_ground_vehicle: waypoints[" + std::to_string(k) + "].";

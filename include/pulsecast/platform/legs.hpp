@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
@@ -30,7 +29,7 @@ class Legs {
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
   /// `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {
-    require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
+    require_within("Legs::legs (number)", legs.size(), 1, 65535, "");
     PulseIndex first = 0;
     Tick start{}, last{};
     for (Leg<P>& leg : legs) {

@@ -4,10 +4,7 @@
 #define PULSECAST_PLATFORM_MULTICOPTER_HPP
 
 #include <algorithm>
-#include <cmath>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
@@ -166,7 +163,7 @@ class FlightPlan {
 /// `numbers` maps each to its merged waypoint. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints,
                                                       std::vector<std::size_t>& numbers) {
-  require_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_multicopter: waypoints (number)", waypoints.size(), 1, 1e7, "");
   std::vector<FlightPoint> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_multicopter: waypoints[" + std::to_string(k) + "].";

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>

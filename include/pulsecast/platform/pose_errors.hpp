@@ -5,12 +5,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <optional>
-#include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/pulse_lanes.hpp>

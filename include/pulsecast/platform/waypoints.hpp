@@ -4,11 +4,7 @@
 #define PULSECAST_PLATFORM_WAYPOINTS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
@@ -34,7 +30,7 @@ class Waypoints {
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
       : points_(std::move(points)) {
-    require_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
+    require_within("Waypoints::points (number)", points_.size(), 1, 1e9, "");
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
       TimedPose& p = points_[i];

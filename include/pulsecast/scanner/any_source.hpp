@@ -3,28 +3,24 @@
 #ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
-#include <optional>
-#include <utility>
 #include <variant>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, for uses that require a single type, such as platforms of different kinds in
-/// `Legs`, or emitters of one device with different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror,
-/// Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
+/// Pulse source of one of several types, where a single type is required: platforms of different
+/// kinds in `Legs`, or emitters with different optics:
+/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam,
+/// Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
-      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): implicit by purpose
+      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] PulseIndex size() const noexcept {
     return std::visit([](const auto& s) noexcept { return s.size(); }, source_);

@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>

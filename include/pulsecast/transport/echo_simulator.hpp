@@ -4,16 +4,8 @@
 #define PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
@@ -113,7 +105,7 @@ class EchoSimulator {
       if (interval_of(unit) != interval)
         throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
       if (recorded)
-        require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
+        require_within("Survey::receivers (subrays)", unit.footprint.size(), subrays, subrays, "");
     }
   }
 
@@ -188,7 +180,7 @@ EchoSimulator<Footprint, Target, Detector, Transport>::EchoSimulator(
     std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
     const std::vector<Emitter>& emitters, std::uint64_t seed)
     : target_(&target), transport_(validated(std::move(transport))), receivers_(std::move(receivers)), seed_(seed) {
-  require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
+  require_within("Survey::receivers (number)", receivers_.size(), 1, max_emitters, "");
   for (Unit& unit : receivers_) {
     detail::validate_in_place(unit.footprint);
     detail::validate_in_place(unit.receiver);

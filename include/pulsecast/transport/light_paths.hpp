@@ -3,7 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 #define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
@@ -32,10 +31,10 @@ struct LightPaths {
   std::size_t volume_cells = 8192;
 
   void validate() const {
-    require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
+    require_within("LightPaths::passages", passages, 0, 32, "");
     require_within("LightPaths::share_min", share_min, 0, 1, "");
     scattering.validate();
-    require_within("LightPaths::volume_cells", static_cast<double>(volume_cells), 4, 1e6, "");
+    require_within("LightPaths::volume_cells", volume_cells, 4, 1e6, "");
   }
 
   /// Refuses a target that `VisitsMaterials` for a law that does not `ScattersBetween`, if light is scattered to and

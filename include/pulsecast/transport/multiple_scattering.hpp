@@ -16,8 +16,8 @@ struct MultipleScattering {
                                 ///< that of the beam [rad]
 
   void validate() const {
-    require_within("MultipleScattering::orders", static_cast<double>(orders), 1, 64, "");
-    require_within("MultipleScattering::paths", static_cast<double>(paths), 1, 100'000, "");
+    require_within("MultipleScattering::orders", orders, 1, 64, "");
+    require_within("MultipleScattering::paths", paths, 1, 100'000, "");
     require_within("MultipleScattering::field_of_view", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");
   }
   /// Number of reflections that it may add to a pulse.

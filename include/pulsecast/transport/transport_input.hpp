@@ -8,8 +8,6 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
-#include <pulsecast/echo.hpp>
-#include <pulsecast/pulse.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_DETAIL_BAND_LIMITED_SAMPLES_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/filtered_noise.hpp>

@@ -4,10 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_CONTINUOUS_WAVEFORM_HPP
 
 #include <algorithm>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_EDGE_AGE_MOMENTS_HPP
 
 #include <array>
-#include <cmath>
 
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

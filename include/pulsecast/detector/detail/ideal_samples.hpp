@@ -3,10 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 #define PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 
-#include <cmath>
-#include <limits>
-
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>

@@ -4,11 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_PEAKS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>

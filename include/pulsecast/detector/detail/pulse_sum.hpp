@@ -4,11 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_PULSE_SUM_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 

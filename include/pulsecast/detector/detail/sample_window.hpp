@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
 
 #include <array>
-#include <cmath>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>

@@ -4,12 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_SINGLE_PEAK_GROUP_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>

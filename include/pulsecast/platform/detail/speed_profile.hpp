@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 #define PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 
-#include <cmath>
 #include <span>
 #include <vector>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 #define PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 
-#include <cmath>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>

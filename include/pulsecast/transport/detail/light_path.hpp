@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/material.hpp>
 

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/find_hits.hpp>

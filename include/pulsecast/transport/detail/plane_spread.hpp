@@ -4,11 +4,7 @@
 #define PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>

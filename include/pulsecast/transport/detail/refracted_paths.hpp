@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 
 #include <algorithm>
-#include <limits>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>

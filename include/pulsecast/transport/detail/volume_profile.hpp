@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
