@@ -36,6 +36,9 @@ struct RandomKey {
   std::uint32_t subray = 0;          ///< number of the subray, or of another draw
   Purpose purpose = Purpose::scene;  ///< purpose of the draw
   std::uint32_t part = 0;            ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
+
+  /// The same key for another purpose.
+  [[nodiscard]] constexpr RandomKey with(Purpose other) const noexcept { return {seed, pulse, subray, other, part}; }
 };
 
 namespace detail {

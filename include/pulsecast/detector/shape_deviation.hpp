@@ -11,10 +11,11 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Waveform detector that adds each echo's deviation from the shape of a flat target, `Echo::shape_deviation`: the mean
-/// over the samples within a pulse length of the echo, in thousandths of the echo's maximum. 0 is a flat target;
-/// slopes, edges and leaves have more. The detector inside keeps waveforms: its `record_length` is greater than 0, and
-/// echoes beyond the record have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
+/// Waveform detector that adds each echo's deviation from the shape of a flat target,
+/// `Echo::shape_deviation`: the mean over the samples within a pulse length, in thousandths of the
+/// echo's maximum. Slopes, edges and leaves have more. The detector inside keeps waveforms, of a
+/// `record_length` greater than 0; echoes beyond have none. Source: Pfennigbauer & Ullrich 2010,
+/// SPIE 7684 (pulse shape deviation).
 template <class Inner>
 class ShapeDeviation : public DetectorAdaptor<Inner> {
  public:
@@ -43,7 +44,7 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
 
   [[nodiscard]] double interval() const noexcept { return this->inner.settings().sample_interval; }
 
-  /// Waveform of a flat target from a pulse length before its range to one after it, relative to its amplitude.
+  /// Waveform of a flat target from a pulse length before its range to one after, by its amplitude.
   [[nodiscard]] std::vector<double> shape_of(const Laser& laser) const {
     const auto reach = static_cast<std::size_t>(std::ceil(laser.pulse_length / interval())) + 1;
     std::vector<double> shape(2 * reach * places + 1);

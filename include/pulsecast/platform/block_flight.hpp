@@ -32,8 +32,8 @@ struct BlockFlight {
   }
 };
 
-/// Lines of a block flight, from left to right as seen along the first line. Together their swaths cover the area, with
-/// equal margins on both sides. Throws a `SettingError`.
+/// Lines of a block flight, from left to right as seen along the first line. Together their swaths
+/// cover the area, with equal margins on both sides. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<StraightLine> plan_block_flight(const BlockFlight& block) {
   block.validate();
   const Vec3 along{std::sin(block.heading), std::cos(block.heading), 0}, across{along.y, -along.x, 0};

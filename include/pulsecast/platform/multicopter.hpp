@@ -31,9 +31,9 @@ struct MulticopterSettings {
   double bank_max = pi / 6;                        ///< maximum angle from upright [rad]
   double yaw_rate = pi / 2;                        ///< maximum [rad/s]
   MulticopterTurn turn = MulticopterTurn::smooth;  ///< behaviour at waypoints between the first and the last
-  double turn_distance = 10;                  ///< maximum distance from the begin of a smooth turn to its waypoint [m]
-  std::optional<double> departure_heading{};  ///< clockwise from north; along the first leg if empty [rad]
-  std::optional<double> arrival_heading{};    ///< clockwise from north; along the last leg if empty [rad]
+  double turn_distance = 10;                       ///< maximum length of a smooth turn before its waypoint [m]
+  std::optional<double> departure_heading{};       ///< clockwise from north; along the first leg if empty [rad]
+  std::optional<double> arrival_heading{};         ///< clockwise from north; along the last leg if empty [rad]
 
   void validate() const {
     require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -47,12 +47,12 @@ struct MulticopterSettings {
   }
 };
 
-/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of
-/// acceleration and lift. In a level turn tan(bank) = v^2 / (g r): a coordinated turn. Position, velocity and attitude
-/// are continuous.
+/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis
+/// follows the sum of acceleration and lift: tan(bank) = v^2 / (g r) in a level turn. Position,
+/// velocity and attitude are continuous.
 class MulticopterFlight {
  public:
-  /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: see `plan_multicopter`.
+  /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: `plan_multicopter`.
   MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration,
                     std::vector<Tick> passes = {})
       : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration), passes_(std::move(passes)) {}
@@ -60,8 +60,7 @@ class MulticopterFlight {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(
-        detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // shortest rotation from up to the thrust
+    const Rotation lean = normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // from up, shortest
     return {lean * level(heading_.at(t).position), state.position};
   }
 
@@ -83,9 +82,9 @@ class MulticopterFlight {
 
 namespace detail {
 
-/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the
-/// weight. Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the
-/// acceleration.
+/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at
+/// least a tenth of the weight. Source: tan(bank) = horizontal acceleration / (g + vertical
+/// acceleration), solved.
 [[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
   const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
   double most = settings.acceleration;
@@ -94,8 +93,9 @@ namespace detail {
   return most;
 }
 
-/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so the speed never
-/// grows. Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
+/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so
+/// that the speed never grows. Source: Craig 2005, sec. 7.3, straight lines with blends, with
+/// limited jerk.
 struct SmoothTurn {
   Vec3 before{};        ///< direction in, unit
   Vec3 after{};         ///< direction out, unit
@@ -133,7 +133,8 @@ class FlightPlan {
     now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
   }
 
-  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows it. Returns the duration [s].
+  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows. Returns the
+  /// time [s].
   double turn_to(double heading, double time) {
     const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
     const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);
@@ -159,8 +160,8 @@ class FlightPlan {
   std::vector<Tick> passes_;
 };
 
-/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum of hover times.
-/// `numbers` maps each to its merged waypoint. Throws a `SettingError`.
+/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum
+/// of hover times. `numbers` maps each to its merged waypoint. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints,
                                                       std::vector<std::size_t>& numbers) {
   require_within("plan_multicopter: waypoints (number)", waypoints.size(), 1, 1e7, "");
@@ -208,10 +209,11 @@ struct FlightLegs {
 
 }  // namespace detail
 
-/// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on
-/// a vertical one, and turns in place at departure and arrival. Each leg takes the least time that speed, acceleration,
-/// jerk and bank allow from turn to turn. A smooth turn takes at most a third of either leg, so waypoints close to each
-/// other are flown slowly. Waypoints less than a nanometre apart are one. Throws a `SettingError`.
+/// Plans a flight through the waypoints, at rest at both ends. The vehicle faces its leg, keeps its
+/// heading on a vertical one, and turns in place at departure and arrival. Each leg takes the least
+/// time that speed, acceleration, jerk and bank allow. A smooth turn takes at most a third of
+/// either leg, so waypoints close to each other are flown slowly; those less than a nanometre apart
+/// are one. Throws a `SettingError`.
 [[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints,
                                                         const MulticopterSettings& settings = {}) {
   settings.validate();
@@ -228,10 +230,11 @@ struct FlightLegs {
     if (settings.turn == MulticopterTurn::stop_and_turn || points[k].hover > 0 || dot(before, after) < sharpest)
       continue;
     const Vec3 change = after - before;
-    const double most =
-        length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
+    const bool turned = length(change) > 0;
+    const double most = turned ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
     turns[k] = {before, after, {0, 0, most, settings.jerk}};
-    const double room = std::fmin(settings.turn_distance, std::fmin(sections[k - 1].length, sections[k].length) / 3);
+    const double shorter = std::fmin(sections[k - 1].length, sections[k].length);
+    const double room = std::fmin(settings.turn_distance, shorter / 3);
     speeds[k] = max_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
   }
   std::vector<PathSection> straights = sections;
@@ -243,7 +246,8 @@ struct FlightLegs {
                           settings.yaw_rate);
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 at = points[k].position;
-    const double begin = turns[k].distance(speeds[k]), end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
+    const double begin = turns[k].distance(speeds[k]);
+    const double end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
     const SpeedChange change = turns[k].change(speeds[k]);
     plan.pass(0.5 * change.duration());
     if (speeds[k] == 0) {

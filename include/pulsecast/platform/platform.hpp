@@ -61,11 +61,12 @@ class Platform {
     [[maybe_unused]] const simd::Mask moved = find_poses(path_, inner.tick, inner.sent, world_from_body);
     PULSECAST_ASSERT(rigid_lanes(world_from_body, moved));
     PulseLanes<frame::World> out(world_from_body * PoseLanes(mount_.pose()), inner);
-    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward),
-                    ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
-    // the components to the right of the level heading and down, both times the length of the heading on the map
-    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x,
-                        on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
+    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward);
+    const Vec3Lanes ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
+    // components to the right of the level heading and down, times the length of the heading on the
+    // map
+    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x;
+    const simd::Doubles on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
       out.scan_angle[lane] = {right[lane], -beam.z[lane] * on_map[lane]};
     return out;
@@ -78,11 +79,8 @@ class Platform {
     return world_from_body * mount_.pose();
   }
 
-  /// Trajectory of the body.
   [[nodiscard]] const Path& trajectory() const noexcept { return path_; }
-  /// Mounting of the instrument.
   [[nodiscard]] const Mount& mount() const noexcept { return mount_; }
-  /// Source of the instrument's pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
 
  private:

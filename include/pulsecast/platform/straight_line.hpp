@@ -7,8 +7,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if
-/// vertical or empty.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along the
+/// path, or north if vertical or empty.
 struct StraightLine {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
@@ -25,10 +25,10 @@ struct StraightLine {
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in
-  /// different ways.
+  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract
+  /// products and sums in different ways.
   [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
     const double whole = length(path);

@@ -12,10 +12,10 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Lowest point [m] that a wheel of a radius `r` [m] reaches as it rolls along a profile: the closing of the profile
-/// with the wheel's disc, which is the ground itself wherever that bends less than the wheel. `at(way)` is the height a
-/// way ahead [m], minus infinity without ground; `below` is that at the wheel. Source: ISO 16610-41:2015, closing with
-/// a disk.
+/// Lowest point [m] that a wheel of a radius `r` [m] reaches as it rolls along a profile: the
+/// closing of the profile with the wheel's disc, which is the ground itself wherever that bends
+/// less than the wheel. `at(way)` is the height a way ahead [m], minus infinity without ground;
+/// `below` is that at the wheel. Source: ISO 16610-41:2015, closing with a disk.
 [[nodiscard]] std::optional<double> lowest_of_wheel(double r, const auto& at, const std::optional<double>& below) {
   constexpr double nothing = -std::numeric_limits<double>::infinity();
   if (below) {

@@ -10,8 +10,8 @@
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/material.hpp>
 
-/// Contract: light on its way. A `CoaxialRays` is the subrays of a pulse that still seem to come from one point, a
-/// `LightPath` a subray that was refracted.
+/// Contract: light on its way. A `CoaxialRays` is the subrays of a pulse that still seem to come
+/// from one point, a `LightPath` a subray that was refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
 inline constexpr double surface_epsilon = 1e-6;  ///< surfaces nearer to each other than this are one [m]
@@ -21,14 +21,14 @@ inline constexpr double surface_epsilon = 1e-6;  ///< surfaces nearer to each ot
   return dot(normal, direction) > 0 ? -normal : normal;
 }
 
-/// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are
-/// counted from there, so that they are lengths of the whole way.
+/// Rays in air that seem to come from one point, the pulse's exit or its image in mirrors and
+/// panes, from where ranges are counted: lengths of the whole way.
 struct CoaxialRays {
   StaggeredBundle rays{};                       ///< with the range from which each exists
   alignas(64) RayBundle::Column sent;           ///< share of the pulse's energy on its way
-  alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes the same way back
+  alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes back
   RayBundle::Column delay;                      ///< optical path so far less the range [m]
-  RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows, as mirrors move [m/s]
+  RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows [m/s]
   unsigned passages = 0;                        ///< surfaces that passed the light on
   ReflectionKind kind = ReflectionKind::surface;
 };
@@ -41,8 +41,8 @@ struct PathVertex {
   std::optional<Vec2> texture{};
 };
 
-/// Subray after it entered a body, with the derivatives of place and direction by the angles at the pulse's exit.
-/// Source: Igehy 1999, Tracing ray differentials.
+/// Subray after it entered a body, with the derivatives of place and direction by the angles at the
+/// pulse's exit. Source: Igehy 1999, Tracing ray differentials.
 struct LightPath {
   Ray ray{};                 ///< from the last surface on
   double sent = 0;           ///< share of the pulse's energy on its way
@@ -70,14 +70,13 @@ struct LightPath {
     static constexpr Medium air_{};
     return depth > 0 ? bodies[depth - 1]->smooth.inside : air_;
   }
-  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it. Bodies are told by their
-  /// material.
+  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it.
   [[nodiscard]] const Medium& behind(const Material& body) const noexcept {
     LightPath after = *this;
     after.cross_face(body);
     return after.depth > 0 ? after.bodies[after.depth - 1]->smooth.inside : LightPath{}.medium();
   }
-  /// Enters a body, or leaves it, if the ray is in it. The innermost of too many is forgotten.
+  /// Enters a body, told by its material, or leaves it. The innermost of too many is forgotten.
   void cross_face(const Material& body) noexcept {
     const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(depth), at = std::find(bodies.begin(), end, &body);
     if (at != end) {
@@ -100,7 +99,7 @@ struct LightPath {
       if (slope != 0) place[k] -= dot(place[k], normal) / slope * ray.direction;
     }
   }
-  /// Range at which light in air would have spread as far as here at a distance along the ray, and come back as weak
+  /// Range in air over which light would have spread as far and come back as weak, at a distance
   /// [m].
   [[nodiscard]] double spread(double distance = 0) const noexcept {
     return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]),

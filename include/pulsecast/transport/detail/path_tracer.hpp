@@ -70,11 +70,7 @@ class PathTracer {
     const Matrix3 world_from_beam = matrix_of(light_.pulse.pose.rotation);
     CoaxialRays& p = w_.levels[0].pencil;
     StaggeredBundle& rays = p.rays;
-    rays.origin = light_.pulse.origin();
-    rays.wavelength = light_.emitter.laser.wavelength;
-    rays.tick = light_.pulse.tick;
-    rays.seed = light_.seed;
-    rays.pulse = light_.index;
+    set_origin(light_, rays);
     for (std::size_t first = 0; first < light_.subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(beam.from_a_point() ? RayBundle::capacity : 1, light_.subrays - first);
@@ -100,11 +96,11 @@ class PathTracer {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     const std::span<Hit> all(hits);
     const double wavelength = p.rays.wavelength;
-    target_.closest(
-        p.rays, hits, [=, &met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
-          scatter_at(*at.material, wavelength, at.texture, all.subspan(first, end - first));
-          std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
-        });
+    const auto visit = [=, &met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+      scatter_at(*at.material, wavelength, at.texture, all.subspan(first, end - first));
+      std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
+    };
+    target_.closest(p.rays, hits, visit);
     if (level > 0) retrace_before_origin(level);
     media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return target_.occluded(ray, range); });
     received_power(light_, p.two_way_share.data(), p.rays.size, hits, power);
@@ -135,7 +131,7 @@ class PathTracer {
     return ray;
   }
 
-  /// Traces the rays again that met something before they begin: shapes other than triangles do not heed that.
+  /// Traces rays again that met something before they begin: only triangles heed that.
   void retrace_before_origin(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     for (std::size_t j = 0; j < p.rays.size; ++j) {
@@ -194,13 +190,12 @@ class PathTracer {
   }
 
   /// Sends rays on from the image of their origin in a plane; `share(j)` is the share reflected.
-  template <class Share>
-  void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const Share& share) noexcept {
+  void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const auto& share) noexcept {
     const PathLevel& met = w_.levels[level];
     const CoaxialRays& p = met.pencil;
     const auto& hits = met.hits;
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
-    const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // height of the origin above the plane
+    const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // of the origin, above the plane
     const auto next = [&](std::size_t j) noexcept -> Next {
       return {mirrored(p.rays.direction(j), n), share(j), hits[j].range, p.delay[j]};
     };
@@ -224,12 +219,11 @@ class PathTracer {
     send_mirrored(level, first, end, [&](std::size_t j) noexcept { return reaching * split[j].reflected; });
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const auto next = [&](std::size_t j) noexcept -> Next {
-      const double inside =
-          pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
+      const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // way of the ray [m]
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside,
               p.delay[j] + split[j].delay};
     };
-    const bool together = most - least < surface_epsilon;  // no ray is out of place by more than half of that
+    const bool together = most - least < surface_epsilon;  // twice the greatest displacement
     for (std::size_t from = first, to = 0; from < end; from = to) {
       to = together ? end : from + 1;
       const double shift = together ? (least + most) / 2 : split[from].shift;
@@ -246,9 +240,8 @@ class PathTracer {
   };
 
   /// Sends rays of a level on from a common origin; `next(j)` tells of each how.
-  template <class NextOf>
   void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind,
-            const NextOf& next) noexcept {
+            const auto& next) noexcept {
     const CoaxialRays& p = w_.levels[level].pencil;
     CoaxialRays& to = w_.levels[level + 1].pencil;
     static_cast<BundleOrigin&>(to.rays) = p.rays;

@@ -9,13 +9,22 @@
 /// Light that the hits of a bundle send back, for all transports.
 namespace PULSECAST_NAMESPACE::detail {
 
+/// Gives a bundle the names of a pulse's rays and their exit.
+[[gnu::always_inline]] inline void set_origin(const TransportInput& light, BundleOrigin& rays) noexcept {
+  rays.origin = light.pulse.origin();
+  rays.wavelength = light.emitter.laser.wavelength;
+  rays.tick = light.pulse.tick;
+  rays.seed = light.seed;
+  rays.pulse = light.index;
+}
+
 /// Takes away what the receiver does not see of the power of a bundle [W].
 [[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits,
                                            RayBundle::Column& power) noexcept {
   for (std::size_t j = 0; j < hits.size(); ++j) power[j] *= budget.overlap_at(hits[j].range);
 }
 
-/// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W].
+/// Power received from the hits of rays with shares of the pulse's energy, without the gate [W].
 /// Undefined for misses.
 [[gnu::always_inline]] inline void received_power(const TransportInput& light, const double* shares, std::size_t size,
                                                   std::span<const Hit> hits, RayBundle::Column& power) noexcept {
