@@ -64,8 +64,8 @@ class Deflector {
     return moving_.at(t) * *inner;
   }
 
-  [[nodiscard]] const Moving& moving() const noexcept { return moving_; }
-  [[nodiscard]] const Source& source() const noexcept { return source_; }
+  [[nodiscard]] const Moving& moving() const noexcept { return moving_; }  ///< optic or head
+  [[nodiscard]] const Source& source() const noexcept { return source_; }  ///< deflected source
 
  private:
   Moving moving_;

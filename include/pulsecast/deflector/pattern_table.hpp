@@ -14,8 +14,7 @@ struct BeamAngles {
   double elevation = 0;  ///< angle above the plane of right and forward [rad]
 };
 
-/// Beam directions from a table, in turn and repeated: a solid-state sensor, or a log of a real
-/// one.
+/// Beam directions from a table, in turn and repeated: a solid-state sensor, or a log.
 struct PatternTable {
   using refinements = refines<tag::Validated>;
   std::vector<BeamAngles> entries{};  ///< directions in the order of use; at least one

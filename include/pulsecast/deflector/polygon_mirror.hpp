@@ -34,8 +34,7 @@ struct PolygonMirror {
   [[nodiscard]] std::size_t facet(Tick t) const noexcept {
     if (facet_tilts.size() < 2) return 0;
     const double n = static_cast<double>(facet_tilts.size());
-    // whole lines of a turn: rounding in the phase of the turn must not give another line than the
-    // line's own phase
+    // whole lines of a turn: rounding of its phase must not change the line
     const double line = std::round(n * t.phase(line_rate / n) - phases(TickLanes(t))[0]);
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
@@ -72,8 +71,7 @@ struct PolygonMirror {
   /// Error of a phase: 16 units in its last place, and in that of a fraction of a second [cycles].
   [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + line_rate); }
 
-  /// Phase by which a gate is wider, so that rates of decimal digits stay on its ends for 1e6 lines
-  /// [cycles].
+  /// Phase by which a gate is wider, so that decimal rates stay on its ends for 1e6 lines [cycles].
   [[nodiscard]] double margin() const noexcept { return 0x1p-33 + rounding(); }
 
   /// Phase of the line [cycles]; what rounding leaves just before its end begins the next one.

@@ -18,8 +18,7 @@ inline void number_echoes(std::span<Echo> echoes) noexcept {
 namespace detail {
 /// Sorts the echoes of a pulse by range, and numbers them.
 inline void number_by_range(std::span<Echo> echoes) noexcept {
-  const auto nearer = [](const Echo& a, const Echo& b) { return a.range < b.range; };
-  std::sort(echoes.begin(), echoes.end(), nearer);
+  std::ranges::sort(echoes, {}, &Echo::range);
   number_echoes(echoes);
 }
 }  // namespace detail

@@ -29,8 +29,7 @@ namespace PULSECAST_NAMESPACE {
 /// polynomial times an exponential, and a linear one. Its extrema are bracketed in steps of a
 /// quarter of tau, where it may rise. They have no part in widths.
 ///
-/// `WaveformSettings::sample_interval` is that of the record, and of a fitted width; moments are
-/// exact.
+/// `WaveformSettings::sample_interval` is of the record and of a fitted width.
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
@@ -47,8 +46,7 @@ class AnalyticWaveform {
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
-  /// Refuses pulses that the samples of a record or fitted width do not resolve. @throws
-  /// SettingError
+  /// Refuses pulses that a record or fitted width does not resolve. @throws SettingError
   void validate(const Laser& laser) const {
     if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
@@ -182,8 +180,7 @@ class AnalyticWaveform {
         if (next == 0) continue;
         const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
         double x = 0;  // time since the edge [tau]
-        // An extremum that rounding puts before the edge is moved to it: peaks and valleys
-        // alternate.
+        // An extremum that rounding puts before an edge moves to it: peaks and valleys alternate.
         if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
           x = std::fmax(ages.until_valley(), 0);
           if constexpr (by_moments) m.add(ages.until(x), since);
@@ -218,8 +215,7 @@ class AnalyticWaveform {
       }
       /// Slope of both; its zeros are those of the power.
       [[nodiscard]] double slope() const noexcept { return ages.slope() + continuous.slope(); }
-      /// Sum at the zero of its slope up to a time [s]: false position, after Dowell & Jarratt
-      /// 1971.
+      /// Sum at the zero of its slope up to a time [s]: after Dowell & Jarratt 1971.
       [[nodiscard]] Sum at_extremum(double to, double tau) const noexcept {
         Sum middle = *this;
         middle.advance(to, tau);

@@ -35,7 +35,7 @@ class BandLimitedReceiver {
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: noise is detected without light
-  using Workspace = BandLimitedSamples::Workspace;
+  using Workspace = BandLimitedSamples::Workspace;        ///< scratch memory of one worker
 
   /// Computes what pulses of a laser need, before the first of them.
   void prepare(const Laser& laser, const WaveformSettings& s) {

@@ -19,8 +19,7 @@ enum class EchoTiming : std::uint8_t {
   /// unbiased for any length. Media do not count; their echo has the range of its peak.
   true_range,
   /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. With a
-  /// bandwidth or the steps of a digitiser it is that after a filter about as wide as the pulse:
-  /// more samples err less.
+  /// bandwidth or the steps of a digitiser it is that after a filter about as wide as the pulse.
   peak,
   leading_edge,       ///< first rise to the threshold: earlier for stronger echoes (range walk)
   constant_fraction,  ///< first rise to `WaveformSettings::fraction` of the maximum
@@ -35,8 +34,7 @@ struct Vertex {
 };
 
 /// Maximum of the quartic through five samples about a peak, `y[-2]` to `y[2]`, by Newton's method
-/// from the vertex of the parabola through three; that vertex where the quartic has none, as in
-/// noise.
+/// from the vertex of the parabola through three; that vertex if there is none.
 [[nodiscard]] inline Vertex vertex(const double* y) noexcept {
   const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12;
   const double c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;

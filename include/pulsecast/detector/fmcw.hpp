@@ -33,8 +33,7 @@ struct FmcwSettings {
     require_within("FmcwSettings::returns_max", returns_max, 1, 64, "");
   }
 
-  /// Range that changes the beat by one period in a sweep, c / 2B: closer surfaces are one echo
-  /// [m].
+  /// Range that adds one period to the beat in a sweep, c / 2B: closer surfaces are one echo [m].
   [[nodiscard]] double resolution() const noexcept { return 0.5 * speed_of_light / bandwidth; }
   /// Radial velocity that does so: half a wavelength [m] by the duration of a sweep [m/s].
   [[nodiscard]] double velocity_resolution(double wavelength) const noexcept { return 0.5 * wavelength / sweep_time; }
@@ -48,10 +47,9 @@ struct FmcwSettings {
 /// are similar: the latter are wrong if surfaces overtake each other in a spectrum, and flagged as
 /// `Echo::ambiguous`. So are pairs of different powers, such as two peaks that are one in the other
 /// sweep. Surfaces do not move from one sweep to the next; the range is that in the middle. The
-/// laser's peak power is its power while it measures. Amplitudes are the mean of both peaks'
-/// powers. Continuous returns stand still, and are searched near surfaces only. It needs a target
-/// with `SceneQueries`. Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn,
-/// Wu & Boser 2017.
+/// peak power is that while it measures. Amplitudes are the mean of both peaks' powers. Continuous
+/// returns stand still, and are searched near surfaces only. It needs a target with `SceneQueries`.
+/// Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   using refinements = refines<tag::ReadsVelocity>;
@@ -144,8 +142,7 @@ class Fmcw {
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 
-  /// Amplitude of a sine's spectrum through the window of Hann, at `x` periods from its own; 1 at
-  /// 0.
+  /// Amplitude of a sine's spectrum through the window of Hann, at `x` periods from its own.
   /// Source: Harris 1978.
   [[nodiscard]] static double window(double x) noexcept {
     const double square = x * x;
@@ -165,8 +162,7 @@ class Fmcw {
       return k < of.size() ? std::sqrt(of[k].power) : 0;
     };
     // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and
-    // by three deviations of the difference of two amplitudes. The window passes 1 + 1/4 + 1/4
-    // times the variance of noise.
+    // three deviations of a difference of amplitudes. The window passes 1 + 1/4 + 1/4 of the noise.
     const double high = std::max(amplitude(up, first), amplitude(down, first));
     const double alike = 2 * std::pow(10, -32.0 / 20) * high + 3 * std::sqrt(2 * 1.5) * deviation;
     const auto low = [&](std::size_t k) { return std::min(amplitude(up, k), amplitude(down, k)); };
@@ -176,12 +172,9 @@ class Fmcw {
     last = first + 1;
     while (last < pairs && !apart(last)) ++last;
     if (last == first + 1) return apart(last) && high - low(first) <= alike;
-    for (std::vector<Peak>& of : peaks) std::sort(&of[first], &of[first] + (last - first), by_beat);
+    for (std::vector<Peak>& of : peaks) std::ranges::sort(&of[first], &of[first] + (last - first), {}, &Peak::beat);
     return false;
   }
-
-  static bool by_beat(const Peak& a, const Peak& b) noexcept { return a.beat < b.beat; }
-  static bool by_power(const Peak& a, const Peak& b) noexcept { return a.power > b.power; }
 
   /// Sets the lines of a sweep, for periods by radial velocity [s/m].
   void set_lines(const DetectorInput& input, double per_velocity, Workspace& w) const noexcept {
@@ -199,7 +192,7 @@ class Fmcw {
       }
       w.lines.push_back(line);
     }
-    std::sort(w.lines.begin(), w.lines.end(), [](const Line& a, const Line& b) { return a.beat < b.beat; });
+    std::ranges::sort(w.lines, {}, &Line::beat);
   }
 
   /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no
@@ -286,11 +279,10 @@ class Fmcw {
         keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);
       }
     }
-    std::sort(peaks.begin(), peaks.end(), by_power);
+    std::ranges::sort(peaks, std::ranges::greater{}, &Peak::power);
   }
 
-  /// Keeps a peak, with the strongest line in half the window, unless there are enough stronger
-  /// ones.
+  /// Keeps a peak, with the strongest line in half the window, unless enough are stronger.
   void keep(Peak peak, std::span<const Line> lines, std::vector<Peak>& peaks) const noexcept {
     double strongest = 0;
     for (const Line& line : lines) {
@@ -301,7 +293,7 @@ class Fmcw {
     }
     if (!peak.strongest) return;
     peaks.push_back(peak);
-    if (peaks.size() > s_.returns_max) peaks.erase(std::max_element(peaks.begin(), peaks.end(), by_power));
+    if (peaks.size() > s_.returns_max) peaks.erase(std::ranges::min_element(peaks, {}, &Peak::power));
   }
 
   FmcwSettings s_;

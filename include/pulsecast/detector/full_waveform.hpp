@@ -41,15 +41,13 @@ concept WaveformReceiver = std::copyable<R> &&
   { R::runs_without_reflections } -> std::convertible_to<bool>;
 };
 
-/// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks,
-/// interpolated between samples. The receiver is ideal by default; a `BandLimitedReceiver` is as
-/// real ones are.
+/// Digitising detector: samples what a receiver makes of all reflections, and interpolates the
+/// peaks. The receiver is ideal by default; real ones are a `BandLimitedReceiver`.
 ///
 /// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection
 /// on, for the record's length and as long as reflections arrive, and detects false echoes. The
 /// threshold applies to the samples themselves, and echoes are timed by their peaks in place of
-/// true ranges. Amplitudes and widths are relative to the mean background, which the record
-/// includes.
+/// true ranges. Amplitudes and widths are relative to the mean background of the record.
 ///
 /// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of
 /// the pulse length, by 0.5 mm at 1/8, by 10 mm at 1/4; its amplitude by -0.13 to 0.40 % at 1/5,
@@ -63,7 +61,7 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as it
 
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
@@ -184,8 +182,7 @@ class FullWaveform {
   static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
   static constexpr std::size_t continuous_peaks = 64;
 
-  /// Time of a flat target's echo less its arrival, by the place of the arrival between two
-  /// samples.
+  /// Time of a flat target's echo less its arrival, by its place between two samples.
   struct Correction {
     static constexpr std::size_t places = 16;
     std::array<double, places + 1> time{};  ///< at evenly spaced places [s]
@@ -241,8 +238,7 @@ class FullWaveform {
     only.reset();
   }
 
-  /// True if a maximum of reflections that is farther than a pulse from others is an echo for
-  /// certain.
+  /// True if a maximum of reflections that is a pulse from others is surely an echo.
   [[nodiscard]] bool is_apart(const DetectorInput& input) const noexcept {
     return input.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
                                         std::fmax(s_.window, s_.separation) <= input.emitter.laser.pulse_length);

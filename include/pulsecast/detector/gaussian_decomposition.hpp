@@ -45,7 +45,6 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     return w;
   }
 
-  /// Echoes of the detector inside, by the decomposition of its waveform.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     Detection d = this->inner.detect(input, w.inner);
     const auto* wave = waves_.find(input.emitter.laser);

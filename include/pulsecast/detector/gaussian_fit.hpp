@@ -18,13 +18,11 @@ struct Gaussian {
   double width = 0;      ///< standard deviation [samples]
 };
 
-/// Echo width by a least-squares Gaussian, by the Levenberg-Marquardt method. NaN without
-/// convergence.
+/// Echo width by a least-squares Gaussian (Levenberg-Marquardt). NaN without convergence.
 ///
 /// Each sample is weighted by its own power, so that the Gaussian matches the echo, not the tail
 /// that a Gaussian lacks. The places of samples on a steep edge change widths by less than 0.5 %.
-/// Source: Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal
-/// equations.
+/// Source: Levenberg 1944, Marquardt 1963, damping by the scaled diagonal of the normal equations.
 struct GaussianFit {
   using refinements = refines<tag::TruncatedWidthMeasure, tag::Validated>;
   int iterations_max = 50;  ///< iteration limit, from 1 to 1000
@@ -37,7 +35,7 @@ struct GaussianFit {
 
   [[nodiscard]] double min_share() const noexcept { return share; }
 
-  /// Fitted Gaussian, with its convergence.
+  /// Outcome of a fit.
   struct Result {
     Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
@@ -105,8 +103,7 @@ struct GaussianFit {
  private:
   static constexpr double small_enough = 1e-3;  ///< last step, by amplitude and width
 
-  /// Normal equations at a Gaussian: products of derivatives, and with residuals; sum of squared
-  /// residuals.
+  /// Normal equations at a Gaussian: products of derivatives, and with residuals; their squares.
   struct Equations {
     double aa = 0, ap = 0, aw = 0, pp = 0, pw = 0, ww = 0;
     double a = 0, p = 0, w = 0;
@@ -114,11 +111,9 @@ struct GaussianFit {
   };
 
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
-    // exp(-x^2/2) at every sum_stride-th sample: each step multiplies by a ratio, that by a
-    // constant
+    // exp(-x^2/2) at every sum_stride-th sample, by ratios that fall by a constant
     const double h = 1 / g.width, step = simd::sum_stride * h, decay = exponential(-step * step);
-    // derivatives are value, value x k and value x^2 k, with k = amplitude / width: sums over
-    // powers of x
+    // derivatives are value, value x k and value x^2 k, with k = amplitude / width
     std::array<double, 9> sums{};
     for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
       simd::Doubles x =

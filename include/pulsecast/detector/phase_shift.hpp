@@ -109,8 +109,7 @@ class PhaseShift {
   struct Phasor {
     double in_phase, quadrature;
   };
-  /// Phasor of a continuous return, for a period in range [m]: by parts, or of its centre, if
-  /// short.
+  /// Phasor of a continuous return, for a period in range [m]: by parts, or at its centre.
   [[nodiscard]] static Phasor phasor_of(const ContinuousReturn& r, double period) noexcept {
     const double length = r.end - r.begin, k = 2 * pi / period, power = r.power();
     if (k * length < 1e-3) {

@@ -14,8 +14,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Settings of a receiver that counts photons: single-photon avalanche diodes, linear or Geiger
-/// mode.
+/// Settings of a receiver that counts photons: avalanche diodes, linear or Geiger mode.
 struct PhotonCountingSettings {
   double efficiency = 0.3;        ///< detections per photon, in (0, 1]
   double dark_rate = 0;           ///< dark counts of all pixels together, at most 1e12 [1/s]
@@ -53,9 +52,9 @@ struct PhotonCountingSettings {
 /// each of its peaks is an echo at the mean time of the detections in the bin and its neighbours.
 /// The energy of a reflection is its power times the full width at half maximum, as in
 /// `EnergyLedger`: 8 % less than in the gamma pulse. The amplitude is the power that would give as
-/// many counts without dead time. With one shot and a threshold of 1, each isolated detection is an
-/// echo. Nothing is detected outside the gate, and without an end of it neither sunlight nor dark
-/// counts after the last reflection.
+/// many counts without dead time. With one shot and a threshold of 1, isolated detections are
+/// echoes. Nothing is detected outside the gate; if it has no end, only light after the last
+/// reflection.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009.
 template <PulseForm Form = GammaPulse>
@@ -95,8 +94,7 @@ class PhotonCounting {
     return w;
   }
 
-  /// Echoes of pulses of a prepared laser. Photons are drawn from the seed and pulse of
-  /// `input.key`.
+  /// Echoes of pulses of a prepared laser. Photons are drawn by `input.key`.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const std::vector<double>* quantiles = quantiles_.find(input.emitter.laser);
     PULSECAST_ASSERT(quantiles != nullptr);
@@ -193,8 +191,7 @@ class PhotonCounting {
   }
 
   /// Calls `enter(arrival, label)`, while that is true, for the photons of continuous returns in a
-  /// shot: one Poisson process along all, whose place in a return is that of the quantile of its
-  /// density.
+  /// shot: one Poisson process along all, placed by the quantile of the density.
   static void draw_continuous(const DetectorInput& input, double per_watt, const auto& enter, Draws& draws) noexcept {
     if (input.continuous.empty()) return;
     double next = draws.exponential();
@@ -230,8 +227,7 @@ class PhotonCounting {
     }
   }
 
-  /// Appends an echo for each bin of the threshold's count, more than before, and at least that
-  /// after.
+  /// Appends an echo for each bin of the threshold, above that before, not below that after.
   void find_echoes(const DetectorInput& input, Workspace& w) const noexcept {
     const Laser& laser = input.emitter.laser;
     const double watts = energy_per_count(laser) / (laser.pulse_length * static_cast<double>(s_.shots));
@@ -240,33 +236,21 @@ class PhotonCounting {
       std::size_t begin = 0, end = 0;
       [[nodiscard]] std::size_t count() const noexcept { return end - begin; }
     };
-    Bin before{}, bin{};
-    const auto count_of = [](const Bin& next, const Bin& to, double step) {
-      return next.number == to.number + step ? next.count() : 0;
-    };
-    const auto finish = [&](const Bin& behind) {
-      const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
-      if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right) return;
-      const auto counts = std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right);
-      keep_return(echo_of(input, counts, watts), s_, w.echoes);
-    };
     const auto number_of = [&](std::size_t i) {
       return i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
     };
-    for (std::size_t i = 0; i <= w.counts.size(); ++i) {
-      const double number = number_of(i);
-      if (bin.count() > 0 && number == bin.number) {
-        ++bin.end;
-        continue;
+    Bin before{}, bin{}, behind{};
+    do {
+      behind = {number_of(behind.end), behind.end, behind.end};
+      while (behind.end < w.counts.size() && number_of(behind.end) == behind.number) ++behind.end;
+      const std::size_t left = before.number == bin.number - 1 ? before.count() : 0;
+      const std::size_t right = behind.number == bin.number + 1 ? behind.count() : 0;
+      if (bin.count() >= s_.threshold && bin.count() > left && bin.count() >= right) {
+        const auto counts = std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right);
+        keep_return(echo_of(input, counts, watts), s_, w.echoes);
       }
-      Bin behind{number, i, i + 1};
-      if (bin.count() > 0) {
-        while (behind.end < w.counts.size() && number_of(behind.end) == number) ++behind.end;
-        finish(behind);
-        before = bin;
-      }
-      bin = {number, i, i + 1};
-    }
+      before = std::exchange(bin, behind);
+    } while (bin.count() > 0);
   }
 
   /// Echo of some detections: their mean time, and the labels of the first reflection, or of the

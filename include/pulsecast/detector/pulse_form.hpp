@@ -28,8 +28,7 @@ concept PulseForm = std::copyable<F> && requires(const F form, double time, doub
   noexcept->std::same_as<double>;
 };
 
-/// Gamma distribution of order 3, `PulseShape`. Source: Carlsson, Steinvall & Letalick 2001, eq.
-/// 4.5.
+/// Gamma distribution of order 3. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5.
 struct GammaPulse {
   double divisor = PulseShape::divisor;  ///< as in `PulseShape`
 
@@ -63,8 +62,7 @@ struct PulseSample {
   double power = 0;  ///< in any unit, at least 0
 };
 
-/// Measured pulse, interpolated linearly; power is 0 outside of the table. Its length is that of
-/// the table, whatever the laser's.
+/// Measured pulse, linear in its table, 0 outside, and of its length, whatever the laser's.
 class MeasuredPulse {
  public:
   /// `samples`: at least two, by increasing time. @throws SettingError for others, or without power

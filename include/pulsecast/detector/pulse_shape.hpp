@@ -10,10 +10,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0; its peak, at 2 tau,
-/// is 1.
-/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5; literature has full width at half maximum
-/// / 3.5.
+/// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge on, with a peak of 1.
+/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5; the literature has a divisor of 3.5.
 struct PulseShape {
   double tau;  ///< time constant [s]
 
@@ -45,8 +43,7 @@ struct PulseShape {
 
 namespace detail {
 
-/// Integrals over a pulse of peak 1 up to a time since its arrival: of it [s], and of it times that
-/// time [s^2].
+/// Integrals of a pulse of peak 1 up to a time since its arrival [s], and times that [s^2].
 struct PulseIntegrals {
   double zeroth = 0, first = 0;
 };

@@ -82,11 +82,8 @@ namespace detail {
   std::size_t kept = 0;
   for (std::size_t e = 0; e < echoes.size(); ++e) {
     if (!gate.contains(echoes[e].range)) continue;
-    if (e != kept) {
-      std::swap(echoes[e], echoes[kept]);
-      std::swap(echoes[e].number, echoes[kept].number);
-    }
-    ++kept;
+    std::swap(echoes[e], echoes[kept]);
+    std::swap(echoes[e].number, echoes[kept++].number);
   }
   return echoes.first(kept);
 }
@@ -139,13 +136,12 @@ struct Receiver {
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
-  [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }
+  [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }  ///< range gate
 };
 
 /// Link budget: received power of a subray from the power of a pulse. Source: laser radar equation
 /// for an extended target, Jelalian 1992, as Winiwarter et al. 2022. Close by, an aperture on the
-/// axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2)
-/// for D^2 / (4 R^2).
+/// axis collects sin^2 of half its angle: D^2 / (4 R^2 + D^2) for D^2 / (4 R^2).
 class LinkBudget {
  public:
   /// Budget of no power.
@@ -165,14 +161,15 @@ class LinkBudget {
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this
   /// backscatter (as in `Hit`) at a range [m]. At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
-    const double all = of(share, backscatter, range);
+    const double all = power_in_view(share, backscatter, range);
     return sees_all() ? all : all * overlap_at(range);
   }
 
-  /// Received power of several subrays [W], if the receiver sees all of the light.
-  [[nodiscard]] simd::Doubles power_in_view(const simd::Doubles& share, const simd::Doubles& backscatter,
-                                            const simd::Doubles& range) const noexcept {
-    return of(share, backscatter, range);
+  /// Received power of a subray, or several [W], if the receiver sees all of the light.
+  template <class Number>
+  [[nodiscard]] Number power_in_view(const Number& share, const Number& backscatter,
+                                     const Number& range) const noexcept {
+    return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 
   /// As `power`, of light that spreads as over a range [m], through so much air out and back [m].
@@ -190,19 +187,13 @@ class LinkBudget {
   /// Radius of the aperture [m].
   [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }
 
-  /// True if the receiver sees all of the light.
-  [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }
+  [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }  ///< true if it sees all light
   /// Share of the light from a range [m] that the receiver sees.
   [[nodiscard]] double overlap_at(double range) const noexcept {
     return sees_all() ? 1 : detail::interpolated(overlap_, range, &OverlapAtRange::range, &OverlapAtRange::share);
   }
 
  private:
-  template <class Number>
-  [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
-    return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
-  }
-
   double gain_ = 0;       ///< received power times squared range, from a white surface in vacuum [W m^2]
   double near_ = 0;       ///< square of half the aperture's diameter [m^2]
   double both_ways_ = 0;  ///< slope of the logarithm of the power over range [1/m]

@@ -12,10 +12,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Avalanche photodiode or PIN diode with its amplifier and digitiser. Powers are optical, at the
-/// diode. Signal and noise pass the same low-pass, whose gain is calibrated: a flat target at
-/// normal incidence has the height of its received power. Sources: Richmond & Cain 2010, ch. 1 and
-/// 4; McIntyre 1966 (excess noise).
+/// APD or PIN diode with amplifier and digitiser. Powers are optical. Signal and noise pass the
+/// same low-pass, calibrated: a flat target at normal incidence has the height of its received
+/// power. Sources: Richmond & Cain 2010, ch. 1 and 4; McIntyre 1966 (excess noise).
 struct ReceiverChain {
   double bandwidth = 0;             ///< 3 dB electrical bandwidth; 0 for that of the pulse [Hz]
   double noise_power = 0;           ///< of the amplifier, equivalent, one-sided [W/sqrt(Hz)]

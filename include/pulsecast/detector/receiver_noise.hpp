@@ -9,8 +9,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of infinite bandwidth, with independent noise and background; none by default. A policy
-/// of `FullWaveform`.
+/// Receiver of infinite bandwidth, with white noise. A policy of `FullWaveform`.
 struct ReceiverNoise {
   double deviation = 0;           ///< of the electronic noise per sample, from 0 to 1e20 [W]
   double background = 0;          ///< received sunlight power, from 0 to 1e20 [W]
@@ -23,8 +22,7 @@ struct ReceiverNoise {
     require_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
   }
 
-  /// True without noise.
-  [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
+  [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }  ///< no noise
 
   /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The
   /// photon count is Poisson-distributed, of a variance equal to its mean, and large: nearly
@@ -34,16 +32,16 @@ struct ReceiverNoise {
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
   }
 
-  static constexpr bool runs_without_reflections = false;
+  static constexpr bool runs_without_reflections = false;  ///< false: noise alone is not heard
   struct Workspace {};
   [[nodiscard]] Workspace workspace() const { return {}; }
 
   /// Takes away noise and background.
   void silence() noexcept { *this = {}; }
-  /// Prepares nothing.
-  void prepare(const Laser&, const WaveformSettings&) const noexcept {}
+  void prepare(const Laser&, const WaveformSettings&) const noexcept {}  ///< nothing to do
   /// A maximum is that of the samples about it.
   [[nodiscard]] double timing_reach(const Laser&) const noexcept { return 0; }
+  /// As the concept WaveformReceiver requires.
   [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const DetectorInput& input,
                                      std::span<const Reflection> reflections, double width_tail,
                                      Workspace&) const noexcept {

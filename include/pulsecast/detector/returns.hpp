@@ -20,8 +20,7 @@ enum class ReturnMode : std::uint8_t {
   n_strongest,         ///< the strongest `n`, in order of range
 };
 
-/// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest,
-/// FullWaveform{}}`, numbered anew.
+/// Keeps some echoes of a detector: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`.
 template <Detector Inner>
 class SelectedReturns : public DetectorAdaptor<Inner> {
  public:
@@ -31,7 +30,6 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
     require_within("SelectedReturns (number)", number, 1, 255, "");
   }
 
-  /// Selected echoes of the detector inside.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     if (d.echoes.size() < 2) return d;
@@ -61,8 +59,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
     }
     return echoes;
   }
-  /// Removes the weakest echoes, the farther of equals, until `number` are left; `held` at the end
-  /// stay.
+  /// Removes the weakest echoes, until `number` are left; the last `held` stay.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -104,7 +101,6 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   /// Range beyond which ranges are folded [m].
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
-  /// Echoes of the detector inside, without those in blind zones.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     const auto blind = [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; };

@@ -30,7 +30,6 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
     if (!shapes_.find(laser)) shapes_.add(laser, shape_of(laser));
   }
 
-  /// Echoes of the detector inside, with deviations.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     const Detection d = this->inner.detect(input, w);
     if (const std::vector<double>* shape = shapes_.find(input.emitter.laser))

@@ -63,8 +63,7 @@ struct WaveformSettings {
   }
 
   /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and
-  /// pulse length. A lower peak closer than that is as the flank of a higher one: one echo between
-  /// the outer valleys.
+  /// pulse length. A lower peak closer than that is as the flank of a higher one.
   [[nodiscard]] double min_separation(double pulse_length) const noexcept {
     return std::fmax(separation, std::fmin(window, pulse_length));
   }

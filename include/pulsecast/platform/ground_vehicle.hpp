@@ -49,8 +49,7 @@ struct Footing {
   double along = 0;   ///< length driven in space since the start of its section [m]
 
   /// Attitude by heading, then pitch, then roll, so that up is normal to the plane.
-  /// Source: up after Rx(p) Ry(r), (sin r, -sin p cos r, cos p cos r), is along (-aside, -ahead,
-  /// 1).
+  /// Source: Rx(p) Ry(r) up = (sin r, -sin p cos r, cos p cos r), along (-aside, -ahead, 1).
   [[nodiscard]] Rotation attitude(double heading) const noexcept {
     const double pitch = std::atan(ahead);
     return level(heading) * rotation_about(axis::right, pitch) *
@@ -93,7 +92,7 @@ class GroundVehicleDrive {
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
-  [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
+  [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }  ///< by time
   /// Length driven in space, forwards plus backwards [m].
   [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }
   /// Sentences about ground that no vehicle drives over: too steep, or with gaps.
@@ -141,9 +140,8 @@ class FootingFinder {
   /// Footing at a stance, `step` metres on the map after the one before, by least squares of the
   /// four wheels. As their contact depends on the attitude, the plane is iterated from the footing
   /// before; each round leaves about the square of the slope of the error. Wheels keep to the level
-  /// that this footing leads to. Throws a `SettingError` where there is no ground. Source: the
-  /// slopes of a plane through a rectangle's corners are the differences of the means of opposite
-  /// sides.
+  /// that this footing leads to. Throws a `SettingError` where there is no ground. Source: slopes
+  /// of a plane through a rectangle are differences of the means of opposite sides.
   [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
     Footing expected = before_;
     expected.height += step * expected.ahead;
@@ -260,8 +258,7 @@ class FootingFinder {
 /// All four wheels roll over the ground as far as a rigid body can; speed and acceleration are
 /// limited along the way in space. A single waypoint looks north. Waypoints less than a centimetre
 /// apart are one. Ground of several levels, as roads and bridges, should model `LevelledGround`.
-/// Throws a `SettingError` for invalid settings or waypoints, a path that is too long, or missing
-/// ground.
+/// Throws a `SettingError` for invalid settings or waypoints, too long a path, or missing ground.
 [[nodiscard]] inline GroundVehicleDrive plan_ground_vehicle(std::span<const Vec2> waypoints, const Ground auto& ground,
                                                             const GroundVehicleSettings& settings = {}) {
   settings.validate();

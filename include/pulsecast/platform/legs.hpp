@@ -26,8 +26,7 @@ template <WorldSource P>
 class Legs {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`.
-  /// Throws a `SettingError`.
+  /// Up to 65535 legs, with at most 2^60 slots, 1e15 s and `max_emitters`. @throws SettingError
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", legs.size(), 1, 65535, "");
     PulseIndex first = 0;
@@ -76,7 +75,7 @@ class Legs {
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);
   }
 
-  [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }
+  [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }  ///< platforms in order
 
   /// Begin of leg k since the survey's start.
   [[nodiscard]] Tick start(std::size_t k) const noexcept { return starts_[k].tick; }

@@ -82,9 +82,8 @@ class MulticopterFlight {
 
 namespace detail {
 
-/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at
-/// least a tenth of the weight. Source: tan(bank) = horizontal acceleration / (g + vertical
-/// acceleration), solved.
+/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with a tenth of the
+/// weight as thrust. Source: tan(bank) = horizontal / (g + vertical acceleration).
 [[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
   const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
   double most = settings.acceleration;
@@ -93,9 +92,8 @@ namespace detail {
   return most;
 }
 
-/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so
-/// that the speed never grows. Source: Craig 2005, sec. 7.3, straight lines with blends, with
-/// limited jerk.
+/// Turn between two unit directions at a waypoint: the velocity changes along a line, so the speed
+/// never grows. Source: Craig 2005, sec. 7.3, straight lines with blends.
 struct SmoothTurn {
   Vec3 before{};        ///< direction in, unit
   Vec3 after{};         ///< direction out, unit
@@ -133,8 +131,7 @@ class FlightPlan {
     now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
   }
 
-  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows. Returns the
-  /// time [s].
+  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows. Returns it [s].
   double turn_to(double heading, double time) {
     const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
     const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);
@@ -210,10 +207,9 @@ struct FlightLegs {
 }  // namespace detail
 
 /// Plans a flight through the waypoints, at rest at both ends. The vehicle faces its leg, keeps its
-/// heading on a vertical one, and turns in place at departure and arrival. Each leg takes the least
-/// time that speed, acceleration, jerk and bank allow. A smooth turn takes at most a third of
-/// either leg, so waypoints close to each other are flown slowly; those less than a nanometre apart
-/// are one. Throws a `SettingError`.
+/// heading on a vertical one, and turns in place at both ends. Legs take the least time that speed,
+/// acceleration, jerk and bank allow. A smooth turn takes at most a third of either leg, so close
+/// waypoints are slow; those less than a nanometre apart are one. Throws a `SettingError`.
 [[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints,
                                                         const MulticopterSettings& settings = {}) {
   settings.validate();

@@ -63,8 +63,7 @@ class Platform {
     PulseLanes<frame::World> out(world_from_body * PoseLanes(mount_.pose()), inner);
     const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward);
     const Vec3Lanes ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
-    // components to the right of the level heading and down, times the length of the heading on the
-    // map
+    // components to the right of the heading and down, by the length of the heading on the map
     const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x;
     const simd::Doubles on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
@@ -79,9 +78,9 @@ class Platform {
     return world_from_body * mount_.pose();
   }
 
-  [[nodiscard]] const Path& trajectory() const noexcept { return path_; }
-  [[nodiscard]] const Mount& mount() const noexcept { return mount_; }
-  [[nodiscard]] const Source& source() const noexcept { return source_; }
+  [[nodiscard]] const Path& trajectory() const noexcept { return path_; }  ///< of the body
+  [[nodiscard]] const Mount& mount() const noexcept { return mount_; }     ///< of the instrument
+  [[nodiscard]] const Source& source() const noexcept { return source_; }  ///< of its pulses
 
  private:
   Path path_;

@@ -37,8 +37,7 @@ struct PoseErrors {
   void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
-/// Platform with pose errors: rays start at the true pose, points are computed from the reported
-/// one. Throws a `SettingError`.
+/// Platform with pose errors: rays start at the true pose, points are of the reported one.
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
@@ -57,7 +56,7 @@ class WithPoseErrors {
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
-  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
+  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }  ///< exact
 
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);
@@ -126,8 +125,7 @@ class WithPoseErrors {
     return p;
   }
 
-  /// Drift at each node: the previous one, decayed, plus a random part that keeps the deviation.
-  /// Source: Gelb 1974, sec. 3.8.
+  /// Drift at nodes: the last, decayed, plus a random part. Source: Gelb 1974, sec. 3.8.
   void plan_drift() {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);

@@ -19,8 +19,7 @@ enum class Interpolation : std::uint8_t {
 };
 
 /// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller
-/// angle. Before the first waypoint and after the last one the body rests. Planners and trajectory
-/// files end in this.
+/// angle. Before the first waypoint and after the last one the body rests.
 ///
 /// A time that occurs more than once is a jump: up to it the first of these waypoints counts, from
 /// it on the last. Cubic positions are interpolated on either side alone.
@@ -120,8 +119,7 @@ class Waypoints {
 
   /// Velocities between two jumps: at each waypoint that of the parabola through it and its
   /// neighbours; at the ends, of the parabola through the outer three. Source: de Boor 1978, A
-  /// Practical Guide to Splines, ch. IV, cubic Bessel interpolation; Catmull & Rom 1974 for even
-  /// times.
+  /// Practical Guide to Splines, ch. IV; Catmull & Rom 1974 for even times.
   void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto velocity = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };

@@ -10,14 +10,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, where a single type is required: platforms of different
-/// kinds in `Legs`, or emitters with different optics:
-/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam,
-/// Scanner>>>{...}}`.
+/// Pulse source of one of several types, for platforms of different kinds in `Legs`, or emitters
+/// with different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>,
+/// Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:
   using refinements = refines<tag::MakesLanes>;
+  /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
       : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor)
@@ -40,10 +40,8 @@ class AnySource {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
       (SkipsBlocked<Others> || ...) {
     const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {
-      if constexpr (SkipsBlocked<Source>)
-        return s.next_pulse(i);
-      else
-        return i;
+      if constexpr (SkipsBlocked<Source>) return s.next_pulse(i);
+      return i;
     };
     return std::visit(skip, source_);
   }
@@ -51,10 +49,8 @@ class AnySource {
       PulseIndex i, Tick t) const noexcept requires MeasuresBeam<First> ||(MeasuresBeam<Others> || ...) {
     const auto beam =
         [&]<class Source>(const Source& s) noexcept -> std::optional<Pose<frame::Beam, frame::Instrument>> {
-      if constexpr (MeasuresBeam<Source>)
-        return s.measured(i, t);
-      else
-        return std::nullopt;
+      if constexpr (MeasuresBeam<Source>) return s.measured(i, t);
+      return std::nullopt;
     };
     return std::visit(beam, source_);
   }

@@ -19,8 +19,8 @@ requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// From 1 to `max_emitters` channels, of one size and duration, with at most as many emitters in
-  /// all. Throws a `SettingError`.
+  /// From 1 to `max_emitters` channels, of one size and duration and with as many emitters. @throws
+  /// SettingError
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
     require_within("Channels::channels (number)", channels_.size(), 1, max_emitters, "");
     std::size_t emitters = 0;
@@ -78,7 +78,7 @@ class Channels {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }
 
-  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
+  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }  ///< in turn
 
  private:
   /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last

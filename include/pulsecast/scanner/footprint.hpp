@@ -131,10 +131,9 @@ class SunflowerFootprint {
 /// Subrays of equal energy on a lattice with a column and a row for each, at the quantiles of a
 /// Gaussian beam, mapped so that the second moments are the beam's. Rows follow the order of the
 /// multiples of the golden ratio: neighbours across are far apart up. Pareto-optimal in
-/// docs/tradeoff.md. Edges and wires that are upright or level in the beam are sampled as exactly
-/// as with twice the number of subrays in rings, oblique ones as on a sunflower of as many. Source:
-/// Niederreiter 1992, ch. 3, for the order; columns and rows from inverting the normal
-/// distribution.
+/// docs/tradeoff.md. Edges and wires upright or level in the beam are sampled as exactly as with
+/// twice the number of subrays in rings, oblique ones as on a sunflower of as many. Source:
+/// Niederreiter 1992, ch. 3, for the order; rows and columns from the normal distribution.
 class LatticeFootprint {
  public:
   /// `subrays` from 1 to 100,000. Throws a `SettingError`.
@@ -156,8 +155,7 @@ class LatticeFootprint {
   }
 
   /// Exchanges the rows of two subrays, and then of others, whose exchange brings across and up
-  /// nearest to independence: columns and rows stay nearly upright and level. Many are independent
-  /// enough.
+  /// nearest to independence: columns and rows stay nearly upright and level. Many are so.
   void decorrelate_axes() noexcept {
     const std::size_t n = offsets_.size();
     double mixed = 0;
@@ -209,7 +207,7 @@ template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
   using refinements = refines<tag::RecordsSubrays>;
   static constexpr bool recorded = true;  ///< as the concept RecordsSubrays describes
-  explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
+  explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
 };
 
 /// Footprint that a survey turns about the axis of each pulse's beam, by a different angle for each
@@ -219,7 +217,7 @@ template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
   using refinements = refines<tag::RotatesPerPulse>;
   static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
-  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
+  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a valid footprint
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -47,11 +47,10 @@ struct Scanner {
     if (!(periods > 0)) return 0;
     if (periods >= static_cast<double>(pulses)) return pulses;
     const auto before = static_cast<PulseIndex>(periods);
-    return tick(before) < t ? before + 1 : before;
+    return Tick::of(before, pulse_rate) + Tick::of_seconds(delay) < t ? before + 1 : before;
   }
 
  private:
-  [[nodiscard]] Tick tick(PulseIndex i) const noexcept { return Tick::of(i, pulse_rate) + Tick::of_seconds(delay); }
   [[nodiscard]] Emitter emitter() const noexcept { return {laser, footprint_scale, receiver}; }
 };
 

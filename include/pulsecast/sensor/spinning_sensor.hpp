@@ -24,8 +24,7 @@ struct SensorLaser {
   double delay = 0;      ///< time after the sequence's begin; does not decrease [s]
 };
 
-/// Pulse source of a spinning sensor.
-using SpinningSource = Deflector<RotatingHead, Channels<Deflector<FixedBeam, Scanner>>>;
+using SpinningSource = Deflector<RotatingHead, Channels<Deflector<FixedBeam, Scanner>>>;  ///< its source
 
 /// Data sheet of a lidar with a column of lasers on a head that spins about the sensor's up axis.
 /// All lasers fire once in each firing sequence. Of n lasers, slot i of its source is laser `i % n`
@@ -70,7 +69,6 @@ struct SpinningSensor {
   }
 
   /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError
-  /// for settings out of range
   [[nodiscard]] SpinningSource source(double duration) const {
     validate();
     require_not_negative("SpinningSensor::source (duration)", duration, "s");

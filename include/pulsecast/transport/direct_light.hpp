@@ -14,8 +14,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that each subray's first surface scatters straight back; the rest is
-/// absorbed.
+/// Transport of light that first surfaces scatter straight back; the rest is absorbed.
 struct DirectLight {
   bool spread_planes = true;  ///< spreads light over smooth surfaces: `spread_over_plane`
 
@@ -34,8 +33,7 @@ struct DirectLight {
   }
 
   /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next
-  /// one often meets nothing, too. Sets velocities, too, if `with_velocity`: the rays that return
-  /// are then asked again one by one.
+  /// one often meets nothing, too. Asks rays that return again for velocities, if `with_velocity`.
   // always inlined: a footprint of one subray is then known to be one, which saves 140 instructions
   template <bool with_velocity = false, Target Target>
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Target& target, const TransportInput& light,

@@ -33,9 +33,8 @@ class EchoSimulator {
                 "DirectLight has");
 
  public:
-  /// For pulses of `emitters`, by number, each of which has its receiver. @throws SettingError for
-  /// settings out of range, shares that do not sum to one, an emitter without a receiver, or a
-  /// refused laser
+  /// For pulses of `emitters`, by number, with receivers. @throws SettingError for settings out of
+  /// range, an emitter without a receiver, or a refused laser
   EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
                 const std::vector<Emitter>& emitters, std::uint64_t seed = 0);
   // a temporary map would dangle
@@ -43,12 +42,12 @@ class EchoSimulator {
                 std::uint64_t = 0) = delete;
 
   struct Workspace {
-    decltype(std::declval<const Transport&>().workspace(0)) transport;
-    SharedBuffer<Reflection> reflections;  ///< reflections of a pulse, with room for all
-    std::vector<SubrayRecord> subrays;     ///< all of a pulse, if recorded
-    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;
-    std::uint16_t emitter = 0;   ///< emitter of the last pulse
-    WhiteTarget white_target{};  ///< white target of that emitter
+    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< of the transport
+    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
+    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
+    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< by receiver
+    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
+    WhiteTarget white_target{};                                                     ///< white target of that emitter
   };
 
   [[nodiscard]] Workspace workspace() const;
@@ -60,7 +59,9 @@ class EchoSimulator {
     for (const EmitterConstants& e : emitters_) sum += receivers_[e.emitter.receiver].footprint.size();
     return sum / emitters_.size();
   }
+  /// Subrays passed to the sinks with each pulse.
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }
+  /// Receivers, by number.
   [[nodiscard]] std::span<const ReceiverUnit<Footprint, Detector>> receivers() const noexcept { return receivers_; }
   /// Sample spacing of a waveform; 0 if the detectors have none [s].
   [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }

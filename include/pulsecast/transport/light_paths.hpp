@@ -13,15 +13,13 @@ namespace PULSECAST_NAMESPACE {
 
 /// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform,
 /// footprint, scene, LightPaths{}, receiver, detector}`. Every surface on its way sends light back
-/// along the same way, which an instrument reports in the direction of its beam, at half the
-/// optical path.
+/// along the same way, reported along the beam, at half the optical path.
 ///
 /// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the
 /// ledger, a surface's share of the light is scattered, and the rest is absorbed.
 ///
 /// Plane mirrors and panes pass subrays on together; bodies refract them one by one. Light spreads
-/// by the plane that each ray meets. Left out: polarisation between surfaces, interference,
-/// diffraction.
+/// by the plane that each ray meets. Left out: polarisation, interference, diffraction.
 struct LightPaths {
   std::size_t passages = 8;         ///< most surfaces that pass light on, from 0 to 32
   double share_min = 1e-4;          ///< least share of a subray's light that is followed, one way
@@ -53,7 +51,7 @@ struct LightPaths {
     });
   }
 
-  using Workspace = detail::PathWorkspace;
+  using Workspace = detail::PathWorkspace;  ///< scratch memory of one worker
 
   /// Room for the reflections of a pulse. Light of further ones is counted as cut.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
@@ -70,16 +68,15 @@ struct LightPaths {
   template <bool with_velocity = false, SceneQueries Target>
   [[nodiscard]] TransportResult trace(const Target& target, const TransportInput& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
-    const detail::PathSettings settings{passages, share_min, air, scattering};
     TransportResult result;
-    detail::PathTracer<with_velocity, Target> tracer(target, light, settings, w, reflections, result);
+    detail::PathTracer<with_velocity, Target> tracer(target, light, *this, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spreads(light.subrays) && !tracer.passed_on()) {
       const auto direct = detail::direct_ones(reflections.first(result.reflections));
       if (const double span = span_of_ranges(light, direct); span > 1)
         spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
           TransportResult other;
-          detail::PathTracer<with_velocity, Target>(target, again, settings, w, reflections, other).trace();
+          detail::PathTracer<with_velocity, Target>(target, again, *this, w, reflections, other).trace();
           return other;
         });
     }

@@ -182,7 +182,6 @@ class BandLimitedSamples {
     end_ = std::max(end_, last - static_cast<double>(pulses_.first_tap));
   }
 
-  /// Adds `factor` times some numbers to others.
   static void add(double factor, const double* from, std::size_t count, double* to) noexcept {
     std::size_t k = 0;
     for (; k + simd::lane_count <= count; k += simd::lane_count)

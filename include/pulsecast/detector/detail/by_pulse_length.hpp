@@ -21,7 +21,6 @@ class ByPulseLength {
     return nullptr;
   }
 
-  /// Keeps the data for a laser, for which there are none.
   void add(const Laser& laser, Prepared prepared) { known_.emplace_back(laser.pulse_length, std::move(prepared)); }
 
   void each(const auto& visit) const {

@@ -19,11 +19,10 @@ namespace PULSECAST_NAMESPACE::detail {
 
 /// Waveform of continuous returns of linear density, for `PulseShape`, at ascending times: exact.
 ///
-/// A step J of the density by range, whose leading edge passed an age u [tau] ago, contributes J (2
-/// - e^-u (u^2 + 2 u + 2)) to the sum of pulses u^2 e^-u; a change K of its slope by tau, K (2 u -
-/// 6 + e^-u (u^2 + 4 u + 6)). Without e^-u that is 2 q - 6 q', of the density q at the leading
-/// edge; the rest adds up to a quadratic in time, times an exponential. By integration of
-/// `PulseShape`.
+/// A step J of the density by range, whose edge passed an age u [tau] ago, contributes J (2 - e^-u
+/// (u^2 + 2 u + 2)) to the sum of pulses u^2 e^-u; a change K of its slope by tau, K (2 u - 6 +
+/// e^-u (u^2 + 4 u + 6)). Without e^-u that is 2 q - 6 q', of the density q at the leading edge;
+/// the rest is a quadratic in time, times an exponential. By integration of `PulseShape`.
 class ContinuousSum {
  public:
   ContinuousSum(std::span<const ContinuousReturn> returns, const PulseShape& shape) noexcept
@@ -70,8 +69,7 @@ class ContinuousSum {
 
   [[nodiscard]] double scale() const noexcept { return PulseShape::to_unit_peak * tau_ * metres; }
 
-  /// Adds steps of the density [W/m] and its slope [W/m by tau], whose edge passed an age ago
-  /// [tau].
+  /// Adds steps of the density [W/m] and its slope [W/m by tau], of an age [tau].
   void add(double step, double bend, double age) noexcept {
     if (!(age < faded)) return;
     const double left = exponential(-age), square = bend - step, linear = 4 * bend - 2 * step;
@@ -115,8 +113,7 @@ class GammaIntegrals {
   PulseShape shape_;
 };
 
-/// Places at which the waveform of continuous returns may have maxima, and echoes that are theirs.
-/// `Pulse` is as `GammaIntegrals`.
+/// Places of maxima of continuous returns, and their echoes. `Pulse`: as `GammaIntegrals`.
 ///
 /// The waveform rises only where density does, and until the light of there has passed its maximum:
 /// a search for maxima looks there alone, and at reflections.

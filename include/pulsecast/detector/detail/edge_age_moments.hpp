@@ -34,9 +34,8 @@ class EdgeAgeMoments {
 
   /// True if the slope of the sum has zeros, passed or to come.
   [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
-  /// Negative if passed [tau].
+  // times to these zeros, negative if passed [tau]
   [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }
-  /// Negative if passed [tau].
   [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }
 
   /// Sum of pulses now [W].

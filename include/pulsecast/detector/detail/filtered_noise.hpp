@@ -16,8 +16,7 @@ namespace PULSECAST_NAMESPACE {
 struct LowPass {
   double deviation = 0;  ///< standard deviation of the impulse response [s]
 
-  /// Low-pass whose response falls by 3 dB at a frequency [Hz]: |H(f)|^2 = exp(-(2 pi f
-  /// deviation)^2).
+  /// Low-pass that falls by 3 dB at a frequency [Hz]: |H(f)|^2 = exp(-(2 pi f deviation)^2).
   [[nodiscard]] static LowPass of_bandwidth(double bandwidth) noexcept {
     return {std::sqrt(std::numbers::ln2) / (2 * std::numbers::pi * bandwidth)};
   }
@@ -42,8 +41,7 @@ class FilteredNoise {
     const auto first = static_cast<std::int64_t>(middle) - (reach - 1);
     for (next_ = next_ < first ? first : next_; next_ < first + 2 * reach; ++next_)
       impulses_[index(next_)] = impulse(next_);
-    // weights exp(-(j - from)^2 step^2 / 2) of impulses first + j: each is a factor times the one
-    // before, which falls by a constant
+    // weights exp(-(j - from)^2 step^2 / 2): each a factor by the last, which falls by a constant
     constexpr double square = 0.75 * 0.75, decay = 0.569782824730923;  // exp(-square)
     const double from = beyond + (reach - 1);
     double weight = exponential(-0.5 * square * from * from), factor = exponential(square * (from - 0.5)), sum = 0;

@@ -17,8 +17,7 @@ namespace PULSECAST_NAMESPACE {
 class IdealSamples {
  public:
   /// For reflections sorted by range. `deviation` is that of the noise [W], `background` a mean
-  /// that is not in the samples [W]. `width_tail`: time after the last peak that a width or
-  /// centroid needs [tau].
+  /// that is not in the samples [W]. `width_tail`: time that a width or centroid needs [tau].
   IdealSamples(double deviation, double background, const WaveformSettings& s, const DetectorInput& input,
                std::span<const Reflection> reflections, double width_tail) noexcept
       : reflections_(reflections),

@@ -40,8 +40,7 @@ namespace detail {
   return {.object = r.object, .classification = r.classification, .kind = r.kind};
 }
 
-/// True if a reflection can be an echo: of power, and nearer than 2^52 samples, which can be
-/// counted.
+/// True if a reflection can be an echo: of power, and nearer than 2^52 samples.
 [[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
   return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;
 }

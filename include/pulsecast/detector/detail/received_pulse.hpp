@@ -61,8 +61,7 @@ class ReceivedPulse {
   /// Time of the maximum after the low-pass since the peak before it [s].
   [[nodiscard]] double peak() const noexcept { return peak_; }
   /// Time on either side of the maximum within which the pulse is concave, less a sample of the
-  /// table; 0 for a pulse with another maximum. Pulses no further apart have a sum with a single
-  /// maximum [s].
+  /// table; 0 for a pulse with another maximum. Closer pulses have one maximum [s].
   [[nodiscard]] double concave() const noexcept { return concave_; }
   /// Full width at half maximum [s].
   [[nodiscard]] double width() const noexcept { return width_; }
@@ -148,7 +147,6 @@ class ReceivedPulse {
 
   double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0, width_ = 0;
   std::size_t phases_ = 1, count_ = 0, stride_ = 0;
-  /// Value of the table.
   struct Point {
     detail::PulseIntegrals integrals{};  ///< up to there
     double value = 0;

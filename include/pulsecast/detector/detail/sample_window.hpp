@@ -17,7 +17,6 @@ namespace PULSECAST_NAMESPACE {
 template <EchoWidth Width>
 class SampleWindow {
  public:
-  /// Settings of a search.
   struct Search {
     const WaveformSettings& settings;  ///< of the detector
     const Width& width;                ///< measure of widths
@@ -35,8 +34,7 @@ class SampleWindow {
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
 
-  /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to
-  /// `peaks`.
+  /// Takes the next sample, a power [W]. Appends the peaks of a full window to `peaks`.
   void take(double number, double power, bool more, const Search& search, std::vector<Peak>& peaks) noexcept {
     samples_.push_back(power);
     if (more && samples_.size() == capacity) {

@@ -31,9 +31,8 @@ class SinglePeakGroup {
         : ages(std::min<std::size_t>(reflections, 2048) + simd::lane_count), weights(ages) {}
   };
 
-  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for
-  /// reflections that are none, too far apart or away, too many, or without power: nothing else may
-  /// be called then.
+  /// Computes ages and weights in a workspace that outlives it. `one()` is false for reflections
+  /// that are none, too far apart or away, too many, or without power; then call nothing else.
   SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval,
                   Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
@@ -82,7 +81,6 @@ class SinglePeakGroup {
     mean_range_ = farthest - all_before / all_power;
   }
 
-  /// True if the reflections form such a group.
   [[nodiscard]] bool one() const noexcept { return one_; }
   /// Two-way travel time, origin of the times below [s].
   [[nodiscard]] double last_edge() const noexcept { return last_edge_; }
@@ -114,8 +112,7 @@ class SinglePeakGroup {
     return {c * 2 * sum, c * (6 * sum - 2 * first), c * (24 * sum - 12 * first + 2 * second)};
   }
 
-  /// Reflection of the greatest share of the sum at a time since the last edge [tau]; first of
-  /// equals.
+  /// Reflection of the greatest share of the sum at a time since the last edge [tau].
   [[nodiscard]] const Reflection& strongest(double x) const noexcept {
     simd::Doubles most{}, number{}, best{};
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);

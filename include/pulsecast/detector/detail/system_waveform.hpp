@@ -18,8 +18,7 @@ namespace PULSECAST_NAMESPACE::detail {
 /// the equation of heat, the slope in the variance is half the second derivative in time.
 class SystemWaveform {
  public:
-  /// Takes samples of the waveform of a flat target of power 1, every `step` [s], from `begin`
-  /// since its arrival on [s].
+  /// Takes samples of a flat target of power 1, every `step` [s], from `begin` on [s].
   SystemWaveform(std::vector<double> flat, double begin, double step) : begin_(begin), step_(step) {
     double energy = 0, first = 0, second = 0;
     for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -52,8 +51,7 @@ class SystemWaveform {
     double place = 0;  ///< from 0 to 1; below 0 for less than a flat target
     double span = 0;   ///< distance of the tables [s^2]
   };
-  /// Place of a variance in use, beyond that of a flat target [s^2]; below 0 extrapolated, so that
-  /// noise moves it both ways.
+  /// Place of a variance beyond that of a flat target [s^2]; extrapolated below 0, for noise.
   [[nodiscard]] Blend blend(double variance) const noexcept {
     std::size_t j = 0;
     while (j + 2 < levels_.size() && added(j + 1) <= variance) ++j;
@@ -84,7 +82,6 @@ class SystemWaveform {
   struct Cubic {
     double value = 0, slope = 0, bend = 0;
   };
-  /// Waveform of a variance.
   struct Level {
     double before = 0;           ///< samples before the first of a flat target
     std::vector<double> values;  ///< 0 beyond

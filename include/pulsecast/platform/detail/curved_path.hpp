@@ -25,8 +25,7 @@ struct PathPiece {
   double gear = 1;           ///< 1 forwards, -1 backwards
   std::size_t waypoint = 0;  ///< number of the waypoint ahead
 
-  /// Stance after a driven length [m]. Source: the chord of an arc, 2 r sin(angle / 2), along its
-  /// middle.
+  /// Stance after a driven length [m]. Source: chord of an arc, 2 r sin(angle / 2).
   [[nodiscard]] Stance after(double driven) const noexcept {
     const double way = gear * driven, half = 0.5 * curvature * way;
     const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // +-1e-18

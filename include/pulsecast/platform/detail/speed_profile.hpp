@@ -64,8 +64,7 @@ struct SpeedChange {
 }
 
 /// Fastest motion over a length [m] between two speeds [m/s] that `reachable_speed` allows, in up
-/// to seven pieces. Source: Biagiotti & Melchiorri 2008, section 3.4; the speed in the middle by
-/// bisection.
+/// to seven pieces. Source: Biagiotti & Melchiorri 2008, section 3.4.
 [[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to,
                                                                    const SpeedLimits& limits) {
   const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
@@ -95,9 +94,8 @@ struct PathSection {
   SpeedLimits limits{};  ///< limits all along it
 };
 
-/// Lowers the speeds at the joints of sections, one more than these, until each can be driven
-/// within its limits: forwards for speeding up, backwards for braking. Source: look-ahead of
-/// machine tools.
+/// Lowers the speeds at the joints of sections, until each can be driven within its limits:
+/// forwards for speeding up, backwards for braking. Source: machine tools.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {

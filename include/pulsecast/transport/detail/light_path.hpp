@@ -99,19 +99,16 @@ struct LightPath {
       if (slope != 0) place[k] -= dot(place[k], normal) / slope * ray.direction;
     }
   }
-  /// Range in air over which light would have spread as far and come back as weak, at a distance
-  /// [m].
+  /// Range in air over which light would spread as far and return as weak, at a distance [m].
   [[nodiscard]] double spread(double distance = 0) const noexcept {
     return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]),
                                                     ray.direction)));
   }
 
-  /// Takes a share of the light along.
   void keep(double share) noexcept {
     sent *= share;
     two_way_share *= share * share;
   }
-  /// Continues in the mirror's direction.
   void reflect(const Vec3& normal) noexcept {
     ray.direction = mirrored(ray.direction, normal);
     for (Vec3& t : turn) t = mirrored(t, normal);

@@ -19,8 +19,7 @@ namespace PULSECAST_NAMESPACE::detail {
 /// Takes the light of a pulse through media: what they absorb, scatter and send back.
 class MediaPassage {
  public:
-  /// `air`: media between the surfaces; `share_min` as in `LightPaths`; the rest is memory for what
-  /// media send back.
+  /// `air`: media between the surfaces; `share_min` as in `LightPaths`; others are memory.
   MediaPassage(const TransportInput& light, const Media& air, double share_min, LightLedger& ledger,
                VolumeProfile& in_air, VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
       : light_(light),
@@ -167,8 +166,8 @@ class MediaPassage {
     double delay = 1;          ///< optical path by way
     bool straight = false;     ///< true if all of the way so far was through the medium
   };
-  /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s,
-  /// `air(s)` the way in air [m].
+  /// Adds returns of a stretch. `spread(s)`: range by which light spreads; `air(s)`: way in air
+  /// [m].
   ///
   /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the
   /// mean. Nodes are lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).
@@ -238,8 +237,7 @@ class MediaPassage {
     density = way.two_way_share * known.density[cell];
     return true;
   }
-  /// Share of light to and fro, by that at a way's begin, below which returns of media are left
-  /// out.
+  /// Share of light to and fro, by that at a way's begin, below which nothing returns.
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, share_min_ * share_min_); }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();

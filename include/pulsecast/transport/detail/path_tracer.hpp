@@ -28,14 +28,6 @@ struct PathLevel {
   RayBundle::Column power{};
 };
 
-/// Settings of a `PathTracer`.
-struct PathSettings {
-  std::size_t passages;
-  double share_min;
-  const Media& air;
-  const MultipleScattering& scattering;
-};
-
 /// Scratch memory of a `PathTracer`.
 struct PathWorkspace {
   std::vector<PathLevel> levels;            ///< by number of surfaces that passed light on
@@ -49,11 +41,11 @@ struct PathWorkspace {
   }
 };
 
-/// Follows the light of one pulse.
+/// Follows the light of one pulse, by the settings of `LightPaths`.
 template <bool with_velocity, SceneQueries Target>
 class PathTracer {
  public:
-  PathTracer(const Target& target, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
+  PathTracer(const Target& target, const TransportInput& light, const auto& settings, PathWorkspace& w,
              std::span<Reflection> reflections, TransportResult& result) noexcept
       : target_(target),
         light_(light),
@@ -64,7 +56,6 @@ class PathTracer {
         bodies_(target, light, settings.share_min, settings.passages, ledger_, media_),
         scattered_(target, light, settings.air, settings.scattering, ledger_) {}
 
-  /// Follows all subrays.
   void trace() noexcept {
     const SubrayDirections& beam = light_.beam;
     const Matrix3 world_from_beam = matrix_of(light_.pulse.pose.rotation);
@@ -86,7 +77,6 @@ class PathTracer {
     ledger_.close(media_.close());
   }
 
-  /// True if a surface passed light on.
   [[nodiscard]] bool passed_on() const noexcept { return passed_on_; }
 
  private:

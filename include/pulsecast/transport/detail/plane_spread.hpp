@@ -137,8 +137,7 @@ struct Slope {
   return pairs < 2 || 10 * pairs < light.subrays ? Slope{} : slope;
 }
 
-/// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the
-/// same share of the light.
+/// True if subrays on a plane have the same labels, and powers by share within a tenth.
 [[nodiscard, gnu::noinline]] inline bool alike(const TransportInput& light, std::span<const Reflection> met) noexcept {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t j = 0; j < met.size(); ++j) {
@@ -221,15 +220,13 @@ inline void set_row(SubrayDirections& row, std::size_t size, const Emitter& emit
 
 /// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they
 /// did: the pulse is traced again, by as many subrays as make one echo of a plane. `span` is that
-/// of the ranges. `trace(light)` sets the reflections anew, and returns the result; `row` is
-/// memory.
+/// of the ranges. `trace(light)` sets the reflections anew, and returns the result.
 ///
-/// On a plane, only the place of a subray along the slope matters: the subrays are in a row along
-/// it, and anywhere across. Derived for pulses of a `PulseShape`, in units of its tau, with the
-/// echo's deviation s. Each pulse begins as the square of time, so the slope of a sum of pulses a
-/// distance d apart errs by up to d^2 / 12 of its height (Source: formula of Euler and Maclaurin).
-/// The slope of the echo is x / s^2 of its height at x from its maximum: if d grows as the root of
-/// 12 x / s^2, there is no other.
+/// On a plane, only places along the slope matter: the subrays are a row along it. Derived for
+/// pulses of a `PulseShape`, in units of its tau, with the echo's deviation s. Each pulse begins as
+/// the square of time, so the slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of
+/// its height (Source: formula of Euler and Maclaurin). The slope of the echo is x / s^2 of its
+/// height at x from its maximum: if d grows as the root of 12 x / s^2, it is the only one.
 ///
 /// Where neighbours in the row send back other powers or labels, or the surface is not one plane,
 /// the row is even, and longer, as paint across the slope is then a sum over neighbours. Errors

@@ -24,8 +24,7 @@ namespace PULSECAST_NAMESPACE::detail {
   for (std::size_t j = 0; j < hits.size(); ++j) power[j] *= budget.overlap_at(hits[j].range);
 }
 
-/// Power received from the hits of rays with shares of the pulse's energy, without the gate [W].
-/// Undefined for misses.
+/// Power received from the hits of rays with shares of the energy; no gate; not for misses [W].
 [[gnu::always_inline]] inline void received_power(const TransportInput& light, const double* shares, std::size_t size,
                                                   std::span<const Hit> hits, RayBundle::Column& power) noexcept {
   if (size == 1) {

@@ -27,8 +27,7 @@ class ScatteredPaths {
                  const MultipleScattering& settings, LightLedger& ledger) noexcept
       : target_(target), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
 
-  /// Continues some of a beam's subrays that met these surfaces: as many as their share of all
-  /// paths.
+  /// Continues some of a beam's subrays that met these surfaces, by their share of all paths.
   void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const PathVertex> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);

@@ -34,8 +34,7 @@ class VolumeProfile {
   /// Greatest number of returns.
   [[nodiscard]] std::size_t size_max() const noexcept { return cells + parts_.capacity() + 1; }
 
-  /// Densities at the nodes of light that leaves with a share of 1 through a medium, the same for
-  /// all pulses.
+  /// Densities at the nodes of all light through a medium, the same for all pulses.
   struct Straight {
     LinkBudget budget{};
     double extinction = 0, backscatter = 0;
@@ -105,8 +104,8 @@ class VolumeProfile {
     }
     return share * (straight_.power[end] - straight_.power[first]);
   }
-  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. Without room, cells take
-  /// all such stretches.
+  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. Cells take what has no
+  /// room.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
     const Part part{begin, end, at_begin, at_end};
     if (parts_.size() == parts_.capacity()) {
