@@ -22,8 +22,7 @@ namespace PULSECAST_NAMESPACE {
   return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes::about(axis::right, angle)};
 }
 
-/// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth
-/// [rad]. Its right axis stays level.
+/// Pose of a beam from `origin` [m]: elevated, then turned to the right [rad]; right stays level.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation,
                                                                    const Vec3& origin = {}) noexcept {
   const Rotation turn = detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth));

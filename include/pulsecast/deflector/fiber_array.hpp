@@ -8,8 +8,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to
-/// +half_angle, ends included, and repeat.
+/// Row of fibres in the plane of forward and up, lit in turn from -half_angle to +half_angle.
 struct FiberArray {
   using refinements = refines<tag::Validated>;
   std::uint32_t fibers = 128;  ///< number of fibres in the row

@@ -14,8 +14,7 @@ enum class Swing : std::uint8_t {
   sine,      ///< harmonic, such as that of a resonant mirror
 };
 
-/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it
-/// starts, to +half_angle; a cycle is two lines.
+/// Mirror that oscillates the beam in the plane of forward and up, first from -half_angle upwards.
 struct OscillatingMirror {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
   double cycle_rate = 50;         ///< full oscillations per second, at most 1e12 [Hz]

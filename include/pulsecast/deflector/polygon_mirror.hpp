@@ -10,7 +10,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Rotating polygon mirror: each facet in turn sweeps the beam from low to high in the plane of
 /// forward and up, from -sweep, included, to +sweep, excluded. Pulses outside the gate are blocked;
-/// those on its ends pass, whatever the rounding of their time.
+/// those on its ends pass, however rounded.
 struct PolygonMirror {
   using refinements = refines<tag::Gated, tag::ForeseesOpening, tag::MovesInLanes, tag::Validated>;
   double line_rate = 100;             ///< rate of facets, at most 1e12 [Hz]

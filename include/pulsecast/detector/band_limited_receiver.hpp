@@ -22,8 +22,7 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Receiver of finite bandwidth: a policy of `FullWaveform`, by the settings of a `ReceiverChain`
-/// and the form of the laser's pulse. The sample interval is free once it resolves the bandwidth.
-/// With noise it samples the whole gate.
+/// and the form of the laser's pulse. With noise it samples the whole gate.
 template <PulseForm Form = GammaPulse>
 class BandLimitedReceiver {
  public:

@@ -142,8 +142,7 @@ class Fmcw {
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 
-  /// Amplitude of a sine's spectrum through the window of Hann, at `x` periods from its own.
-  /// Source: Harris 1978.
+  /// A sine's amplitude `x` periods off, through the window of Hann. Source: Harris 1978.
   [[nodiscard]] static double window(double x) noexcept {
     const double square = x * x;
     if (square < 1e-8) return 1;

@@ -51,8 +51,7 @@ concept WaveformReceiver = std::copyable<R> &&
 ///
 /// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of
 /// the pulse length, by 0.5 mm at 1/8, by 10 mm at 1/4; its amplitude by -0.13 to 0.40 % at 1/5,
-/// and 2 % at 1/4. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096
-/// noise peaks per pulse are considered.
+/// and 2 % at 1/4. Pulses of other than 1 to 10,000 intervals are refused.
 template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
@@ -179,7 +178,7 @@ class FullWaveform {
 
  private:
   static constexpr bool ideal = std::same_as<Receiver, ReceiverNoise>;
-  static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
+  static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise that count
   static constexpr std::size_t continuous_peaks = 64;
 
   /// Time of a flat target's echo less its arrival, by its place between two samples.

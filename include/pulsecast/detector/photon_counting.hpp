@@ -48,13 +48,12 @@ struct PhotonCountingSettings {
 };
 
 /// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of
-/// sunlight and of dark counts are Poisson processes. Detections of all shots make a histogram;
-/// each of its peaks is an echo at the mean time of the detections in the bin and its neighbours.
-/// The energy of a reflection is its power times the full width at half maximum, as in
-/// `EnergyLedger`: 8 % less than in the gamma pulse. The amplitude is the power that would give as
-/// many counts without dead time. With one shot and a threshold of 1, isolated detections are
-/// echoes. Nothing is detected outside the gate; if it has no end, only light after the last
-/// reflection.
+/// sunlight and of dark counts are Poisson processes. All detections make a histogram; each of its
+/// peaks is an echo at the mean time of the detections in the bin and its neighbours. The energy of
+/// a reflection is its power times the full width at half maximum, as in `EnergyLedger`: 8 % less
+/// than in the gamma pulse. The amplitude is the power that would give as many counts without dead
+/// time. With one shot and a threshold of 1, isolated detections are echoes. Nothing is detected
+/// outside the gate, nor noise after the last reflection if it has no end.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009.
 template <PulseForm Form = GammaPulse>

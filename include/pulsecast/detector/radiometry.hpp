@@ -66,11 +66,11 @@ struct RangeErrors {
 
   /// Reported minus true range [m] of an echo of a channel, for a standard normal draw.
   [[nodiscard]] double at(const Echo& echo, double draw, std::size_t channel = 0) const noexcept {
-    constexpr double min_cosine = 0.01;  // bounds the noise of an edge-on surface
-    const double cosine = echo.cos_incidence > min_cosine ? echo.cos_incidence : min_cosine;
+    constexpr double least = 0.01;  // bounds the noise of an edge-on surface
+    const double slant = !grows_with_incidence ? 1 : echo.cos_incidence > least ? echo.cos_incidence : least;
     const double by_power = deviation_at_watt > 0 ? deviation_at_watt * std::pow(echo.amplitude, power_exponent) : 0;
     const double of_channel = channel < channel_biases.size() ? channel_biases[channel] : 0;
-    const double noise = draw * (deviation_at(echo.range) + by_power) / (grows_with_incidence ? cosine : 1);
+    const double noise = draw * (deviation_at(echo.range) + by_power) / slant;
     return bias + of_channel + scale * echo.range + noise;
   }
 };
@@ -177,8 +177,7 @@ class LinkBudget {
     const double power_in_air = power(share, backscatter, range);
     return air == range ? power_in_air : power_in_air * std::exp(both_ways_ * (air - range));
   }
-  /// Received power [W] of a subray with this share of the pulse's energy that comes back into the
-  /// aperture itself, after so much air [m].
+  /// Received power [W] of a share of the pulse that comes back into the aperture after air [m].
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }

@@ -87,8 +87,7 @@ enum class RangeAmbiguity : std::uint8_t {
 template <Detector Inner>
 class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the pulse rate [Hz], the detector inside, the blind range after the exit [m], and the
-  /// treatment of ranges. @throws SettingError
+  /// Takes pulse rate [Hz], blind range after the exit [m], and treatment. @throws SettingError
   MultiplePulsesInAir(double pulse_rate, Inner inside, double blind = 0, RangeAmbiguity in_air = RangeAmbiguity::folded)
       : DetectorAdaptor<Inner>{validated(std::move(inside))},
         ambiguity_(0.5 * speed_of_light / pulse_rate),

@@ -13,9 +13,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Waveform detector that adds each echo's deviation from the shape of a flat target,
 /// `Echo::shape_deviation`: the mean over the samples within a pulse length, in thousandths of the
-/// echo's maximum. Slopes, edges and leaves have more. The detector inside keeps waveforms, of a
-/// `record_length` greater than 0; echoes beyond have none. Source: Pfennigbauer & Ullrich 2010,
-/// SPIE 7684 (pulse shape deviation).
+/// echo's maximum. Slopes, edges and leaves have more. The detector inside keeps waveforms
+/// (`record_length`); echoes beyond have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684.
 template <class Inner>
 class ShapeDeviation : public DetectorAdaptor<Inner> {
  public:

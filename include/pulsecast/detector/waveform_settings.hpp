@@ -53,8 +53,7 @@ struct WaveformSettings {
   static constexpr double max_kept = 1e7;     ///< samples of a record
   static constexpr double max_samples = 1e4;  ///< samples in a pulse length, for `FullWaveform`
 
-  /// Refuses bins longer than a pulse [s], which could fall between two samples, or of which it has
-  /// more than `most`. @throws SettingError
+  /// Refuses bins longer than a pulse, or of which it has more than `most`. @throws SettingError
   void require_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
     const std::string from = text::to_text(pulse_length / most), to = text::to_text(pulse_length);

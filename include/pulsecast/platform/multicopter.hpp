@@ -47,9 +47,8 @@ struct MulticopterSettings {
   }
 };
 
-/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis
-/// follows the sum of acceleration and lift: tan(bank) = v^2 / (g r) in a level turn. Position,
-/// velocity and attitude are continuous.
+/// Flight in pieces of constant jerk. Thrust alone moves it: its up axis follows acceleration and
+/// lift, tan(bank) = v^2 / (g r) in a level turn. Position, velocity and attitude are continuous.
 class MulticopterFlight {
  public:
   /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: `plan_multicopter`.

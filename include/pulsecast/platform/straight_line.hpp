@@ -7,8 +7,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along the
-/// path, or north if vertical or empty.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along it,
+/// or north.
 struct StraightLine {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
@@ -27,8 +27,7 @@ struct StraightLine {
 
   [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract
-  /// products and sums in different ways.
+  /// One copy of the code, as compilers may contract products and sums in different ways.
   [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
     const double whole = length(path);

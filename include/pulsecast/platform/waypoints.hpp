@@ -92,8 +92,7 @@ class Waypoints {
     poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
   }
 
-  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985,
-  /// Animating rotation with quaternion curves.
+  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985.
   [[nodiscard]] static RotationLanes interpolated(const Rotation& from, const Rotation& to,
                                                   const simd::Doubles& share) noexcept {
     const double cosine = dot(from, to), along = std::fabs(cosine);

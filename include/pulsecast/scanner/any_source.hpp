@@ -10,8 +10,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, for platforms of different kinds in `Legs`, or emitters
-/// with different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>,
+/// Pulse source of one of several types, for platforms of different kinds, or emitters with
+/// different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>,
 /// Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {

@@ -39,8 +39,7 @@ struct BeamExit {
 
 /// Copy of a laser with the divergence and waist of the beam from an exit. A focused beam's waist
 /// lies short of the focus. Throws a `SettingError`. Source: Carlsson, Steinvall & Letalick 2001,
-/// w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2), with M^2 lambda for lambda as in Siegman
-/// 1990.
+/// w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2); M^2 lambda for lambda, Siegman 1990.
 [[nodiscard]] inline Laser gaussian_beam(const BeamExit& exit, Laser laser) {
   exit.validate();
   require_positive("Laser::wavelength", laser.wavelength, "m");

@@ -21,10 +21,10 @@ namespace PULSECAST_NAMESPACE {
   return {aside * scaled.x, std::cos(angle), aside * scaled.y};
 }
 
-/// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from
-/// a point. Otherwise subrays pass the waist a quarter turn ahead of their far-field azimuth, as
-/// rulings of the beam's hyperboloid: at every range, their distances from the axis are those of
-/// the footprint times `beam_radius`.
+/// Origin of a subray in the frame of its beam, at the exit [m]; zero for a beam from a point.
+/// Otherwise subrays pass the waist a quarter turn ahead of their azimuth, rulings of a
+/// hyperboloid: at all ranges, their distances from the axis are those of the footprint times
+/// `beam_radius`.
 [[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
   const Vec3 direction = subray_direction(offset, laser.divergence);
   const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};

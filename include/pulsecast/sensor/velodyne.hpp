@@ -32,9 +32,8 @@ namespace PULSECAST_NAMESPACE {
   return sensor;
 }
 
-/// Velodyne VLP-32C, which spins 5 to 20 times a second. Two lasers fire at a time. Axes, noise,
-/// pulse length and divergence as for the VLP-16. Source: Velodyne, VLP-32C user manual 63-9325
-/// rev. C, 2019, table of lasers and data sheet.
+/// Velodyne VLP-32C, whose lasers fire two at a time; the rest is as for the VLP-16. Source:
+/// Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet.
 [[nodiscard]] inline SpinningSensor velodyne_vlp_32c(double rotation_rate = 10) {
   using namespace literals;
   struct Row {

@@ -37,8 +37,7 @@ struct LightPaths {
     require_within("LightPaths::volume_cells", volume_cells, 4, 1e6, "");
   }
 
-  /// Refuses a target that `VisitsMaterials` for a law that does not `ScattersBetween`, if light is
-  /// scattered to and fro. @throws SettingError
+  /// Refuses laws that are no `ScattersBetween`, for light to and fro. @throws SettingError
   template <SceneQueries Target>
   void validate(const Target& target) const {
     if (scattering.orders == 1) return;

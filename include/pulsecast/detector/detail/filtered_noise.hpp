@@ -27,8 +27,7 @@ struct LowPass {
 
 /// White Gaussian noise after a `LowPass`, scaled to a deviation of 1: a function of time, whatever
 /// the sampling. Impulses of heights drawn by the key and their number follow each other at 3/4 of
-/// the filter's deviation: the deviation at different times differs by less than 1e-7. Its
-/// autocorrelation is exp(-(t / 2 deviation)^2).
+/// the filter's deviation, even to 1e-7. Its autocorrelation is exp(-(t / 2 deviation)^2).
 class FilteredNoise {
  public:
   /// Noise of a pulse; the key's subray and part number the impulses.

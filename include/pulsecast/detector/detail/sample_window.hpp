@@ -59,8 +59,7 @@ class SampleWindow {
     return i;
   }
 
-  /// Maximum about a plateau of samples: between samples, unless it is longer than two, as after
-  /// saturation or of a coarse digitiser.
+  /// Maximum about a plateau of samples: between samples, unless it is longer than two.
   [[nodiscard]] detail::Vertex top_of(std::size_t first, std::size_t last) const noexcept {
     if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
     return detail::vertex(&samples_[first]);

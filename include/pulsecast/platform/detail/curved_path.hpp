@@ -36,17 +36,16 @@ struct PathPiece {
 };
 
 /// Angle of the first and the last arc of a three-point turn on the spot by `angle` in [0, pi]; the
-/// middle arc, driven backwards, turns by the rest. All have one radius; for pi, each is pi/3.
-/// Source: family C|C|C of Reeds & Shepp 1990, with centres 2 r apart, for zero displacement:
-/// sin(middle / 2) = sin(angle / 2) / 2.
+/// middle one, backwards, turns by the rest. All have one radius; for pi, each is pi/3. Source:
+/// family C|C|C of Reeds & Shepp 1990, with centres 2 r apart, for zero displacement: sin(middle /
+/// 2) = sin(angle / 2) / 2.
 [[nodiscard]] inline double outer_arc_of_three_point_turn(double angle) noexcept {
   return 0.5 * angle - std::asin(0.5 * std::sin(0.5 * angle));
 }
 
 /// Path through waypoints: straight legs joined by tangent arcs of one radius (the circles and
-/// lines of Dubins 1957). Where an arc would take more than half of a leg, the path reaches the
-/// waypoint and makes a three-point turn. Consecutive waypoints must differ; one alone gives an
-/// empty path. Headings are continuous.
+/// lines of Dubins 1957). Where an arc would take more than half of a leg, there is a three-point
+/// turn. Consecutive waypoints must differ. Headings are continuous.
 [[nodiscard]] inline std::vector<PathPiece> path_through(std::span<const Vec2> waypoints, double radius) {
   std::vector<PathPiece> path;
   const std::size_t legs = waypoints.empty() ? 0 : waypoints.size() - 1;

@@ -166,8 +166,7 @@ class MediaPassage {
     double delay = 1;          ///< optical path by way
     bool straight = false;     ///< true if all of the way so far was through the medium
   };
-  /// Adds returns of a stretch. `spread(s)`: range by which light spreads; `air(s)`: way in air
-  /// [m].
+  /// Adds returns of a stretch. `spread(s)`: range of its spread; `air(s)`: way in air [m].
   ///
   /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the
   /// mean. Nodes are lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).

@@ -155,8 +155,7 @@ struct RowPlace {
 };
 
 /// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples
-/// of the golden ratio, so that neighbours lie anywhere. Those off the row are longer ways off: on
-/// a plane, they lie as much nearer along it.
+/// of the golden ratio. Those off the row are farther off: on a plane, they lie nearer along it.
 inline void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope,
                     const auto& place) noexcept {
   const Divergence& divergence = emitter.laser.divergence;

@@ -104,8 +104,7 @@ class VolumeProfile {
     }
     return share * (straight_.power[end] - straight_.power[first]);
   }
-  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. Cells take what has no
-  /// room.
+  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. Cells take the rest.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
     const Part part{begin, end, at_begin, at_end};
     if (parts_.size() == parts_.capacity()) {
@@ -121,8 +120,7 @@ class VolumeProfile {
   }
 
   /// Writes the returns in order of range, from a number on; there is room for `size_max()` more.
-  /// Returns the number after the last. Returns of known light are there already if the last pulse
-  /// had as much, and nothing else wrote to them.
+  /// Returns the number after the last. Those of known light stay if the last pulse had as much.
   std::size_t write_to(std::vector<ContinuousReturn>& returns, std::size_t count, ReflectionKind kind) noexcept {
     if (parts_.empty() && first_ >= end_ && lit_.share == 0) return count;
     const auto nearer = [](const Part& a, const Part& b) { return a.from < b.from; };
