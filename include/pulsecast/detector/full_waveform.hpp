@@ -162,7 +162,7 @@ class FullWaveform {
     }
     if (const Correction* correction = corrections_.find(laser))
       for (Peak& peak : w.peaks) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-    if constexpr (runs_without_reflections)  // samples beyond the gate complete the pulses at its ends
+    if constexpr (runs_without_reflections)  // pulses at the ends reach beyond it
       std::erase_if(w.peaks, [&](const Peak& peak) { return !input.gate.contains(range_at(peak.mark)); });
     keep_echoes(s_, w.peaks);
     const EchoTiming timing =

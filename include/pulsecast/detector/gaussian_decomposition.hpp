@@ -49,7 +49,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     Detection d = this->inner.detect(input, w.inner);
     const auto* wave = waves_.find(input.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
-    const double apart = range_at((*wave)->fall() - (*wave)->rise());  // of echoes without overlap [m]
+    const double apart = range_at((*wave)->fall() - (*wave)->rise());  // without overlap [m]
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;

@@ -16,18 +16,18 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a receiver that counts photons: avalanche diodes, linear or Geiger mode.
 struct PhotonCountingSettings {
-  double efficiency = 0.3;        ///< detections per photon, in (0, 1]
-  double dark_rate = 0;           ///< dark counts of all pixels together, at most 1e12 [1/s]
-  double background = 0;          ///< received sunlight [W]
-  std::size_t pixels = 1;         ///< detectors that share the light evenly, at most 4096
-  double dead_time = 20e-9;       ///< of a pixel after a detection; infinite: one a shot, Geiger mode [s]
-  double afterpulse = 0;          ///< probability of another detection after the dead time, below 1
-  double afterpulse_time = 1e-8;  ///< mean delay of that [s]
-  double jitter = 0;              ///< deviation of a detection's time [s]
-  std::size_t shots = 1;          ///< pulses for one histogram, at most 10,000
-  double bin = 1e-9;              ///< width of the bins [s]
-  std::size_t threshold = 1;      ///< minimum count of a peak of the histogram
-  std::size_t returns_max = 15;   ///< echoes kept, in order of range; from 1 to 255
+  double efficiency = 0.3;                        ///< detections per photon, in (0, 1]
+  double dark_rate = 0;                           ///< dark counts of all pixels together, at most 1e12 [1/s]
+  double background = 0;                          ///< received sunlight [W]
+  std::size_t pixels = 1;                         ///< detectors that share the light evenly, at most 4096
+  double dead_time = 20e-9;                       ///< after a detection; infinite: one a shot, Geiger mode [s]
+  double afterpulse = 0;                          ///< probability of another detection after the dead time, below 1
+  double afterpulse_time = 1e-8;                  ///< mean delay of that [s]
+  double jitter = 0;                              ///< deviation of a detection's time [s]
+  std::size_t shots = 1;                          ///< pulses for one histogram, at most 10,000
+  double bin = 1e-9;                              ///< width of the bins [s]
+  std::size_t threshold = 1;                      ///< minimum count of a peak of the histogram
+  std::size_t returns_max = 15;                   ///< echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
   void validate() const {
@@ -157,7 +157,7 @@ class PhotonCounting {
   void draw_photoelectrons(const DetectorInput& input, const std::vector<double>& quantiles, Draws& draws,
                            std::vector<Count>& shot) const noexcept {
     const Laser& laser = input.emitter.laser;
-    const double per_watt = laser.pulse_length / energy_per_count(laser);  // of a reflection's power
+    const double per_watt = laser.pulse_length / energy_per_count(laser);
     double last = 0;
     const auto enter = [&](double time, std::size_t label) {
       const auto pixel = static_cast<std::uint32_t>(draws.uniform() * static_cast<double>(s_.pixels));

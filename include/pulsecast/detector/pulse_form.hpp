@@ -34,7 +34,7 @@ struct GammaPulse {
 
   [[nodiscard]] double power(double time, double length) const noexcept { return PulseShape(length, divisor)(time); }
   [[nodiscard]] double begin(double length) const noexcept { return -PulseShape::peak * length / divisor; }
-  [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }  // 1e-10 left
+  [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }
 };
 
 /// Gaussian pulse.

@@ -21,7 +21,7 @@ struct PulseShape {
   explicit PulseShape(double pulse_length, double by_tau = divisor) noexcept : tau(pulse_length / by_tau) {}
 
   static constexpr double peak = 2;  ///< time of the peak since the leading edge [tau]
-  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< by it, the peak is 1
+  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< to a peak of 1
 
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
@@ -30,7 +30,7 @@ struct PulseShape {
   /// e^(-u/2) is at most 16/e^2, the shape is at most 4 e^(-u/2), with u = t/tau.
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
-  [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< leading edge since the peak [s]
+  [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< leading edge [s]
   /// Time since the peak when 1e-22 of a pulse is left [s].
   [[nodiscard]] double end() const noexcept { return 60 * tau; }
 

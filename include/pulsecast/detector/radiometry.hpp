@@ -29,8 +29,8 @@ struct RangeErrors {
   double scale = 0;                   ///< reported minus true range, per metre of range
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
-  bool grows_with_incidence = false;  ///< by cosine of incidence. Source: Soudarissanane et al. 2011
-  double deviation_at_watt = 0;       ///< further, of an echo of 1 W [m]. Source: Wujanz et al. 2018
+  bool grows_with_incidence = false;  ///< by its cosine. Source: Soudarissanane et al. 2011
+  double deviation_at_watt = 0;       ///< further, at 1 W [m]. Source: Wujanz et al. 2018
   double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty, by ascending range: linear, constant beyond.
   SharedArray<DeviationAtRange> deviations{};
@@ -108,12 +108,12 @@ struct OverlapAtRange {
 
 /// Receiver of an instrument, and the atmosphere before it.
 struct Receiver {
-  double diameter = 0.15;                     ///< aperture, from 0.1 mm to 1 km [m]
-  double efficiency = 0.99;                   ///< transmission of the optics, both ways, in [0, 1]
-  double visibility = 23e3;                   ///< meteorological, at least 1; infinite without aerosols [m]
-  AerosolModel aerosols = AerosolModel::kim;  ///< extinction in haze and fog
-  double absorption = 0;                      ///< by molecules of the air [1/m]
-  double range_min = 0;                       ///< range gate's start [m]
+  double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
+  double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
+  double visibility = 23e3;                                    ///< at least 1; infinite without aerosols [m]
+  AerosolModel aerosols = AerosolModel::kim;                   ///< extinction in haze and fog
+  double absorption = 0;                                       ///< by molecules of the air [1/m]
+  double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
   /// Share of the light that the receiver sees, by ascending range, as of `aperture_overlap`:
@@ -193,7 +193,7 @@ class LinkBudget {
   }
 
  private:
-  double gain_ = 0;       ///< received power times squared range, from a white surface in vacuum [W m^2]
+  double gain_ = 0;       ///< power by squared range of a white surface in vacuum [W m^2]
   double near_ = 0;       ///< square of half the aperture's diameter [m^2]
   double both_ways_ = 0;  ///< slope of the logarithm of the power over range [1/m]
   SharedArray<OverlapAtRange> overlap_{};

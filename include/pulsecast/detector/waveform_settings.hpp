@@ -14,8 +14,8 @@ namespace PULSECAST_NAMESPACE {
 ///
 /// A peak of the waveform is an echo if it passes these tests, in this order:
 /// - it reaches the threshold;
-/// - it is at least `separation` from the peak before it, and rises by at least `prominence` above the valley between
-///   them, else the two merge;
+/// - it is at least `separation` from the peak before it, and rises by at least `prominence` above
+///   the valley between them, else the two merge;
 /// - it is the highest within the window;
 /// - it is later than the dead time of the echo before it;
 /// - it is among the `returns_max` that are kept.
@@ -24,17 +24,17 @@ namespace PULSECAST_NAMESPACE {
 /// pulse cost hardly more than wider ones, which lose close echoes. Widths cost more than any other
 /// setting, except for moments of `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;               ///< bin, from 1e-16 to 1, and at most a pulse length [s]
-  double threshold = 1e-9;                        ///< least power of a peak: 21 photons of 1064 nm in 4 ns [W]
-  double separation = 0;                          ///< closer peaks merge, with the greater height [s]
-  double prominence = 0;                          ///< least rise of two peaks above the valley between [W]
-  double window = 1e-9;                           ///< no higher peak within this time on either side [s]
-  double dead_time = 0;                           ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
+  double sample_interval = 0.25e-9;               ///< from 1e-16 to 1, at most a pulse [s]
+  double threshold = 1e-9;                        ///< of a peak: 21 photons of 1064 nm in 4 ns [W]
+  double separation = 0;                          ///< closer peaks merge into the higher [s]
+  double prominence = 0;                          ///< least rise from the valley between two [W]
+  double window = 1e-9;                           ///< no higher peak this near [s]
+  double dead_time = 0;                           ///< no other echo this long after one [s]
+  std::size_t returns_max = 15;                   ///< echoes kept, in order; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
   EchoTiming timing = EchoTiming::peak;           ///< definition of an echo's range
-  double fraction = 0.5;                          ///< for `EchoTiming::constant_fraction`; from 0.01 to 0.99
-  double record_length = 0;                       ///< length of waveform kept, at most 1e7 bins; 0 for none [s]
+  double fraction = 0.5;                          ///< of `constant_fraction`; from 0.01 to 0.99
+  double record_length = 0;                       ///< of waveform kept, at most 1e7 bins [s]
   double shape_divisor = PulseShape::divisor;     ///< as in `PulseShape`; from 1 to 10
 
   void validate() const {

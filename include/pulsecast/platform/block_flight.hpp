@@ -41,7 +41,7 @@ struct BlockFlight {
   const double length_along = size.x * std::fabs(along.x) + size.y * std::fabs(along.y) + 2 * block.run_in;
   const double width = size.x * std::fabs(across.x) + size.y * std::fabs(across.y);
   const double spacing = block.swath * (1 - block.overlap);
-  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // limit of the leg numbers
+  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // of legs
   // the swaths of n lines cover (n - 1) spacings and one swath; rounding must not add a line
   const auto lines = 1 + static_cast<std::size_t>(std::ceil(std::max(0.0, (width - block.swath) / spacing - 1e-9)));
   const Vec3 centre{block.area.centre().x, block.area.centre().y, block.altitude};

@@ -24,8 +24,8 @@ struct GroundVehicleSettings {
   double track = 1.6;           ///< distance from the left to the right wheels [m]
   double wheel_radius = 0.316;  ///< [m]; source: ISO 4000-1, 205/55 R16: 8 inches + 55 % of 205 mm
   double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
-  double start_height = std::numeric_limits<double>::infinity();  ///< the first ground is nearest to it [m]
-  std::optional<double> height_without_ground{};                  ///< where none is; an error if empty [m]
+  double start_height = std::numeric_limits<double>::infinity();  ///< of the first ground [m]
+  std::optional<double> height_without_ground{};                  ///< an error if empty [m]
 
   void validate() const {
     require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -148,7 +148,7 @@ class FootingFinder {
     if (std::exchange(is_first_, false))
       expected.height = height(stance.position, s_.start_height).value_or(s_.start_height);
     bool gap = false;
-    const auto error = [&](const Footing& footing, double x, double y) {  // of the height of a wheel
+    const auto error = [&](const Footing& footing, double x, double y) {  // of a wheel
       const Vec3 wheel = footing.attitude(stance.heading) * Vec3{x, y, 0};
       const Vec2 place = stance.position + Vec2{wheel.x, wheel.y};
       const double near = expected.height + (expected.attitude(stance.heading) * Vec3{x, y, 0}).z;
@@ -249,7 +249,7 @@ class FootingFinder {
 [[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
   const double bend = std::fabs(path.curvature), share = s.acceleration * std::sqrt(0.5);
   if (bend == 0) return {s.speed, s.acceleration, s.acceleration, s.jerk};
-  return {std::fmin(s.speed, std::sqrt(share / bend)), share, share, s.jerk};  // centripetal: v^2 / r
+  return {std::fmin(s.speed, std::sqrt(share / bend)), share, share, s.jerk};  // v^2 / r
 }
 
 }  // namespace detail

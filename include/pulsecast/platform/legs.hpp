@@ -16,7 +16,7 @@ template <WorldSource P>
 struct Leg {
   P platform;                   ///< carrier of the instrument
   bool active = true;           ///< true if pulses are emitted
-  std::optional<Tick> start{};  ///< start since the survey's start; by default the end of the leg before
+  std::optional<Tick> start{};  ///< since the survey's; by default the end of the leg before
 };
 
 /// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's

@@ -20,20 +20,20 @@ struct FlightPoint {
 /// Flight at the waypoints between the first and the last.
 enum class MulticopterTurn {
   stop_and_turn,  ///< hovers at each waypoint until it faces the next leg
-  smooth,         ///< cuts the corner in a banked turn; stops to hover, or to turn by more than 150 degrees
+  smooth,         ///< cuts the corner; stops to hover, or to turn by more than 150 degrees
 };
 
 /// Limits and style of a multicopter's flight.
 struct MulticopterSettings {
   double speed = 8;                                ///< maximum [m/s]
   double acceleration = 3;                         ///< maximum in any direction [m/s^2]
-  double jerk = 6;                                 ///< maximum change of acceleration in any direction [m/s^3]
+  double jerk = 6;                                 ///< maximum in any direction [m/s^3]
   double bank_max = pi / 6;                        ///< maximum angle from upright [rad]
   double yaw_rate = pi / 2;                        ///< maximum [rad/s]
-  MulticopterTurn turn = MulticopterTurn::smooth;  ///< behaviour at waypoints between the first and the last
-  double turn_distance = 10;                       ///< maximum length of a smooth turn before its waypoint [m]
-  std::optional<double> departure_heading{};       ///< clockwise from north; along the first leg if empty [rad]
-  std::optional<double> arrival_heading{};         ///< clockwise from north; along the last leg if empty [rad]
+  MulticopterTurn turn = MulticopterTurn::smooth;  ///< at waypoints between the ends
+  double turn_distance = 10;                       ///< maximum from its begin to its waypoint [m]
+  std::optional<double> departure_heading{};       ///< from north; along the first leg if empty [rad]
+  std::optional<double> arrival_heading{};         ///< from north; along the last leg if empty [rad]
 
   void validate() const {
     require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -59,7 +59,7 @@ class MulticopterFlight {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // from up, shortest
+    const Rotation lean = normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));
     return {lean * level(heading_.at(t).position), state.position};
   }
 
@@ -68,7 +68,7 @@ class MulticopterFlight {
   /// Passing time of each waypoint of the plan: the middle of its turn, or the begin of its hover.
   [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
 
-  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position over time [m]
+  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position [m]
   /// Clockwise from north over time [rad].
   [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
 
@@ -195,7 +195,7 @@ struct FlightLegs {
       sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
       if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
         heading = heading_of(directions[k]);
-        if (!level_leg) std::fill_n(headings.begin(), k, heading);  // a vertical start faces the first level leg
+        if (!level_leg) std::fill_n(headings.begin(), k, heading);  // of a vertical start
         level_leg = true;
       }
       headings[k] = heading;

@@ -13,7 +13,7 @@ namespace PULSECAST_NAMESPACE {
 /// Mounting of an instrument on its platform.
 struct Mount {
   Vec3 lever_arm{};                  ///< position of the instrument's origin in the body frame [m]
-  Rotation boresight = no_rotation;  ///< rotation from the instrument to the body; unit to within 1e-3
+  Rotation boresight = no_rotation;  ///< from the instrument to the body; unit to 1e-3
 
   void validate() const {
     require_finite("Mount::lever_arm (length)", length(lever_arm), "m");

@@ -14,15 +14,15 @@ namespace PULSECAST_NAMESPACE {
 
 /// Errors of reported poses, zero by default: deviations along or about each axis of the body.
 struct PoseErrors {
-  double position_noise = 0;  ///< white noise of the position [m]
-  double attitude_noise = 0;  ///< white noise of the attitude [rad]
-  double position_drift = 0;  ///< slow drift of the position: a Gauss-Markov process [m]
-  double attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
-  double drift_time = 60;     ///< correlation time of drifts (decay to 1/e); at least 1e-6 of the survey [s]
-  double angular_jitter = 0;  ///< unreported deviation of each beam, right and up [rad]
-  Vec3 lever_arm_error{};     ///< reported minus true lever arm [m]
+  double position_noise = 0;               ///< white noise of the position [m]
+  double attitude_noise = 0;               ///< white noise of the attitude [rad]
+  double position_drift = 0;               ///< slow drift of the position: a Gauss-Markov process [m]
+  double attitude_drift = 0;               ///< slow drift of the attitude, of the same kind [rad]
+  double drift_time = 60;                  ///< decay of drifts to 1/e; at least 1e-6 of the survey [s]
+  double angular_jitter = 0;               ///< unreported deviation of each beam, right and up [rad]
+  Vec3 lever_arm_error{};                  ///< reported minus true lever arm [m]
   Rotation boresight_error = no_rotation;  ///< from the true instrument to the reported one
-  std::uint64_t seed = 0;                  ///< seed of all random draws; each of several `Legs` draws its own
+  std::uint64_t seed = 0;                  ///< of all draws; each of several `Legs` draws its own
 
   void validate() const {
     require_not_negative("PoseErrors::position_noise", position_noise, "m");

@@ -19,7 +19,7 @@ struct StraightLine {
     require_finite("StraightLine::from (length)", length(from), "m");
     require_finite("StraightLine::to (length)", length(to), "m");
     require_positive("StraightLine::speed", speed, "m/s");
-    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // limit of a `Tick`
+    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");
   }
 
   /// Arrival time, and so the duration of a scan of the whole line.

@@ -145,7 +145,7 @@ class Waypoints {
 /// the next one taken; without any, north. A repeated time is a jump: neither side looks along it.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
-  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal direction from each waypoint; zero without one
+  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal directions; or zero
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
   const auto way_to = [&](std::size_t i) {
     const Vec3 &from = points[i - 1].position, &to = points[i].position;

@@ -27,7 +27,7 @@ namespace PULSECAST_NAMESPACE {
 /// Round beam described by its exit optics, for `gaussian_beam`.
 struct BeamExit {
   double diameter = 5e-3;                                  ///< at 1/e^2, at the exit [m]
-  double focus = std::numeric_limits<double>::infinity();  ///< its wavefront; negative: divergent [m]
+  double focus = std::numeric_limits<double>::infinity();  ///< negative if divergent [m]
   double quality = 1;                                      ///< M^2, at least 1
 
   void validate() const {

@@ -217,7 +217,7 @@ template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
   using refinements = refines<tag::RotatesPerPulse>;
   static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
-  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a valid footprint
+  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -72,7 +72,7 @@ class SubrayDirections {
       std::fill_n(columns_.data() + column * padded_ + size, RayBundle::lanes, 0.0);
   }
 
-  [[nodiscard]] bool from_a_point() const noexcept { return !exits; }  ///< true if the beam leaves through a point
+  [[nodiscard]] bool from_a_point() const noexcept { return !exits; }  ///< true for a single exit
 
   /// True if two emitters with the same footprint have equal subrays.
   [[nodiscard]] static bool equal(const Emitter& a, const Emitter& b) noexcept {

@@ -17,7 +17,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Place and view of a receiver's aperture beside that of the beam.
 struct ApertureGeometry {
-  double separation = 0;        ///< distance of the axes at the instrument; 0 for coaxial apertures [m]
+  double separation = 0;        ///< distance of the axes at the instrument [m]
   double inclination = 0;       ///< of the receiver's axis to the beam's, from -0.1 to 0.1 [rad]
   double field_of_view = 2e-3;  ///< full angle of the receiver's view, from 1e-6 to 1 [rad]
   double obstruction = 0;       ///< diameter of what covers the middle of the aperture [m]

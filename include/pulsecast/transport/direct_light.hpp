@@ -40,7 +40,7 @@ struct DirectLight {
                                                           Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
-    const bool may_spread = !with_velocity && spreads(light.subrays);  // asked while one subray is known to be one
+    const bool may_spread = !with_velocity && spreads(light.subrays);  // while one is known to be one
     if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() &&
         misses(target, light)) {
       result.energy.sent = light.energy();
@@ -78,7 +78,7 @@ struct DirectLight {
     detail::set_origin(light, rays);
     const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
-    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;  // shares; power [W]
+    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     bool met = false, in_gate = false;
     RayBundle::Column power;
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {

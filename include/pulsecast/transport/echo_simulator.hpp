@@ -42,12 +42,12 @@ class EchoSimulator {
                 std::uint64_t = 0) = delete;
 
   struct Workspace {
-    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< of the transport
-    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
-    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
+    decltype(std::declval<const Transport&>().workspace(0)) transport;              ///< of the transport
+    SharedBuffer<Reflection> reflections;                                           ///< of a pulse
+    std::vector<SubrayRecord> subrays;                                              ///< of a pulse, if recorded
     std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< by receiver
-    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
-    WhiteTarget white_target{};                                                     ///< white target of that emitter
+    std::uint16_t emitter = 0;                                                      ///< of the last pulse
+    WhiteTarget white_target{};                                                     ///< of that emitter
   };
 
   [[nodiscard]] Workspace workspace() const;

@@ -55,7 +55,7 @@ struct LightPaths {
   /// Room for the reflections of a pulse. Light of further ones is counted as cut.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
     constexpr double expected = detail::BeamParticles::most;
-    const std::size_t particles = air.has_particles() ? static_cast<std::size_t>(1.2 * expected) : 0;  // + 6 deviations
+    const std::size_t particles = air.has_particles() ? static_cast<std::size_t>(1.2 * expected) : 0;
     const std::size_t most = subrays * (2 * passages + 1) + scattering.reflections() + particles;
     return spreads(subrays) ? most + slope_subrays_max : most;
   }

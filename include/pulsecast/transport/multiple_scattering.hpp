@@ -12,7 +12,7 @@ namespace PULSECAST_NAMESPACE {
 struct MultipleScattering {
   std::size_t orders = 1;       ///< most surfaces that scatter it, from 1 to 64; 1: none of it
   std::size_t paths = 8;        ///< number of random paths of a pulse, from 1 to 100,000
-  double field_of_view = 2e-3;  ///< full angle that the receiver sees, at least the beam's, to 2 pi [rad]
+  double field_of_view = 2e-3;  ///< full angle that the receiver sees, from the beam's to 2 pi [rad]
 
   void validate() const {
     require_within("MultipleScattering::orders", orders, 1, 64, "");

@@ -121,7 +121,7 @@ class BandLimitedSamples {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr double margin = 2;         ///< samples beside a pulse, for the neighbours of a peak
+  static constexpr double margin = 2;         ///< samples beside a pulse, for its peaks
   static constexpr double samples_max = 1e7;  ///< of a gate
   static constexpr std::size_t fallen = 4;    ///< falling samples after a maximum
 

@@ -81,7 +81,7 @@ class ContinuousSum {
   std::span<const ContinuousReturn> returns_;
   double tau_, edge_ = -std::numeric_limits<double>::infinity();  ///< range of the edge now [m]
   double density_ = 0, slope_ = 0;                                ///< at the edge [W/m], by tau
-  double zeroth_ = 0, first_ = 0, second_ = 0;  ///< e^-x (second + first x + zeroth x^2) a time x on [tau]
+  double zeroth_ = 0, first_ = 0, second_ = 0;                    ///< e^-x (second + first x + zeroth x^2) in x [tau]
   std::size_t passed_ = 0, begun_ = 0;
 };
 
@@ -94,7 +94,7 @@ class GammaIntegrals {
   [[nodiscard]] double begin() const noexcept { return shape_.begin(); }
   /// Time since the arrival when 1e-13 of a pulse is left [s].
   [[nodiscard]] double end() const noexcept { return 36 * shape_.tau; }
-  [[nodiscard]] double peak() const noexcept { return 0; }  ///< time of the maximum since the arrival [s]
+  [[nodiscard]] double peak() const noexcept { return 0; }  ///< maximum since the arrival [s]
   /// Integrals up to a time since the arrival [s].
   [[nodiscard]] PulseIntegrals until(double t) const noexcept {
     if (!(t < end())) return of(2, 6);
@@ -105,7 +105,7 @@ class GammaIntegrals {
   }
 
  private:
-  [[nodiscard]] PulseIntegrals of(double zeroth, double first) const noexcept {  // of u^2 e^-u, and of u^3 e^-u
+  [[nodiscard]] PulseIntegrals of(double zeroth, double first) const noexcept {  // u^2 e^-u, u^3 e^-u
     const double scale = PulseShape::to_unit_peak * shape_.tau;
     return {scale * zeroth, scale * shape_.tau * (first - PulseShape::peak * zeroth)};
   }

@@ -81,9 +81,9 @@ class SampledSum {
     return std::floor((arrival(r) - PulseShape::peak * shape.tau) / interval) - 2;
   }
 
-  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
-  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
-  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< reflection still to arrive
+  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< next sample
+  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< of the next sample [s]
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< reflection to arrive
   /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
   /// Arrival of the last reflection so far [s].

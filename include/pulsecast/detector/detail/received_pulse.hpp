@@ -92,7 +92,7 @@ class ReceivedPulse {
   [[nodiscard]] std::size_t rows() const noexcept { return phases_ + 3; }
   /// Samples of a pulse of one phase: `stride()` numbers, 0 after the pulse.
   [[nodiscard]] const double* row(std::size_t q) const noexcept { return rows_.data() + q * stride_; }
-  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }  ///< length of a row, of whole registers
+  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }  ///< of whole registers
 
   /// Weights of the four rows whose sum are the samples of a pulse from `first_sample` on.
   struct Phase {

@@ -22,8 +22,8 @@ class SampleWindow {
     const Width& width;                ///< measure of widths
     double min_separation = 0;         ///< closer peaks merge [s]
     double delay = 0;                  ///< from a pulse's arrival to its maximum in the samples [s]
-    bool by_sample = false;            ///< true if the highest sample itself must reach the threshold
-    double reach = 0;                  ///< time beside a maximum that defines its place; 0: five samples [s]
+    bool by_sample = false;            ///< true if a sample itself must reach the threshold
+    double reach = 0;                  ///< time beside a maximum that places it; 0: five samples [s]
   };
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse

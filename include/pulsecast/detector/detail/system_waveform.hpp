@@ -39,8 +39,8 @@ class SystemWaveform {
   }
 
   [[nodiscard]] double variance() const noexcept { return variance_; }  ///< of a flat target [s^2]
-  [[nodiscard]] double rise() const noexcept { return rise_; }          ///< time of the first thousandth [s]
-  [[nodiscard]] double fall() const noexcept { return fall_; }          ///< time of the last thousandth [s]
+  [[nodiscard]] double rise() const noexcept { return rise_; }          ///< at a thousandth [s]
+  [[nodiscard]] double fall() const noexcept { return fall_; }          ///< at a thousandth [s]
   // least and greatest variance in use [s^2]
   [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }
   [[nodiscard]] double most_added() const noexcept { return 0.999 * added(levels_.size() - 1); }
@@ -114,7 +114,7 @@ class SystemWaveform {
     for (std::size_t i = 0; i < from.values.size(); ++i)
       for (std::size_t k = 0; k < kernel.size(); ++k) values[i + k] += from.values[i] * kernel[k] / sum;
     const auto counts = [](double value) { return std::fabs(value) > 1e-9; };
-    const auto first = std::find_if(values.begin(), values.end(), counts) - 2;  // a level ends in zeros
+    const auto first = std::find_if(values.begin(), values.end(), counts) - 2;  // some zeros stay
     values.erase(std::find_if(values.rbegin(), values.rend(), counts).base() + 2, values.end());
     Level to{from.before + static_cast<double>(reach) - static_cast<double>(first - values.begin()), {}};
     to.values.assign(first, values.end());

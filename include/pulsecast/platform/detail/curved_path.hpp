@@ -28,11 +28,11 @@ struct PathPiece {
   /// Stance after a driven length [m]. Source: chord of an arc, 2 r sin(angle / 2).
   [[nodiscard]] Stance after(double driven) const noexcept {
     const double way = gear * driven, half = 0.5 * curvature * way;
-    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // +-1e-18
+    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;
     const double middle = start.heading + half;
     return {start.position + chord * Vec2{std::sin(middle), std::cos(middle)}, start.heading + 2 * half};
   }
-  [[nodiscard]] Stance end() const noexcept { return after(length); }  ///< stance at the end of the piece
+  [[nodiscard]] Stance end() const noexcept { return after(length); }  ///< at its end
 };
 
 /// Angle of the first and the last arc of a three-point turn on the spot by `angle` in [0, pi]; the
@@ -57,7 +57,7 @@ struct PathPiece {
     const Vec2 direction = way(k) / whole;
     const double touch = radius * std::tan(0.5 * std::fabs(angle)),
                  room = k + 1 < legs ? 0.5 * std::fmin(whole, length(way(k + 1))) : 0;
-    const bool tight = !(touch <= room) || std::fabs(angle) > 3;  // near a reversal the tangent is meaningless
+    const bool tight = !(touch <= room) || std::fabs(angle) > 3;  // the tangent is meaningless
     const double left = tight ? 0 : touch, curvature = std::copysign(1 / radius, angle);
     path.push_back({{waypoints[k] + taken * direction, looks}, std::fmax(0.0, whole - taken - left), 0, 1, k + 1});
     const Stance corner{waypoints[k] + (whole - left) * direction, looks};

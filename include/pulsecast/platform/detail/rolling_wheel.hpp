@@ -22,7 +22,7 @@ namespace PULSECAST_NAMESPACE::detail {
     const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
         heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
     const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
-    bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
+    bool touched = true;  // the ground stays below a parabola of half the wheel's curvature
     for (std::size_t k = 0; k < 4; ++k)
       touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
     if (touched) return below;

@@ -47,7 +47,7 @@ class BeamParticles {
       const Vec3 to_it = range * ahead + aside.x * right + aside.y * up;
       const double distance = length(to_it);
       if (occluded(Ray{.origin = origin, .direction = to_it / distance, .tick = light_.pulse.tick}, distance)) continue;
-      const double irradiance = 2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // by power [1/m^2]
+      const double irradiance = 2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // [1/m^2]
       const double section = region.particles.backscatter_cross_section(region.particles.diameter(size));
       const double left = two_way_share * std::exp(-2 * density * region.medium.extinction() * (range - from));
       const double power = light_.budget.power(left, pi * section * irradiance, distance);

@@ -14,7 +14,7 @@
 /// from one point, a `LightPath` a subray that was refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
-inline constexpr double surface_epsilon = 1e-6;  ///< surfaces nearer to each other than this are one [m]
+inline constexpr double surface_epsilon = 1e-6;  ///< nearer surfaces are one [m]
 
 /// Normal of a plane that a ray meets, towards the ray.
 [[nodiscard]] inline Vec3 towards(const Vec3& normal, const Vec3& direction) noexcept {
@@ -28,7 +28,7 @@ struct CoaxialRays {
   alignas(64) RayBundle::Column sent;           ///< share of the pulse's energy on its way
   alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes back
   RayBundle::Column delay;                      ///< optical path so far less the range [m]
-  RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows [m/s]
+  RayBundle::Column path_rate;                  ///< growth of the optical path so far [m/s]
   unsigned passages = 0;                        ///< surfaces that passed the light on
   ReflectionKind kind = ReflectionKind::surface;
 };
@@ -52,7 +52,7 @@ struct LightPath {
   double path_rate = 0;      ///< as in `CoaxialRays` [m/s]
   unsigned passages = 0;     ///< as in `CoaxialRays`
   ReflectionKind kind = ReflectionKind::surface;
-  std::array<Vec3, 2> place{}, turn{};      ///< derivatives of the ray's origin [m/rad] and direction
+  std::array<Vec3, 2> place{}, turn{};      ///< derivatives of origin [m/rad] and direction
   std::array<const Material*, 4> bodies{};  ///< bodies that it is in, the outermost first
   std::size_t depth = 0;                    ///< number of bodies
 

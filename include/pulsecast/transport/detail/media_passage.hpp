@@ -58,7 +58,7 @@ class MediaPassage {
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size),
               [](const End& a, const End& b) { return a.range < b.range; });
     const double resolution = pulse_ / 32;
-    for (std::size_t j = 0, next = 0; j < size; j = next) {  // those that end together do at their mean
+    for (std::size_t j = 0, next = 0; j < size; j = next) {  // that end together
       double two_way_share = 0, moment = 0;
       for (next = j; next < size && ends[next].range - ends[j].range < resolution; ++next) {
         two_way_share += ends[next].two_way_share;
@@ -240,7 +240,7 @@ class MediaPassage {
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, share_min_ * share_min_); }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr double loss_step = 0.08;  ///< greatest loss between nodes: power is linear to 0.4 %
+  static constexpr double loss_step = 0.08;  ///< between nodes: power is linear to 0.4 %
 
   const TransportInput& light_;
   const Media& air_;

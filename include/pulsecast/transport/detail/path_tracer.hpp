@@ -158,7 +158,7 @@ class PathTracer {
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
       const double reaching = 1 - hits[first].scattered_share;
       const bool mirror = smooth.kind == InterfaceKind::mirror;
-      const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;  // a pane loses its own
+      const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;
       for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += lost * p.sent[j];
       if (p.passages + 1 == w_.levels.size()) {
         for (std::size_t j = first; j < end; ++j) ledger_.shares.cut += (reaching - lost) * p.sent[j];
@@ -185,7 +185,7 @@ class PathTracer {
     const CoaxialRays& p = met.pencil;
     const auto& hits = met.hits;
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
-    const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // of the origin, above the plane
+    const double above = -dot(p.rays.direction(first), n) * hits[first].range;
     const auto next = [&](std::size_t j) noexcept -> Next {
       return {mirrored(p.rays.direction(j), n), share(j), hits[j].range, p.delay[j]};
     };
@@ -209,7 +209,7 @@ class PathTracer {
     send_mirrored(level, first, end, [&](std::size_t j) noexcept { return reaching * split[j].reflected; });
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const auto next = [&](std::size_t j) noexcept -> Next {
-      const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // way of the ray [m]
+      const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // [m]
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside,
               p.delay[j] + split[j].delay};
     };

@@ -180,8 +180,8 @@ inline void set_row(SubrayDirections& row, std::size_t size, const Emitter& emit
 [[nodiscard, gnu::noinline]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane,
                                                         const Emitter& emitter) noexcept {
   constexpr double reach = 4, smooth = 2;  // deviations; places over which the distances settle
-  const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;  // variances [tau^2]
-  const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;          // its pulse begins at the maximum
+  const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;
+  const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;  // its pulse begins at the maximum
   const double half = reach + std::fabs(most), wanted = std::sqrt(half * ss * r / (3 * 0.55 * 0.55));
   const double side = std::floor(std::clamp(wanted, 128.0, 0.5 * slope_subrays_max - 1)), step = half / (side * side);
   number = static_cast<std::size_t>(2 * side + 1);
