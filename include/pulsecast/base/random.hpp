@@ -37,6 +37,9 @@ struct RandomKey {
   std::uint32_t subray = 0;          ///< number of the subray, or of another draw
   Purpose purpose = Purpose::scene;  ///< purpose of the draw
   std::uint32_t part = 0;            ///< part of the scene, below 2^24
+
+  /// The same key for another purpose.
+  [[nodiscard]] constexpr RandomKey with(Purpose other) const noexcept { return {seed, pulse, subray, other, part}; }
 };
 
 namespace detail {

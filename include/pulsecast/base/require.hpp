@@ -62,12 +62,12 @@ inline void require_within(std::string_view field, double value, double low, dou
   if (!(value >= low && value <= high)) detail::refuse_outside(field, value, low, high, unit);
 }
 
-namespace detail {
-/// As above, of a number of elements.
-inline void require_count(std::string_view field, std::size_t value, std::size_t low, std::size_t high) {
-  require_within(field, static_cast<double>(value), static_cast<double>(low), static_cast<double>(high), "");
+/// As above, of a count.
+template <std::integral T>
+void require_within(std::string_view field, T value, std::type_identity_t<T> low, std::type_identity_t<T> high,
+                    std::string_view unit = "") {
+  require_within(field, static_cast<double>(value), static_cast<double>(low), static_cast<double>(high), unit);
 }
-}  // namespace detail
 
 /// Throws a `SettingError` unless the angle is within a turn: in [-2 pi, 2 pi].
 inline void require_angle(std::string_view field, double value) {

@@ -22,21 +22,19 @@ namespace PULSECAST_NAMESPACE {
   return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes::about(axis::right, angle)};
 }
 
-/// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right
-/// axis stays level.
+/// Pose of a beam from `origin` [m]: elevated, then turned to the right [rad]; right stays level.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation,
                                                                    const Vec3& origin = {}) noexcept {
-  return {
-      detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)) * aimed_above(elevation).rotation,
-      origin};
+  const Rotation turn = detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth));
+  return {turn * aimed_above(elevation).rotation, origin};
 }
 
 /// Pose of a beam along a unit direction, by the shortest rotation from forward.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_along(const Vec3& direction) noexcept {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;
-  if (y < 0 && aside_squared < 1e-300) return {detail::rotation_wxyz(0, 0, 0, 1), {}};  // straight back: about up
-  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y; near -1 only the first form does not cancel
+  if (y < 0 && aside_squared < 1e-300) return {detail::rotation_wxyz(0, 0, 0, 1), {}};  // back: about up
+  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y, without cancellation near -1
   return {normalize(detail::rotation_wxyz(w, z, 0, -x)), {}};
 }
 
@@ -44,12 +42,11 @@ namespace PULSECAST_NAMESPACE {
 [[nodiscard]] inline PoseLanes<frame::Beam, frame::Instrument> aimed_along(const Vec3Lanes& direction) noexcept {
   const simd::Doubles &x = direction.x, &y = direction.y, &z = direction.z, zero{};
   const simd::Doubles aside_squared = x * x + z * z;
-  const auto behind = y < 0.0, straight_back = behind & (aside_squared < 1e-300);
-  const simd::Doubles w = behind ? aside_squared / (1.0 - y) : 1.0 + y;
-  const RotationLanes shortest = normalize(RotationLanes{straight_back ? zero + 1.0 : w, z, zero, -x});
-  return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes{straight_back ? zero : shortest.w,
-                                                                 straight_back ? zero : shortest.x, zero,
-                                                                 straight_back ? zero + 1.0 : shortest.z}};
+  const auto behind = y < 0.0, back = behind & (aside_squared < 1e-300);  // straight back
+  const simd::Doubles w = behind ? aside_squared / (1.0 - y) : 1.0 + y, one = zero + 1.0;
+  const RotationLanes shortest = normalize(RotationLanes{back ? one : w, z, zero, -x});
+  return PoseLanes<frame::Beam, frame::Instrument>{
+      RotationLanes{back ? zero : shortest.w, back ? zero : shortest.x, zero, back ? one : shortest.z}};
 }
 
 }  // namespace PULSECAST_NAMESPACE

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/stage_arguments.hpp>
@@ -57,7 +56,7 @@ class Deflector {
     return i;
   }
 
-  /// As the concept MeasuresBeam requires: the measured beam, turned by the head.
+  /// Measured beam, turned by the head.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(
       PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
     const auto inner = source_.measured(i, t);
@@ -65,10 +64,8 @@ class Deflector {
     return moving_.at(t) * *inner;
   }
 
-  /// Optic or head.
-  [[nodiscard]] const Moving& moving() const noexcept { return moving_; }
-  /// Deflected source.
-  [[nodiscard]] const Source& source() const noexcept { return source_; }
+  [[nodiscard]] const Moving& moving() const noexcept { return moving_; }  ///< optic or head
+  [[nodiscard]] const Source& source() const noexcept { return source_; }  ///< deflected source
 
  private:
   Moving moving_;

@@ -3,18 +3,16 @@
 #ifndef PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 #define PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included,
-/// and repeat.
+/// Row of fibres in the plane of forward and up, lit in turn from -half_angle to +half_angle.
 struct FiberArray {
   using refinements = refines<tag::Validated>;
   std::uint32_t fibers = 128;  ///< number of fibres in the row
-  double fiber_rate = 100e3;   ///< fibres per second, best the pulse rate; at most 1e12 [Hz]
+  double fiber_rate = 100e3;   ///< best the pulse rate; at most 1e12 [Hz]
   double half_angle = pi / 9;  ///< angle of the outermost fibres to either side of forward [rad]
 
   void validate() const {

@@ -3,15 +3,13 @@
 #ifndef PULSECAST_DEFLECTOR_FIXED_BEAM_HPP
 #define PULSECAST_DEFLECTOR_FIXED_BEAM_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Laser fixed in its housing: an emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth,
-/// elevation)}`.
+/// Laser fixed in its housing, such as a rangefinder: `FixedBeam{aimed_at(azimuth, elevation)}`.
 struct FixedBeam {
   using refinements = refines<tag::MovesInLanes, tag::Validated, tag::Normalizable>;
   Pose<frame::Beam, frame::Instrument> pose{};  ///< of the beam; rotation unit to within 1e-3

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 #define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -15,14 +14,14 @@ struct BeamAngles {
   double elevation = 0;  ///< angle above the plane of right and forward [rad]
 };
 
-/// Beam directions from a table, taken in turn and repeated: any solid-state sensor, or the log of a real one.
+/// Beam directions from a table, in turn and repeated: a solid-state sensor, or a log.
 struct PatternTable {
   using refinements = refines<tag::Validated>;
   std::vector<BeamAngles> entries{};  ///< directions in the order of use; at least one
-  double entry_rate = 100e3;          ///< entries per second, best the pulse rate; at most 1e12 [Hz]
+  double entry_rate = 100e3;          ///< best the pulse rate; at most 1e12 [Hz]
 
   void validate() const {
-    require_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
+    require_within("PatternTable::entries (number)", entries.size(), 1, 1e9, "");
     require_rate("PatternTable::entry_rate", entry_rate);
     for (const BeamAngles& e : entries) {
       require_angle("BeamAngles::azimuth", e.azimuth);

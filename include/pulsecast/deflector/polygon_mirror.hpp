@@ -3,31 +3,28 @@
 #ifndef PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 #define PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the
-/// next one takes over. The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside
-/// the gate are blocked; those on its ends pass, whatever the rounding of their time.
+/// Rotating polygon mirror: each facet in turn sweeps the beam from low to high in the plane of
+/// forward and up, from -sweep, included, to +sweep, excluded. Pulses outside the gate are blocked;
+/// those on its ends pass, however rounded.
 struct PolygonMirror {
   using refinements = refines<tag::Gated, tag::ForeseesOpening, tag::MovesInLanes, tag::Validated>;
-  double line_rate = 100;     ///< rate of facets, at most 1e12 [Hz]
-  double sweep = 2 * pi / 3;  ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
-  double angle_min = -pi;     ///< lower end of the gate [rad]
-  double angle_max = pi;      ///< upper end of the gate [rad]
-  std::vector<double> facet_tilts{};  ///< deflection by each facet in turn, right of the plane; none if empty [rad]
+  double line_rate = 100;             ///< rate of facets, at most 1e12 [Hz]
+  double sweep = 2 * pi / 3;          ///< half angle of a facet: a turn by the number of facets [rad]
+  double angle_min = -pi;             ///< lower end of the gate [rad]
+  double angle_max = pi;              ///< upper end of the gate [rad]
+  std::vector<double> facet_tilts{};  ///< deflections by the facets to the right [rad]
 
   void validate() const {
     require_rate("PolygonMirror::line_rate", line_rate);
     require_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
     require_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
     require_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");
-    require_within("PolygonMirror::facet_tilts (number)", static_cast<double>(facet_tilts.size()), 0, 1000, "");
+    require_within("PolygonMirror::facet_tilts (number)", facet_tilts.size(), 0, 1000, "");
     for (const double tilt : facet_tilts) require_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
@@ -37,19 +34,17 @@ struct PolygonMirror {
   [[nodiscard]] std::size_t facet(Tick t) const noexcept {
     if (facet_tilts.size() < 2) return 0;
     const double n = static_cast<double>(facet_tilts.size());
-    // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase
-    // does
+    // whole lines of a turn: rounding of its phase must not change the line
     const double line = std::round(n * t.phase(line_rate / n) - phases(TickLanes(t))[0]);
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
 
-  /// True if the beam is inside the gate.
   [[nodiscard]] bool open(Tick t) const noexcept { return gate(angles(TickLanes(t)))[0] != 0; }
 
-  /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
+  /// Moment at which the beam enters the gate, some rounding errors early.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     if (open(t)) return t;
-    const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless before 0 [cycles]
+    const double begin = 0.5 * (angle_min / sweep + 1);  // phase; may be before 0 [cycles]
     const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
     const double wait = (left < 2 ? left : 1) - 2 * margin();
@@ -58,7 +53,7 @@ struct PolygonMirror {
   }
 
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = angles(t);
@@ -76,11 +71,10 @@ struct PolygonMirror {
   /// Error of a phase: 16 units in its last place, and in that of a fraction of a second [cycles].
   [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + line_rate); }
 
-  /// Phases by which a gate is wider, for slots on its ends: rates of decimal digits stay together for 1e6 lines
-  /// [cycles].
+  /// Phase by which a gate is wider, so that decimal rates stay on its ends for 1e6 lines [cycles].
   [[nodiscard]] double margin() const noexcept { return 0x1p-33 + rounding(); }
 
-  /// Phase of the line; one that rounding leaves just before the end of a line is the begin of the next one [cycles].
+  /// Phase of the line [cycles]; what rounding leaves just before its end begins the next one.
   [[nodiscard]] simd::Doubles phases(const TickLanes& t) const noexcept {
     const simd::Doubles phase = t.phase(line_rate);
     return phase < 1 - rounding() ? phase : simd::Doubles{};

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_ROTATING_HEAD_HPP
 #define PULSECAST_DEFLECTOR_ROTATING_HEAD_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -11,8 +10,7 @@ namespace PULSECAST_NAMESPACE {
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
-  double angular_rate = 2 * pi;  ///< positive to the left about an upward axis; from -1e12 to 1e12, rounded as
-                                 ///< turns per second [rad/s]
+  double angular_rate = 2 * pi;  ///< to the left about an upward axis, within 1e12 [rad/s]
   double start = 0;              ///< angle at the survey's start, from -2 pi to 2 pi [rad]
   Vec3 axis = axis::up;          ///< axis of rotation, of any length but zero
 
@@ -22,11 +20,12 @@ struct RotatingHead {
     require_positive("RotatingHead::axis (length)", length(axis), "");
   }
 
-  [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Instrument, frame::Instrument>& poses) const noexcept {
     const simd::Doubles angle = start + 2 * pi * t.phase(angular_rate / (2 * pi));
-    poses = PoseLanes<frame::Instrument, frame::Instrument>{RotationLanes::about(pulsecast::normalize(axis), angle)};
+    poses.rotation = RotationLanes::about(pulsecast::normalize(axis), angle);
+    poses.position = {};
     return all_lanes();
   }
 };

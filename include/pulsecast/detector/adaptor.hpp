@@ -3,26 +3,28 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <pulsecast/base/require.hpp>
+#include <algorithm>
+
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Numbers the echoes of a pulse from 1, in their order.
 inline void number_echoes(std::span<Echo> echoes) noexcept {
-  for (std::size_t e = 0; e < echoes.size(); ++e) echoes[e].number = static_cast<std::uint8_t>(e + 1);
+  std::uint8_t number = 0;
+  for (Echo& echo : echoes) echo.number = ++number;
 }
 
-/// Base of detectors around another one, `inner`. It forwards all members that a derived detector does not define, the
-/// optional ones included:
-///
-///     template <Detector Inner>
-///     struct LastEcho : DetectorAdaptor<Inner> {
-///       Detection detect(const DetectorInput& input, auto& workspace) const noexcept {
-///         ... this->inner.detect(input, workspace) ... }
-///     };
-///     template <Detector Inner>
-///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
+namespace detail {
+/// Sorts the echoes of a pulse by range, and numbers them.
+inline void number_by_range(std::span<Echo> echoes) noexcept {
+  std::ranges::sort(echoes, {}, &Echo::range);
+  number_echoes(echoes);
+}
+}  // namespace detail
+
+/// Base of detectors around another one, `inner`, whose members it has, the optional ones included,
+/// unless a derived detector defines them: docs/cookbook.md, or `SelectedReturns`.
 template <Detector Inner>
 struct DetectorAdaptor {
   static_assert(detail::detector_checked<Inner>);

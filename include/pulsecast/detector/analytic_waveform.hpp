@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
@@ -24,23 +19,22 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact.
-/// Between two leading edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a
-/// quadratic. One pass over the reflections finds them all. A `SinglePeakGroup` is evaluated without sorting.
-/// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform`
-/// models the digitiser's bins and the receiver's noise.
+/// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and
+/// heights are exact. Between two leading edges the sum is a quadratic polynomial times an
+/// exponential, so one pass over the reflections finds all extrema. A `SinglePeakGroup` is
+/// evaluated without sorting. Pareto-optimal in docs/tradeoff.md: faster than `FullWaveform`, which
+/// models the digitiser's bins and the receiver's noise, and as exact or more so.
 ///
-/// Continuous returns are exact, too: between the edges of reflections, and of theirs, the sum is a quadratic
-/// polynomial times an exponential, and a linear one. Its extrema are bracketed in steps of a quarter of tau, where it
-/// may rise. They have no part in widths.
+/// Continuous returns are exact, too: between all edges, theirs included, the sum is a quadratic
+/// polynomial times an exponential, and a linear one. Its extrema are bracketed in steps of a
+/// quarter of tau, where it may rise. They have no part in widths.
 ///
-/// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum;
-/// moments are exact.
+/// `WaveformSettings::sample_interval` is of the record and of a fitted width.
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
   using refinements = refines<tag::SamplesWaveforms, tag::ValidatesLaser>;
-  /// @throws SettingError for settings out of range, a prominence, or a timing that is read from samples
+  /// @throws SettingError for settings out of range, a prominence, or a timing by samples
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {
     require_within("AnalyticWaveform: WaveformSettings::prominence", s_.prominence, 0, 0, "W");
@@ -52,7 +46,7 @@ class AnalyticWaveform {
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
-  /// Refuses pulses that samples do not resolve, if a record or a fitted width takes samples. @throws SettingError
+  /// Refuses pulses that a record or fitted width does not resolve. @throws SettingError
   void validate(const Laser& laser) const {
     if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
@@ -62,8 +56,7 @@ class AnalyticWaveform {
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if constexpr (by_samples) {
       const double whole = (PulseShape::peak + SampledSum::negligible) * shape.tau;
-      return pulsecast::pulse_width(width_, shape,
-                                    std::fmax(s_.sample_interval, whole / static_cast<double>(max_samples - 2)));
+      return pulsecast::pulse_width(width_, shape, interval_of(whole));
     } else if constexpr (by_moments) {
       EdgeAgeMoments pulse;
       pulse.add(1);
@@ -90,7 +83,7 @@ class AnalyticWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
+  /// Sorts the reflections by range. Drops those without power, or too far away to count samples.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const Laser& laser = input.emitter.laser;
     const std::span<Reflection> all = input.reflections;
@@ -117,8 +110,7 @@ class AnalyticWaveform {
     const detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
     for (Peak& peak : w.peaks) {
       if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
-      keep_return(echo_of(peak, reflections, shape, s_.timing, rises.sources(0)), s_.returns_kept, s_.returns_max,
-                  w.echoes);
+      keep_return(echo_of(peak, reflections, shape, s_.timing, rises.sources(0)), s_, w.echoes);
     }
     number_echoes(w.echoes);
     if (!continuous.empty()) return {w.echoes, w.record, record(input, reflections, w.record)};
@@ -133,7 +125,7 @@ class AnalyticWaveform {
  private:
   static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
-  static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid
+  static constexpr std::size_t max_samples = 4096;  ///< of one echo; longer ones get a coarser grid
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Appends the only echo of a group, if it reaches the threshold.
@@ -188,7 +180,7 @@ class AnalyticWaveform {
         if (next == 0) continue;
         const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
         double x = 0;  // time since the edge [tau]
-        // An extremum that rounding puts just before the edge is moved to it, so that peaks and valleys alternate.
+        // An extremum that rounding puts before an edge moves to it: peaks and valleys alternate.
         if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
           x = std::fmax(ages.until_valley(), 0);
           if constexpr (by_moments) m.add(ages.until(x), since);
@@ -223,7 +215,7 @@ class AnalyticWaveform {
       }
       /// Slope of both; its zeros are those of the power.
       [[nodiscard]] double slope() const noexcept { return ages.slope() + continuous.slope(); }
-      /// The sum at the zero of its slope up to another time [s]: false position, after Dowell & Jarratt 1971.
+      /// Sum at the zero of its slope up to a time [s]: after Dowell & Jarratt 1971.
       [[nodiscard]] Sum at_extremum(double to, double tau) const noexcept {
         Sum middle = *this;
         middle.advance(to, tau);
@@ -252,7 +244,7 @@ class AnalyticWaveform {
         return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity;
       };
       double time = std::fmin(next_edge(), rises.next());
-      const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // up to here, if no reflection comes
+      const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // before any reflection
       if (only_rises > time && next_edge() > only_rises + to_edge) time = only_rises;
       double rising_until = time;
       Sum sum{{}, detail::ContinuousSum(continuous, shape), time};
@@ -296,18 +288,21 @@ class AnalyticWaveform {
     return samples.start() * s_.sample_interval;
   }
 
+  /// Distance of the samples of an echo of a length [s].
+  [[nodiscard]] double interval_of(double length) const noexcept {
+    return std::fmax(s_.sample_interval, length / static_cast<double>(max_samples - 2));
+  }
+
   /// Width of a peak from samples of the sum between its valleys [s].
   double sampled_width(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape,
                        std::vector<double>& samples) const noexcept {
     if (reflections.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };
-    const auto last = std::partition_point(reflections.begin() + 1, reflections.end(), before(peak.end)) - 1;
-    const double end = std::fmin(peak.end, arrival(*last) + detail::tail_of(width_) * shape.tau);
-    const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(max_samples - 2));
+    const auto first_from = [&](double time) { return detail::first_arrival(reflections, time); };
+    const Reflection& last = reflections[std::max<std::size_t>(1, first_from(peak.end)) - 1];
+    const double end = std::fmin(peak.end, arrival(last) + detail::tail_of(width_) * shape.tau);
+    const double interval = interval_of(end - peak.begin);
     const double faded = peak.begin - SampledSum::negligible * shape.tau;
-    const auto first = std::partition_point(reflections.begin(), reflections.end(), before(faded));
-    SampledSum sum(reflections, shape, interval, static_cast<std::size_t>(first - reflections.begin()),
-                   std::ceil(peak.begin / interval));
+    SampledSum sum(reflections, shape, interval, first_from(faded), std::ceil(peak.begin / interval));
     samples.clear();
     while (sum.time() <= end) samples.push_back(sum.power());
     return width_.width(samples, interval);

@@ -6,12 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <limits>
 #include <memory>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
@@ -25,9 +21,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of finite bandwidth: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and the form of the
-/// laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. With noise it samples
-/// the whole gate.
+/// Receiver of finite bandwidth: a policy of `FullWaveform`, by the settings of a `ReceiverChain`
+/// and the form of the laser's pulse. With noise it samples the whole gate.
 template <PulseForm Form = GammaPulse>
 class BandLimitedReceiver {
  public:
@@ -39,17 +34,16 @@ class BandLimitedReceiver {
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }
 
   static constexpr bool runs_without_reflections = true;  ///< true: noise is detected without light
-  /// Scratch memory of one worker.
-  using Workspace = BandLimitedSamples::Workspace;
+  using Workspace = BandLimitedSamples::Workspace;        ///< scratch memory of one worker
 
   /// Computes what pulses of a laser need, before the first of them.
   void prepare(const Laser& laser, const WaveformSettings& s) {
     if (known_.find(laser)) return;
     const LowPass filter = chain_.filter(laser.pulse_length);
+    const double step = s.sample_interval;
     const auto made = std::make_shared<detail::ReceivedPulses>(
-        detail::ReceivedPulses{filter, ReceivedPulse(form_, laser.pulse_length, filter, s.sample_interval)});
+        detail::ReceivedPulses{filter, ReceivedPulse(form_, laser.pulse_length, filter, step)});
     if (chain_.matched_filter) {
-      const double step = s.sample_interval;
       const auto first = static_cast<std::int64_t>(std::floor(made->pulse.begin() / step));
       const auto last = static_cast<std::int64_t>(std::ceil(made->pulse.end() / step));
       double energy = 0;
@@ -69,7 +63,7 @@ class BandLimitedReceiver {
     chain_.shot_noise = false;
   }
 
-  /// As the concept WaveformReceiver requires: for `filtered_top`, where noise or steps may be finer than the pulse.
+  /// For `filtered_top`, where noise or steps may be finer than the pulse.
   [[nodiscard]] double timing_reach(const Laser& laser) const noexcept {
     return chain_.matched_filter || (chain_.bandwidth == 0 && chain_.full_scale == 0)
                ? 0
@@ -88,9 +82,9 @@ class BandLimitedReceiver {
             std::vector<double>(taps == 0 ? 0 : std::bit_ceil(taps))};
   }
 
-  /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections
-  /// that are none or too far apart, or where continuous returns may rise, and for receivers whose samples are more
-  /// than the sum of the pulses. `reach` is that of `timing_reach`.
+  /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it.
+  /// Empty for reflections that are none or too far apart, where continuous returns may rise, and
+  /// if samples are more than the sum of the pulses. `reach` is that of `timing_reach`.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const DetectorInput& input,
                                                   double reach) const noexcept {
     if (!is_linear() || input.reflections.empty()) return {};
@@ -111,9 +105,8 @@ class BandLimitedReceiver {
     for (const Reflection& r : input.reflections) {
       const ReceivedPulse::Phase phase = pulse.phase(arrival(r));
       const double before = from - pulse.first_sample(arrival(r));
-      if (!(before >= 0 &&
-            before + static_cast<double>(count + simd::lane_count) <= static_cast<double>(pulse.stride())))
-        return {};
+      const double after = before + static_cast<double>(count + simd::lane_count);
+      if (!(before >= 0 && after <= static_cast<double>(pulse.stride()))) return {};
       const double* const row = pulse.row(phase.first) + static_cast<std::size_t>(before);
       for (std::size_t k = 0; k < count; k += simd::lane_count) {
         simd::Doubles sum{};
@@ -133,7 +126,7 @@ class BandLimitedReceiver {
     }
     const auto top = static_cast<std::size_t>(
         std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
-    if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};  // on their flank
+    if (!input.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};
     const detail::Vertex between = detail::vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
     const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);
@@ -147,7 +140,7 @@ class BandLimitedReceiver {
     return only;
   }
 
-  /// As the concept WaveformReceiver requires; for pulses that were prepared.
+  /// Samples of pulses that were prepared.
   [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const DetectorInput& input,
                                            std::span<const Reflection> reflections, double width_tail,
                                            Workspace& w) const noexcept {

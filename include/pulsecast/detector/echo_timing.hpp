@@ -11,19 +11,18 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Point of an echo that defines its range. All but `true_range` are read from the samples of the waveform, as
-/// instruments do, and are corrected by what the estimator gives for a flat target at normal incidence. Sources: Wagner
-/// et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
+/// Point of an echo that defines its range. All but `true_range` are read from samples, as
+/// instruments do, and corrected by what they are for a flat target at normal incidence. Sources:
+/// Wagner et al. 2004, ISPRS Archives 35-B3 (a comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
-  /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows:
-  /// unbiased for an echo of any length. What media send back does not count; their echo has the range of its peak.
+  /// Power-weighted mean of the true ranges between the echo's valleys, which no instrument knows:
+  /// unbiased for any length. Media do not count; their echo has the range of its peak.
   true_range,
-  /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or
-  /// the steps of a digitiser it is that after a filter about as wide as the pulse, so that it errs less with more
-  /// samples.
+  /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. With a
+  /// bandwidth or the steps of a digitiser it is that after a filter about as wide as the pulse.
   peak,
-  leading_edge,       ///< first rise to the threshold: earlier for stronger echoes, which is the range walk
-  constant_fraction,  ///< first rise to `WaveformSettings::fraction` of the maximum, whatever the echo's strength
+  leading_edge,       ///< first rise to the threshold: earlier for stronger echoes (range walk)
+  constant_fraction,  ///< first rise to `WaveformSettings::fraction` of the maximum
   centroid,           ///< centre of mass of what exceeds a tenth of the maximum
 };
 
@@ -34,13 +33,13 @@ struct Vertex {
   double offset, height;  ///< offset from the middle sample [samples]; power [W]
 };
 
-/// Maximum of the quartic through five samples about a peak, `y[-2]` to `y[2]`, by Newton's method from the vertex of
-/// the parabola through the middle three. Returns that vertex where the quartic has no maximum, as in noise.
+/// Maximum of the quartic through five samples about a peak, `y[-2]` to `y[2]`, by Newton's method
+/// from the vertex of the parabola through three; that vertex if there is none.
 [[nodiscard]] inline Vertex vertex(const double* y) noexcept {
-  const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12,
-               c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
-  const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12,
-               c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;
+  const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12;
+  const double c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
+  const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12;
+  const double c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;
   const double middle = 0.5 * (y[-1] - y[1]) / (y[-1] - 2 * y[0] + y[1]);
   double x = middle;
   for (int step = 0; step < 3; ++step) {
@@ -52,8 +51,8 @@ struct Vertex {
   return height >= y[0] ? Vertex{x, height} : Vertex{middle, y[0] + 0.25 * middle * (y[1] - y[-1])};
 }
 
-/// Place [samples] at which samples rise to a level before the peak at index i: on the cubic through the four samples
-/// about it. The lowest place before the peak, if they do not fall below the level there.
+/// Place [samples] of the rise to a level before the peak at index i: on the cubic through four
+/// samples. The lowest place before the peak, if they do not fall below the level there.
 [[nodiscard]] inline double rise_before(std::span<const double> y, std::size_t i, double level) noexcept {
   std::size_t above = i;
   while (above > 0 && y[above - 1] >= level && y[above - 1] <= y[i]) --above;
@@ -86,10 +85,10 @@ struct Vertex {
   return static_cast<double>(i) + (sum > 0 ? first / sum : 0);
 }
 
-/// Maximum about a place [samples] after a filter that reaches `reach` samples either side, of the form (1 - u^2)^2, by
-/// Newton's method from that place. With a reach of 0.6 of the width of the gamma pulse it errs by 1.3 times the
-/// Cramer-Rao bound of white noise, and parts closer echoes than the best reach, of 0.75. Source: biweight, Beaton &
-/// Tukey 1974; the factor by integrals of slope and filter.
+/// Maximum about a place [samples] after a filter (1 - u^2)^2 that reaches `reach` samples either
+/// side, by Newton's method. With a reach of 0.6 of the width of the gamma pulse it errs by 1.3
+/// times the Cramer-Rao bound of white noise, and parts closer echoes than the best, of 0.75.
+/// Source: biweight, Beaton & Tukey 1974; the factor by integrals of slope and filter.
 [[nodiscard]] inline double filtered_top(std::span<const double> y, double place, double reach) noexcept {
   for (int step = 0; step < 12 && reach > 2; ++step) {
     const auto end =
@@ -108,15 +107,15 @@ struct Vertex {
   return place;
 }
 
-inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `centroid` weighs samples
+inline constexpr double centroid_level = 0.1;  ///< share of the maximum for `centroid`
 
-/// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is
-/// the level of a leading edge, and `fraction` the share of the maximum of a constant fraction.
+/// Time of an echo by its samples [samples], with the peak at index i and `top` between samples:
+/// `threshold` [W] is that of a leading edge, `fraction` the share of the maximum.
 [[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top,
                                       double threshold, double fraction) noexcept {
-  if (timing == EchoTiming::leading_edge) return detail::rise_before(y, i, threshold);
-  if (timing == EchoTiming::constant_fraction) return detail::rise_before(y, i, fraction * top.height);
-  if (timing == EchoTiming::centroid) return detail::centroid_about(y, i, centroid_level * top.height);
+  if (timing == EchoTiming::leading_edge) return rise_before(y, i, threshold);
+  if (timing == EchoTiming::constant_fraction) return rise_before(y, i, fraction * top.height);
+  if (timing == EchoTiming::centroid) return centroid_about(y, i, centroid_level * top.height);
   return static_cast<double>(i) + top.offset;
 }
 

@@ -3,16 +3,13 @@
 #ifndef PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 #define PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 
-#include <cmath>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Moments of a section of waveform about a reference time: integrals of power, of power times time, and of power times
-/// time squared.
+/// Moments of a section of waveform about a reference time: integrals of power times 1, t and t^2.
 struct WaveformMoments {
   double energy = 0, first = 0, second = 0;  ///< moments of order 0, 1 and 2
 
@@ -68,8 +65,7 @@ template <EchoWidth Width>
 
 }  // namespace detail
 
-/// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence.
-/// Sampled every `interval` [s]; not for the hot path.
+/// Width of the outgoing pulse by the measure of its echoes [s], sampled every `interval` [s].
 [[nodiscard]] double pulse_width(const EchoWidth auto& width, const PulseShape& shape, double interval) {
   std::vector<double> samples;
   for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval)

@@ -8,8 +8,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility. Continuous
-/// returns have no power at any one range, so that it does not detect fog, but what fog leaves of surfaces.
+/// Detector of the nearest reflection at its exact range, without a waveform. It does not detect
+/// fog, whose continuous returns have no power at any one range, but what fog leaves of surfaces.
 struct FirstHit {
   using refinements = refines<tag::Validated>;
   double threshold = 0;  ///< minimum detectable power [W]

@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
@@ -20,12 +16,12 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a scanner with frequency-modulated continuous waves.
 struct FmcwSettings {
-  double bandwidth = 1e9;  ///< frequency change in a sweep, 1e6 to 1e12: surfaces closer than c / 2B are one echo [Hz]
-  double sweep_time = 10e-6;      ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
+  double bandwidth = 1e9;         ///< frequency change in a sweep, from 1e6 to 1e12 [Hz]
+  double sweep_time = 10e-6;      ///< duration of a sweep, up or down, from 1e-8 to 1 [s]
   double threshold = 1e-12;       ///< minimum power of an echo, greater than 0 [W]
   double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
-  bool shot_noise = false;        ///< adds that of the reference beam: of power one photon by efficiency in a sweep
-  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
+  bool shot_noise = false;        ///< of the reference beam: one photon by efficiency in a sweep
+  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces
   std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
 
   void validate() const {
@@ -34,26 +30,26 @@ struct FmcwSettings {
     require_positive("FmcwSettings::threshold", threshold, "W");
     require_positive("FmcwSettings::quantum_efficiency", quantum_efficiency, "");
     require_within("FmcwSettings::quantum_efficiency", quantum_efficiency, 0, 1, "");
-    require_within("FmcwSettings::returns_max", static_cast<double>(returns_max), 1, 64, "");
+    require_within("FmcwSettings::returns_max", returns_max, 1, 64, "");
   }
 
-  /// Range that changes the beat by one period in a sweep: c / 2B [m].
+  /// Range that adds one period to the beat in a sweep, c / 2B: closer surfaces are one echo [m].
   [[nodiscard]] double resolution() const noexcept { return 0.5 * speed_of_light / bandwidth; }
-  /// Radial velocity that does so, at a wavelength [m]: a half wavelength by the duration of a sweep [m/s].
+  /// Radial velocity that does so: half a wavelength [m] by the duration of a sweep [m/s].
   [[nodiscard]] double velocity_resolution(double wavelength) const noexcept { return 0.5 * wavelength / sweep_time; }
 };
 
-/// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a
-/// share of the light that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that
-/// both range and radial velocity are known. Beats have a sign, as a receiver of both quadratures measures it. The
-/// spectrum of each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order
-/// of power, and in order of frequency where powers are similar: the latter are wrong if surfaces of different
-/// velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
-/// powers, such as two peaks that are one in the other sweep. Surfaces do not move from one sweep to the next. The
-/// range is that in the middle. The laser's peak power is its power while it measures. Amplitudes are the powers of
-/// both sweeps' peaks, in the mean. Continuous returns, which stand still, are in the spectrum, of which only what is
-/// near to surfaces is searched. It needs a `VelocityTarget`, such as `Scene` and `MovingScene`. Source: Amann, Bosch,
-/// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+/// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that
+/// returns beats with a share of the light that leaves: delay and Doppler shift add in one sweep,
+/// and differ in the other, which gives range and radial velocity. Beats have a sign, as a receiver
+/// of both quadratures measures it. The spectrum of each sweep, through a window of Hann, is
+/// searched for peaks, which are paired in order of power, and in order of frequency where powers
+/// are similar: the latter are wrong if surfaces overtake each other in a spectrum, and flagged as
+/// `Echo::ambiguous`. So are pairs of different powers, such as two peaks that are one in the other
+/// sweep. Surfaces do not move from one sweep to the next; the range is that in the middle. The
+/// peak power is that while it measures. Amplitudes are the mean of both peaks' powers. Continuous
+/// returns stand still, and are searched near surfaces only. It needs a target with `SceneQueries`.
+/// Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   using refinements = refines<tag::ReadsVelocity>;
@@ -92,9 +88,8 @@ class Fmcw {
 
   /// Echoes of all reflections. Noise and phases are drawn from the seed and pulse of `input.key`.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
-    const double wavelength = input.emitter.laser.wavelength, metres = s_.resolution(),
-                 speed = s_.velocity_resolution(wavelength);
-    for (const std::size_t sweep : {std::size_t{0}, std::size_t{1}}) {
+    const double metres = s_.resolution(), speed = s_.velocity_resolution(input.emitter.laser.wavelength);
+    for (std::size_t sweep = 0; sweep < 2; ++sweep) {
       set_lines(input, sweep == 0 ? 1 / speed : -1 / speed, w);
       find_peaks(input, w.lines, noise_of(input, sweep), w.peaks[sweep]);
     }
@@ -111,15 +106,14 @@ class Fmcw {
         if (echo.range >= 0) w.echoes.push_back(echo);
       }
     }
-    std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    number_echoes(w.echoes);
+    detail::number_by_range(w.echoes);
     return {w.echoes, {}, 0};
   }
 
  private:
   using Line = Workspace::Line;
   static constexpr double reach = 2;    ///< half the main lobe of the window [periods in a sweep]
-  static constexpr double grid = 0.25;  ///< spacing of the spectrum, four points a period [periods in a sweep]
+  static constexpr double grid = 0.25;  ///< spacing of the spectrum [periods in a sweep]
 
   /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
   struct Noise {
@@ -142,15 +136,13 @@ class Fmcw {
   };
 
   [[nodiscard]] Noise noise_of(const DetectorInput& input, std::size_t sweep) const noexcept {
-    RandomKey key = input.key;
-    key.purpose = Purpose::receiver_noise;
+    RandomKey key = input.key.with(Purpose::receiver_noise);
     key.subray = static_cast<std::uint32_t>(2 * sweep);
     const double photon = planck_constant * speed_of_light / input.emitter.laser.wavelength;
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 
-  /// Amplitude of the spectrum of a sine through the window of Hann, at `x` periods from its own; 1 at 0.
-  /// Source: Harris 1978.
+  /// A sine's amplitude `x` periods off, through the window of Hann. Source: Harris 1978.
   [[nodiscard]] static double window(double x) noexcept {
     const double square = x * x;
     if (square < 1e-8) return 1;
@@ -158,8 +150,8 @@ class Fmcw {
     return simd::sincos(pi * x).sin / (pi * x * (1 - square));
   }
 
-  /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of less power in both
-  /// sweeps. True if there is one pair, of one power.
+  /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of
+  /// less power in both sweeps. True if there is one pair, of one power.
   static bool pair_next(std::size_t first, std::size_t& last, double deviation,
                         std::array<std::vector<Peak>, 2>& peaks) noexcept {
     std::vector<Peak>& up = peaks[0];
@@ -168,8 +160,8 @@ class Fmcw {
     const auto amplitude = [](const std::vector<Peak>& of, std::size_t k) {
       return k < of.size() ? std::sqrt(of[k].power) : 0;
     };
-    // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and by three deviations
-    // of the difference of two amplitudes. The noise through the window has 1 + 1/4 + 1/4 times its variance.
+    // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and
+    // three deviations of a difference of amplitudes. The window passes 1 + 1/4 + 1/4 of the noise.
     const double high = std::max(amplitude(up, first), amplitude(down, first));
     const double alike = 2 * std::pow(10, -32.0 / 20) * high + 3 * std::sqrt(2 * 1.5) * deviation;
     const auto low = [&](std::size_t k) { return std::min(amplitude(up, k), amplitude(down, k)); };
@@ -179,14 +171,9 @@ class Fmcw {
     last = first + 1;
     while (last < pairs && !apart(last)) ++last;
     if (last == first + 1) return apart(last) && high - low(first) <= alike;
-    for (std::vector<Peak>* of : {&up, &down})
-      std::sort(of->begin() + static_cast<std::ptrdiff_t>(first), of->begin() + static_cast<std::ptrdiff_t>(last),
-                by_beat);
+    for (std::vector<Peak>& of : peaks) std::ranges::sort(&of[first], &of[first] + (last - first), {}, &Peak::beat);
     return false;
   }
-
-  static bool by_beat(const Peak& a, const Peak& b) noexcept { return a.beat < b.beat; }
-  static bool by_power(const Peak& a, const Peak& b) noexcept { return a.power > b.power; }
 
   /// Sets the lines of a sweep, for periods by radial velocity [s/m].
   void set_lines(const DetectorInput& input, double per_velocity, Workspace& w) const noexcept {
@@ -197,19 +184,18 @@ class Fmcw {
       Line line{.beat = r.range / s_.resolution() + r.velocity * per_velocity, .power = r.power, .from = &r};
       if (!(std::fabs(line.beat) < 0x1p40)) continue;  // else it could not be counted
       if (s_.speckle) {
-        const double turns =
-            uniform({input.key.seed, input.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
-        const auto phase = simd::sincos(2 * pi * turns);
+        RandomKey key{input.key.seed, input.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle};
+        const auto phase = simd::sincos(2 * pi * uniform(key));
         line.cos = phase.cos;
         line.sin = phase.sin;
       }
       w.lines.push_back(line);
     }
-    std::sort(w.lines.begin(), w.lines.end(), [](const Line& a, const Line& b) { return a.beat < b.beat; });
+    std::ranges::sort(w.lines, {}, &Line::beat);
   }
 
-  /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no ripple, as the
-  /// square of Hann's window has no higher harmonics than its own.
+  /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no
+  /// ripple, as the square of Hann's window has no higher harmonics than its own.
   struct Haze {
     std::span<const ContinuousReturn> returns;  ///< those that matter
     double resolution;                          ///< of `FmcwSettings` [m]
@@ -237,9 +223,7 @@ class Fmcw {
     std::size_t begin = 0, end = input.continuous.size();
     while (begin < end && input.continuous[begin].end < (first - 9) * s_.resolution()) ++begin;
     while (end > begin && input.continuous[end - 1].begin > (last + 9) * s_.resolution()) --end;
-    RandomKey key = input.key;
-    key.purpose = Purpose::speckle;
-    return {input.continuous.subspan(begin, end - begin), s_.resolution(), key};
+    return {input.continuous.subspan(begin, end - begin), s_.resolution(), input.key.with(Purpose::speckle)};
   }
 
   /// Power of the spectrum of a sweep at a frequency [W]. Only lines within 8 periods matter.
@@ -276,8 +260,7 @@ class Fmcw {
     return real * real + imaginary * imaginary;
   }
 
-  /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near
-  /// lines.
+  /// Strongest peaks of a sweep's spectrum near lines, in descending order of power.
   void find_peaks(const DetectorInput& input, std::span<const Line> lines, const Noise& noise,
                   std::vector<Peak>& peaks) const noexcept {
     peaks.clear();
@@ -295,10 +278,10 @@ class Fmcw {
         keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);
       }
     }
-    std::sort(peaks.begin(), peaks.end(), by_power);
+    std::ranges::sort(peaks, std::ranges::greater{}, &Peak::power);
   }
 
-  /// Keeps a peak, with the strongest line within half the window, unless there are enough stronger ones.
+  /// Keeps a peak, with the strongest line in half the window, unless enough are stronger.
   void keep(Peak peak, std::span<const Line> lines, std::vector<Peak>& peaks) const noexcept {
     double strongest = 0;
     for (const Line& line : lines) {
@@ -309,7 +292,7 @@ class Fmcw {
     }
     if (!peak.strongest) return;
     peaks.push_back(peak);
-    if (peaks.size() > s_.returns_max) peaks.erase(std::max_element(peaks.begin(), peaks.end(), by_power));
+    if (peaks.size() > s_.returns_max) peaks.erase(std::ranges::min_element(peaks, {}, &Peak::power));
   }
 
   FmcwSettings s_;

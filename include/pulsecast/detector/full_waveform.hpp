@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
@@ -25,10 +21,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conversion of the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's
-/// reflections, sorted by range, and returns them section by section, as `IdealSamples` does. `prepare` receives each
-/// laser before the first pulse. `timing_reach` is the time beside a maximum whose samples define its place [s], or 0
-/// for those next to it.
+/// Conversion of the light at an aperture into samples: a policy of `FullWaveform`. `samples` takes
+/// a pulse's reflections, sorted by range, and returns them section by section, as `IdealSamples`
+/// does. `prepare` receives each laser before the first pulse. `timing_reach` is the time beside a
+/// maximum whose samples define its place [s]; 0: those next to it.
 template <class R>
 concept WaveformReceiver = std::copyable<R> &&
     requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const DetectorInput& input,
@@ -45,19 +41,17 @@ concept WaveformReceiver = std::copyable<R> &&
   { R::runs_without_reflections } -> std::convertible_to<bool>;
 };
 
-/// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks. Their heights and times
-/// are interpolated between samples. The receiver is ideal by default, and adds the pulse shapes of all reflections; a
-/// `BandLimitedReceiver` is as real ones are.
+/// Digitising detector: samples what a receiver makes of all reflections, and interpolates the
+/// peaks. The receiver is ideal by default; real ones are a `BandLimitedReceiver`.
 ///
-/// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection on, for the record's
-/// length and as long as reflections arrive, and detects false echoes. The threshold applies to the samples themselves.
-/// Echoes are then timed by their peaks in place of true ranges. Amplitudes and widths are relative to the mean
-/// background, which the record includes.
+/// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection
+/// on, for the record's length and as long as reflections arrive, and detects false echoes. The
+/// threshold applies to the samples themselves, and echoes are timed by their peaks in place of
+/// true ranges. Amplitudes and widths are relative to the mean background of the record.
 ///
-/// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and
-/// by 0.5 mm at 1/8. At 1/5 its amplitude errs by -0.13 to 0.40 % with the place between samples; at 1/4 it errs by 10
-/// mm, and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise
-/// peaks per pulse are considered.
+/// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of
+/// the pulse length, by 0.5 mm at 1/8, by 10 mm at 1/4; its amplitude by -0.13 to 0.40 % at 1/5,
+/// and 2 % at 1/4. Pulses of other than 1 to 10,000 intervals are refused.
 template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
@@ -66,25 +60,24 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< that of the receiver
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as it
 
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
-  /// Refuses pulses that the samples do not resolve, or that exceed the sample window. @throws SettingError
+  /// Refuses pulses that samples do not resolve, or beyond the sample window. @throws SettingError
   void validate(const Laser& laser) const { s_.require_sampled(laser.pulse_length, WaveformSettings::max_samples); }
 
-  /// Prepares for the pulses of a laser: the receiver, and the correction of echo times. @throws SettingError as
-  /// `validate`
+  /// Prepares receiver and correction of echo times for a laser. @throws SettingError as `validate`
   void prepare(const Laser& laser) {
     validate(laser);
     receiver_.prepare(laser, s_);
     if (reads_samples() && !corrections_.find(laser)) corrections_.add(laser, correction_for(laser));
   }
 
-  /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold,
-  /// whose pulse arrives at the place k of `places` between two samples [s]; the last place is the next sample.
-  /// Records, if any, hold the whole pulse.
+  /// Calls `visit(k, arrival, detection)` for flat targets without noise, at ten times the
+  /// threshold, whose pulse arrives at the place k of `places` between two samples [s], the last
+  /// the next sample. Records, if any, hold the whole pulse.
   void visit_flat_targets(const Laser& laser, std::size_t places, const auto& visit) const {
     FullWaveform quiet = *this;
     quiet.receiver_.silence();
@@ -95,7 +88,7 @@ class FullWaveform {
     const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
     for (std::size_t k = 0; k <= places; ++k) {
       const double arrival = first + static_cast<double>(k) / static_cast<double>(places) * s_.sample_interval;
-      Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * quiet.s_.threshold};
+      Reflection reflection{.range = range_at(arrival), .power = 10 * quiet.s_.threshold};
       visit(k, arrival, quiet.detect({.emitter = emitter, .reflections = {&reflection, 1}}, w));
     }
   }
@@ -127,7 +120,7 @@ class FullWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
+  /// Sorts the reflections by range. Drops those without power, or too far away to count samples.
   /// Noise is drawn from the seed and pulse of `input.key`.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const Laser& laser = input.emitter.laser;
@@ -156,12 +149,9 @@ class FullWaveform {
     const std::span<const Reflection> reflections =
         only ? std::span<Reflection>{} : in_order_of_range(input.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, input, reflections, tail(), w.receiver);
-    const typename SampleWindow<Width>::Search search{s_,
-                                                      width_,
-                                                      s_.min_separation(laser.pulse_length),
-                                                      samples.delay(),
-                                                      samples.independent_noise(),
-                                                      reach_of(laser)};
+    const double apart = s_.min_separation(laser.pulse_length);
+    const typename SampleWindow<Width>::Search search{
+        s_, width_, apart, samples.delay(), samples.independent_noise(), reach_of(laser)};
     while (samples.begin_section()) {
       w.window.clear();
       for (bool more = true; more;) {
@@ -172,15 +162,14 @@ class FullWaveform {
     }
     if (const Correction* correction = corrections_.find(laser))
       for (Peak& peak : w.peaks) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-    if constexpr (runs_without_reflections)  // the samples before and after the gate complete the pulses at its ends
-      std::erase_if(w.peaks, [&](const Peak& peak) { return !input.gate.contains(0.5 * speed_of_light * peak.mark); });
+    if constexpr (runs_without_reflections)  // pulses at the ends reach beyond it
+      std::erase_if(w.peaks, [&](const Peak& peak) { return !input.gate.contains(range_at(peak.mark)); });
     keep_echoes(s_, w.peaks);
     const EchoTiming timing =
         samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
     for (const Peak& peak : w.peaks) {
       if (only && peak.time > only->time) keep_only(only, laser, w.echoes);
-      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_.returns_kept,
-                  s_.returns_max, w.echoes);
+      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_, w.echoes);
     }
     if (only) keep_only(only, laser, w.echoes);
     number_echoes(w.echoes);
@@ -189,14 +178,14 @@ class FullWaveform {
 
  private:
   static constexpr bool ideal = std::same_as<Receiver, ReceiverNoise>;
-  static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
+  static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise that count
   static constexpr std::size_t continuous_peaks = 64;
 
-  /// Time of the echo of a flat target less its arrival, by the place of the arrival between two samples.
+  /// Time of a flat target's echo less its arrival, by its place between two samples.
   struct Correction {
     static constexpr std::size_t places = 16;
     std::array<double, places + 1> time{};  ///< at evenly spaced places [s]
-    double reach = 0;                       ///< time beside a maximum whose samples define its place, or 0 [s]
+    double reach = 0;                       ///< as `timing_reach` [s]
 
     /// Arrival of the flat target that would have an echo at this time [s].
     [[nodiscard]] double arrival(double mark, double interval) const noexcept {
@@ -210,8 +199,8 @@ class FullWaveform {
     }
   };
 
-  /// Time after the peak of its last pulse up to which a waveform affects a width or a time [tau]. Of pulses that have
-  /// passed their peaks, the sum falls at least as fast as one that is at its peak.
+  /// Time after the last pulse's peak up to which a waveform affects a width or a time [tau]. After
+  /// their peaks, the sum of pulses falls at least as fast as one that is at its peak.
   [[nodiscard]] double tail() const noexcept {
     const double of_time = s_.timing == EchoTiming::centroid ? PulseShape::fallen_to(detail::centroid_level) : 0;
     return std::fmax(detail::tail_of(width_), of_time);
@@ -222,7 +211,7 @@ class FullWaveform {
     return correction ? correction->reach : 0;
   }
 
-  /// True for echo times that need a correction: those of samples, but not of an ideal receiver's peak.
+  /// True for echo times that need a correction: of samples, but for an ideal receiver's peak.
   [[nodiscard]] bool reads_samples() const noexcept {
     return s_.timing != EchoTiming::true_range && !(ideal && s_.timing == EchoTiming::peak);
   }
@@ -244,13 +233,11 @@ class FullWaveform {
     const Correction* correction = corrections_.find(laser);
     const double time = correction ? correction->arrival(only->time, s_.sample_interval) : only->time;
     if (only->height >= s_.threshold)
-      keep_return(echo_from(*only->strongest, 0.5 * speed_of_light * time, only->height), s_.returns_kept,
-                  s_.returns_max, echoes);
+      keep_return(echo_from(*only->strongest, range_at(time), only->height), s_, echoes);
     only.reset();
   }
 
-  /// True if a maximum of reflections that is farther from those of continuous returns than a pulse is an echo whatever
-  /// these are.
+  /// True if a maximum of reflections that is a pulse from others is surely an echo.
   [[nodiscard]] bool is_apart(const DetectorInput& input) const noexcept {
     return input.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
                                         std::fmax(s_.window, s_.separation) <= input.emitter.laser.pulse_length);
@@ -265,9 +252,9 @@ class FullWaveform {
   [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape,
                                                 TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
-    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // the peak
-    const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau,
-                 step = s_.sample_interval * per_tau;
+    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);
+    const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau;
+    const double step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
     top.first = before - 2;
     for (std::size_t j = 0; j < top.y.size(); j += simd::lane_count)
@@ -277,8 +264,7 @@ class FullWaveform {
     return true;
   }
 
-  /// Maximum of a group among continuous returns that only fall near it; none if they may rise there, or if it is on
-  /// their flank.
+  /// Maximum of a group among continuous returns that only fall near it; none on their flank.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const SinglePeakGroup& group, const PulseShape& shape,
                                                   std::span<const ContinuousReturn> continuous) const noexcept {
     TopSamples top;
@@ -301,8 +287,8 @@ class FullWaveform {
     return OnlyPeak{mark, at.height, &group.strongest((peak - group.last_edge()) / shape.tau)};
   }
 
-  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its
-  /// peak. False if these reach back before the last edge.
+  /// Appends the only echo of a group, if it reaches the threshold: as full sampling, from the
+  /// samples near its peak. False if these reach back before the last edge.
   bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
     TopSamples samples;
     if (!sample(group, shape, samples)) return false;
@@ -311,14 +297,13 @@ class FullWaveform {
     const auto [offset, height] = detail::vertex(&y[top]);
     if (height < s_.threshold) return true;
     const double time = (samples.first + static_cast<double>(top) + offset) * s_.sample_interval;
-    const Echo echo = group.echo(time, height, s_.timing);
-    echoes.push_back(echo);
+    echoes.push_back(group.echo(time, height, s_.timing));
     return true;
   }
 
   void keep(double at, double power, std::vector<float>& record) const noexcept {
     if (at < 0 || at >= static_cast<double>(s_.record_capacity())) return;
-    record.resize(static_cast<std::size_t>(at) + 1);  // within the capacity; a gap is filled with zeros
+    record.resize(static_cast<std::size_t>(at) + 1);  // gaps are filled with zeros
     record.back() = static_cast<float>(power);
   }
 

@@ -5,14 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <span>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
@@ -21,20 +15,21 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Detector that decomposes the waveform of a `FullWaveform`, which must keep it (`WaveformSettings::record_length`),
-/// into waveforms of flat targets after the receiver, each widened by a Gaussian: overlapping echoes get the ranges,
-/// amplitudes and widths that they have alone. The simplest fit is taken unless the next leaves less than a tenth of
-/// the squared residuals: flat targets, then wide ones, then two flat ones, at least a deviation of that waveform
-/// apart, in place of the widest. Widths are those of the wide ones. Echoes outside the record, more than six that
-/// overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with the system waveform
+/// Detector that decomposes the waveform of a `FullWaveform`, which must keep it
+/// (`WaveformSettings::record_length`), into waveforms of flat targets after the receiver, each
+/// widened by a Gaussian: overlapping echoes get the ranges, amplitudes and widths that they have
+/// alone. The next fit is taken if it leaves less than a tenth of the squared residuals: flat
+/// targets, then wide ones, then two flat ones, at least a deviation of that waveform apart, for
+/// the widest. Widths are those of the wide ones. Echoes outside the record, more than six that
+/// overlap, and failed fits are kept as found. Source: Wagner et al. 2006, with the system waveform
 /// in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
 template <class Inner>
 class GaussianDecomposition : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the detector inside. @throws SettingError
+  /// @throws SettingError
   explicit GaussianDecomposition(Inner inside) : DetectorAdaptor<Inner>{validated(std::move(inside))} {}
 
-  /// Prepares the detector inside, and samples the waveform of a flat target. @throws SettingError as that does
+  /// Prepares the detector inside, and samples a flat target. @throws SettingError as that does
   void prepare(const Laser& laser) {
     this->inner.prepare(laser);
     if (this->inner.settings().record_length > 0 && !waves_.find(laser)) waves_.add(laser, wave_of(laser));
@@ -50,12 +45,11 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     return w;
   }
 
-  /// Echoes of the detector inside, by the decomposition of its waveform.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     Detection d = this->inner.detect(input, w.inner);
     const auto* wave = waves_.find(input.emitter.laser);
     if (!wave || d.waveform.empty()) return d;
-    const double apart = 0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes without overlap [m]
+    const double apart = range_at((*wave)->fall() - (*wave)->rise());  // without overlap [m]
     w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;
@@ -67,8 +61,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       if (!decompose(d, input, group, most, **wave, room > 0, w.echoes))
         w.echoes.insert(w.echoes.end(), group.begin(), group.end());
     }
-    std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    number_echoes(w.echoes);
+    detail::number_by_range(w.echoes);
     d.echoes = w.echoes;
     return d;
   }
@@ -76,7 +69,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
  private:
   using Sum = detail::WaveformSum;
   static constexpr int widenings = 5;
-  static constexpr double better = 0.1;  ///< squared residuals of a better fit, by those of a simpler one
+  static constexpr double better = 0.1;  ///< squared residuals, by those of a simpler fit
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] static double time_of(const Echo& echo) noexcept { return 2 * echo.range / speed_of_light; }
@@ -85,9 +78,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   [[nodiscard]] std::shared_ptr<const detail::SystemWaveform> wave_of(const Laser& laser) const {
     const double interval = this->inner.sample_interval(), fine = laser.pulse_length / 40;
     const auto places = static_cast<std::size_t>(std::ceil(interval / fine));
-    const auto stride =
-        std::max(std::size_t{1}, static_cast<std::size_t>(fine * static_cast<double>(places) / interval));
-    const double step = interval / static_cast<double>(places);
+    const double per_place = interval / static_cast<double>(places);
+    const auto stride = static_cast<std::size_t>(std::max(1.0, fine * static_cast<double>(places) / interval));
     std::vector<std::pair<double, double>> samples;
     this->inner.visit_flat_targets(laser, places, [&](std::size_t k, double arrival, const Detection& d) {
       if (k == places || d.echoes.empty()) return;
@@ -99,8 +91,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     std::vector<double> flat;
     for (std::size_t i = 0; i < samples.size(); i += stride) flat.push_back(samples[i].second);
     while (flat.size() > 1 && std::fabs(flat.back()) < 1e-7) flat.pop_back();
-    return std::make_shared<const detail::SystemWaveform>(std::move(flat), samples.front().first,
-                                                          step * static_cast<double>(stride));
+    const double step = per_place * static_cast<double>(stride);
+    return std::make_shared<const detail::SystemWaveform>(std::move(flat), samples.front().first, step);
   }
 
   /// Samples that some echoes may affect, of a record.
@@ -108,7 +100,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     double first = 0, last = 0;  ///< times [s]
   };
 
-  /// Appends the parts of overlapping echoes, from samples of a section at most; false if there is no fit.
+  /// Appends the parts of overlapping echoes, from a section at most; false if there is no fit.
   bool decompose(const Detection& d, const DetectorInput& input, std::span<const Echo> group, const Section& most,
                  const detail::SystemWaveform& wave, bool may_part, std::vector<Echo>& echoes) const noexcept {
     if (group.size() > Sum::most) return false;
@@ -138,7 +130,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       const Sum::Part& p = sum.parts[k];
       Echo echo = k < group.size() ? group[k] : Echo{};
       if (sum.count > group.size()) set_labels(echo, input, wave, p.arrival);
-      echo.range = 0.5 * speed_of_light * p.arrival;
+      echo.range = range_at(p.arrival);
       echo.amplitude = p.power;
       echo.width = std::sqrt(wave.variance() + p.spread);
       echoes.push_back(echo);
@@ -146,7 +138,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     return true;
   }
 
-  /// Parts the widest part into two flat targets, if these fit better, and the residuals are not next to none.
+  /// Parts the widest part into two flat targets, if these fit better and there are residuals.
   void part(Sum& sum, const detail::SystemWaveform& wave, std::span<const float> y) const noexcept {
     constexpr double none = 1e-3;  // of the peak
     if (sum.count == Sum::most) return;

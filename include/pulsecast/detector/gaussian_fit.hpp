@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -23,15 +18,15 @@ struct Gaussian {
   double width = 0;      ///< standard deviation [samples]
 };
 
-/// Echo width by a least-squares Gaussian, fitted by the Levenberg-Marquardt method. NaN without convergence.
+/// Echo width by a least-squares Gaussian (Levenberg-Marquardt). NaN without convergence.
 ///
-/// Each sample is weighted by its own power. The Gaussian then matches the echo, not the tail that a pulse has and a
-/// Gaussian lacks. The positions of samples on a steep edge change the width of a pulse by less than 0.5 %. Source:
-/// Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
+/// Each sample is weighted by its own power, so that the Gaussian matches the echo, not the tail
+/// that a Gaussian lacks. The places of samples on a steep edge change widths by less than 0.5 %.
+/// Source: Levenberg 1944, Marquardt 1963, damping by the scaled diagonal of the normal equations.
 struct GaussianFit {
   using refinements = refines<tag::TruncatedWidthMeasure, tag::Validated>;
   int iterations_max = 50;  ///< iteration limit, from 1 to 1000
-  double share = 0.03;      ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
+  double share = 0.03;      ///< of the highest sample, in [0, 1): lower ones end the fit
 
   void validate() const {
     require_within("GaussianFit::iterations_max", iterations_max, 1, 1000, "");
@@ -40,11 +35,11 @@ struct GaussianFit {
 
   [[nodiscard]] double min_share() const noexcept { return share; }
 
-  /// Fitted Gaussian, with its convergence.
+  /// Outcome of a fit.
   struct Result {
     Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
-    bool converged = false;  ///< true for a Gaussian no wider than the samples, and centred within its width of them
+    bool converged = false;  ///< true for a Gaussian no wider than the samples, and near them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
@@ -64,7 +59,7 @@ struct GaussianFit {
     if (to - from < 2) return {};
     const std::span<const double> samples = all.subspan(from, to - from + 1);
 
-    // initial guess: the squares of a Gaussian are one at the same position, narrower by the root of two
+    // initial guess: the squares of a Gaussian are one at its position, narrower by the root of two
     double sum = 0, first = 0, second = 0, x = 0;
     for (const double y : samples) {
       const double square = y * y;
@@ -106,10 +101,9 @@ struct GaussianFit {
   }
 
  private:
-  static constexpr double small_enough = 1e-3;  ///< last step, by amplitude and width; the error left is far smaller
+  static constexpr double small_enough = 1e-3;  ///< last step, by amplitude and width
 
-  /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared
-  /// residuals.
+  /// Normal equations at a Gaussian: products of derivatives, and with residuals; their squares.
   struct Equations {
     double aa = 0, ap = 0, aw = 0, pp = 0, pw = 0, ww = 0;
     double a = 0, p = 0, w = 0;
@@ -117,9 +111,9 @@ struct GaussianFit {
   };
 
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
-    // exp(-x^2/2) at every sum_stride-th sample: each step multiplies by a ratio, and the ratio by a constant
+    // exp(-x^2/2) at every sum_stride-th sample, by ratios that fall by a constant
     const double h = 1 / g.width, step = simd::sum_stride * h, decay = exponential(-step * step);
-    // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: sums over powers of x suffice
+    // derivatives are value, value x k and value x^2 k, with k = amplitude / width
     std::array<double, 9> sums{};
     for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
       simd::Doubles x =
@@ -157,7 +151,7 @@ struct GaussianFit {
     return {s0, s1 * k, s2 * k, s2 * k * k, s3 * k * k, s4 * k * k, r0, r1 * k, r2 * k, squares};
   }
 
-  /// Step from the damped normal equations, by Cholesky decomposition; not finite if they are singular.
+  /// Step of the damped normal equations, by Cholesky decomposition; not finite if singular.
   static Gaussian solution(const Equations& e, double damping) noexcept {
     const double stretch = 1 + damping;
     const double l11 = std::sqrt(e.aa * stretch), l21 = e.ap / l11, l31 = e.aw / l11;

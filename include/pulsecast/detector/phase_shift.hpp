@@ -3,11 +3,6 @@
 #ifndef PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
@@ -16,20 +11,19 @@ namespace PULSECAST_NAMESPACE {
 
 /// Settings of a phase-shift scanner.
 struct PhaseShiftSettings {
-  /// Modulation frequencies, ascending, from 1 to 8: the finest gives the range, the coarser ones its place, and the
-  /// coarsest the ambiguity c / 2f [Hz].
+  /// Modulation frequencies, ascending, from 1 to 8: the finest gives the range, the coarser ones
+  /// its place, and the coarsest the ambiguity c / 2f [Hz].
   std::vector<double> frequencies{1e6, 10e6, 120e6};
   double contrast = 1;       ///< modulated share of the power, in (0, 1]
   double threshold = 1e-12;  ///< minimum modulated power of an echo at the finest frequency [W]
   double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
 
   void validate() const {
-    require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
+    require_within("PhaseShiftSettings::frequencies (number)", frequencies.size(), 1, 8, "");
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
       require_within("PhaseShiftSettings::frequencies", frequencies[k], 1e3, 1e11, "Hz");
-      if (k > 0)
-        require_within("PhaseShiftSettings::frequencies (by the one before)", frequencies[k] / frequencies[k - 1], 1,
-                       1e4, "");
+      const double ratio = frequencies[k] / frequencies[k > 0 ? k - 1 : 0];
+      require_within("PhaseShiftSettings::frequencies (by the one before)", ratio, 1, 1e4, "");
     }
     require_positive("PhaseShiftSettings::contrast", contrast, "");
     require_within("PhaseShiftSettings::contrast", contrast, 0, 1, "");
@@ -41,12 +35,12 @@ struct PhaseShiftSettings {
   [[nodiscard]] double ambiguity() const noexcept { return 0.5 * speed_of_light / frequencies.front(); }
 };
 
-/// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the phase of the sum of
-/// all reflections at each frequency, and gives one range: at an edge, one between or beyond the surfaces (mixed
-/// pixels); beyond the ambiguity, one that is folded. Fog and haze draw it towards the scanner. The laser's peak power
-/// is its mean power while it measures. The echo has the labels of the strongest reflection, or those of continuous
-/// returns, if these have more power than all reflections. Source: Payne, Jongenelen, Dorrington, Cree & Carnegie 2009;
-/// phasors of a sum of sines.
+/// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the
+/// phase of the sum of all reflections at each frequency, and gives one range: at an edge, one
+/// between or beyond the surfaces (mixed pixels); beyond the ambiguity, one that is folded. Fog and
+/// haze draw it near. The laser's peak power is its mean power while it measures. The echo has the
+/// labels of the strongest reflection, or of continuous returns of more power than all reflections.
+/// Source: Payne, Jongenelen, Dorrington, Cree & Carnegie 2009; phasors of a sum of sines.
 class PhaseShift {
  public:
   /// @throws SettingError for settings out of range
@@ -73,8 +67,7 @@ class PhaseShift {
       if (!air || r.power() > air->power()) air = &r;
     }
     if (!strongest && !air) return {};
-    RandomKey key = input.key;
-    key.purpose = Purpose::receiver_noise;
+    RandomKey key = input.key.with(Purpose::receiver_noise);
     double range = 0, amplitude = 0;
     for (std::size_t k = 0; k < s_.frequencies.size(); ++k) {
       const double period = 0.5 * speed_of_light / s_.frequencies[k];  // [m]
@@ -102,11 +95,7 @@ class PhaseShift {
       amplitude = std::hypot(in_phase, quadrature);
     }
     if (!(amplitude >= s_.threshold) || range < 0) return {};
-    const bool of_continuous = of_air > solid;
-    w.echo = echo_from(of_continuous
-                           ? Reflection{.object = air->object, .classification = air->classification, .kind = air->kind}
-                           : *strongest,
-                       range, amplitude);
+    w.echo = echo_from(of_air > solid ? labels_of(*air) : *strongest, range, amplitude);
     return {{&w.echo, 1}, {}, 0};
   }
 
@@ -120,7 +109,7 @@ class PhaseShift {
   struct Phasor {
     double in_phase, quadrature;
   };
-  /// Phasor of a continuous return, for a period in range [m]: by parts, or at the centre of one that is short.
+  /// Phasor of a continuous return, for a period in range [m]: by parts, or at its centre.
   [[nodiscard]] static Phasor phasor_of(const ContinuousReturn& r, double period) noexcept {
     const double length = r.end - r.begin, k = 2 * pi / period, power = r.power();
     if (k * length < 1e-3) {

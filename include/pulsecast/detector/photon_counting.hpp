@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
@@ -19,20 +14,20 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Settings of a receiver that counts photons: single-photon avalanche diodes, in linear or Geiger mode.
+/// Settings of a receiver that counts photons: avalanche diodes, linear or Geiger mode.
 struct PhotonCountingSettings {
-  double efficiency = 0.3;   ///< detections per photon, in (0, 1]
-  double dark_rate = 0;      ///< dark counts of all pixels together, at most 1e12 [1/s]
-  double background = 0;     ///< received sunlight [W]
-  std::size_t pixels = 1;    ///< detectors that share the light evenly, at most 4096
-  double dead_time = 20e-9;  ///< time that a pixel is blind after a detection; infinite: one a shot, Geiger mode [s]
-  double afterpulse = 0;  ///< probability that a detection causes another one of its pixel after the dead time, below 1
-  double afterpulse_time = 1e-8;                  ///< mean delay of that after the dead time [s]
-  double jitter = 0;                              ///< standard deviation of a detection's time [s]
-  std::size_t shots = 1;                          ///< pulses of the laser for one histogram, at most 10,000
-  double bin = 1e-9;                              ///< width of the histogram's bins [s]
+  double efficiency = 0.3;                        ///< detections per photon, in (0, 1]
+  double dark_rate = 0;                           ///< dark counts of all pixels together, at most 1e12 [1/s]
+  double background = 0;                          ///< received sunlight [W]
+  std::size_t pixels = 1;                         ///< detectors that share the light evenly, at most 4096
+  double dead_time = 20e-9;                       ///< after a detection; infinite: one a shot, Geiger mode [s]
+  double afterpulse = 0;                          ///< probability of another detection after the dead time, below 1
+  double afterpulse_time = 1e-8;                  ///< mean delay of that [s]
+  double jitter = 0;                              ///< deviation of a detection's time [s]
+  std::size_t shots = 1;                          ///< pulses for one histogram, at most 10,000
+  double bin = 1e-9;                              ///< width of the bins [s]
   std::size_t threshold = 1;                      ///< minimum count of a peak of the histogram
-  std::size_t returns_max = 15;                   ///< number of echoes kept, in order of range; from 1 to 255
+  std::size_t returns_max = 15;                   ///< echoes kept, in order of range; from 1 to 255
   KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
   void validate() const {
@@ -40,27 +35,27 @@ struct PhotonCountingSettings {
     require_within("PhotonCountingSettings::efficiency", efficiency, 0, 1, "");
     require_within("PhotonCountingSettings::dark_rate", dark_rate, 0, 1e12, "1/s");
     require_within("PhotonCountingSettings::background", background, 0, 1, "W");
-    require_within("PhotonCountingSettings::pixels", static_cast<double>(pixels), 1, 4096, "");
+    require_within("PhotonCountingSettings::pixels", pixels, 1, 4096, "");
     require_within("PhotonCountingSettings::dead_time", dead_time, 0, std::numeric_limits<double>::infinity(), "s");
     require_within("PhotonCountingSettings::afterpulse", afterpulse, 0, 0.99, "");
     require_not_negative("PhotonCountingSettings::afterpulse_time", afterpulse_time, "s");
     require_not_negative("PhotonCountingSettings::jitter", jitter, "s");
-    require_within("PhotonCountingSettings::shots", static_cast<double>(shots), 1, 1e4, "");
+    require_within("PhotonCountingSettings::shots", shots, 1, 1e4, "");
     require_within("PhotonCountingSettings::bin", bin, 1e-13, 1e-3, "s");
-    require_within("PhotonCountingSettings::threshold", static_cast<double>(threshold), 1, 1e6, "");
-    require_within("PhotonCountingSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
+    require_within("PhotonCountingSettings::threshold", threshold, 1, 1e6, "");
+    require_within("PhotonCountingSettings::returns_max", returns_max, 1, 255, "");
   }
 };
 
-/// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of sunlight and of
-/// dark counts are Poisson processes. Detections of all shots make a histogram; each of its peaks is an echo, whose
-/// range is the mean time of the detections in the bin and its neighbours. The energy of a reflection is its power
-/// times the full width at half maximum, as in `EnergyLedger`: 8 % less than in the gamma pulse of that peak. The
-/// amplitude is the power that would give as many counts without dead time. With one shot and a threshold of 1, each
-/// isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight
-/// nor dark counts after the last reflection.
+/// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of
+/// sunlight and of dark counts are Poisson processes. All detections make a histogram; each of its
+/// peaks is an echo at the mean time of the detections in the bin and its neighbours. The energy of
+/// a reflection is its power times the full width at half maximum, as in `EnergyLedger`: 8 % less
+/// than in the gamma pulse. The amplitude is the power that would give as many counts without dead
+/// time. With one shot and a threshold of 1, isolated detections are echoes. Nothing is detected
+/// outside the gate, nor noise after the last reflection if it has no end.
 ///
-/// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
+/// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009.
 template <PulseForm Form = GammaPulse>
 class PhotonCounting {
  public:
@@ -71,7 +66,7 @@ class PhotonCounting {
 
   [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
 
-  static constexpr bool runs_without_reflections = true;  ///< true: sunlight and dark counts need no reflection
+  static constexpr bool runs_without_reflections = true;  ///< for sunlight and dark counts
 
   /// Computes the distribution of photons over a laser's pulse, before the first of them.
   void prepare(const Laser& laser) {
@@ -82,7 +77,7 @@ class PhotonCounting {
   struct Count {
     double time;          ///< since the laser's pulse [s]
     std::uint32_t pixel;  ///< number of the pixel
-    std::uint32_t label;  ///< index of the reflection, that of the continuous return after all reflections, or `none`
+    std::uint32_t label;  ///< index in reflections, then continuous returns, or `none`
   };
   struct Workspace {
     std::vector<Count> shot;    ///< photoelectrons of a shot
@@ -98,13 +93,13 @@ class PhotonCounting {
     return w;
   }
 
-  /// Echoes of the pulses of a laser that was prepared. Photons are drawn from the seed and pulse of `input.key`.
+  /// Echoes of pulses of a prepared laser. Photons are drawn by `input.key`.
   [[nodiscard]] Detection detect(const DetectorInput& input, Workspace& w) const noexcept {
     const std::vector<double>* quantiles = quantiles_.find(input.emitter.laser);
     PULSECAST_ASSERT(quantiles != nullptr);
     w.counts.clear();
     w.echoes.clear();
-    Draws draws{input.key};
+    Draws draws{input.key.with(Purpose::receiver_noise)};
     for (std::size_t shot = 0; shot < s_.shots; ++shot) {
       w.shot.clear();
       draw_photoelectrons(input, *quantiles, draws, w.shot);
@@ -124,7 +119,6 @@ class PhotonCounting {
   /// Random numbers of a pulse, one after the other.
   struct Draws {
     RandomKey key;
-    explicit Draws(const RandomKey& k) noexcept : key(k) { key.purpose = Purpose::receiver_noise; }
     double uniform() noexcept {
       if (++key.subray == 0) ++key.part;
       return pulsecast::uniform(key);
@@ -163,7 +157,7 @@ class PhotonCounting {
   void draw_photoelectrons(const DetectorInput& input, const std::vector<double>& quantiles, Draws& draws,
                            std::vector<Count>& shot) const noexcept {
     const Laser& laser = input.emitter.laser;
-    const double per_watt = laser.pulse_length / energy_per_count(laser);  // of a reflection's power
+    const double per_watt = laser.pulse_length / energy_per_count(laser);
     double last = 0;
     const auto enter = [&](double time, std::size_t label) {
       const auto pixel = static_cast<std::uint32_t>(draws.uniform() * static_cast<double>(s_.pixels));
@@ -192,11 +186,11 @@ class PhotonCounting {
       for (double t = begin + draws.exponential() / rate;
            t < (std::isfinite(end) ? end : last) && shot.size() < counts_max; t += draws.exponential() / rate)
         enter(t, none);
-    std::sort(shot.begin(), shot.end(), [](const Count& a, const Count& b) { return a.time < b.time; });
+    std::ranges::sort(shot, {}, &Count::time);
   }
 
-  /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back:
-  /// one Poisson process along all of them, whose place in a return is that of the quantile of its density.
+  /// Calls `enter(arrival, label)`, while that is true, for the photons of continuous returns in a
+  /// shot: one Poisson process along all, placed by the quantile of the density.
   static void draw_continuous(const DetectorInput& input, double per_watt, const auto& enter, Draws& draws) noexcept {
     if (input.continuous.empty()) return;
     double next = draws.exponential();
@@ -211,10 +205,10 @@ class PhotonCounting {
     }
   }
 
-  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels are armed during the
-  /// gate alone, and the histogram has its length.
+  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels
+  /// are armed during the gate alone, and the histogram has its length.
   void keep_detections(const RangeGate& gate, Draws& draws, Workspace& w) const noexcept {
-    const auto armed = [&](double time) { return gate.contains(0.5 * speed_of_light * time); };
+    const auto armed = [&](double time) { return gate.contains(range_at(time)); };
     std::fill(w.blind.begin(), w.blind.end(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < w.shot.size(); ++i) {
       const Count count = w.shot[i];
@@ -232,45 +226,34 @@ class PhotonCounting {
     }
   }
 
-  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least that of the
-  /// bin after.
+  /// Appends an echo for each bin of the threshold, above that before, not below that after.
   void find_echoes(const DetectorInput& input, Workspace& w) const noexcept {
-    const double watts =
-        energy_per_count(input.emitter.laser) / (input.emitter.laser.pulse_length * static_cast<double>(s_.shots));
+    const Laser& laser = input.emitter.laser;
+    const double watts = energy_per_count(laser) / (laser.pulse_length * static_cast<double>(s_.shots));
     struct Bin {
       double number = -1e300;
       std::size_t begin = 0, end = 0;
       [[nodiscard]] std::size_t count() const noexcept { return end - begin; }
     };
-    Bin before{}, bin{};
-    const auto count_of = [](const Bin& next, const Bin& to, double step) {
-      return next.number == to.number + step ? next.count() : 0;
+    const auto number_of = [&](std::size_t i) {
+      return i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
     };
-    const auto finish = [&](const Bin& behind) {
-      const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
-      if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right) return;
-      keep_return(echo_of(input, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts),
-                  s_.returns_kept, s_.returns_max, w.echoes);
-    };
-    for (std::size_t i = 0; i <= w.counts.size(); ++i) {
-      const double number =
-          i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
-      if (bin.count() > 0 && number == bin.number) {
-        ++bin.end;
-        continue;
+    Bin before{}, bin{}, behind{};
+    do {
+      behind = {number_of(behind.end), behind.end, behind.end};
+      while (behind.end < w.counts.size() && number_of(behind.end) == behind.number) ++behind.end;
+      const std::size_t left = before.number == bin.number - 1 ? before.count() : 0;
+      const std::size_t right = behind.number == bin.number + 1 ? behind.count() : 0;
+      if (bin.count() >= s_.threshold && bin.count() > left && bin.count() >= right) {
+        const auto counts = std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right);
+        keep_return(echo_of(input, counts, watts), s_, w.echoes);
       }
-      Bin behind{number, i, i + 1};
-      if (bin.count() > 0) {
-        while (behind.end < w.counts.size() && std::floor(w.counts[behind.end].time / s_.bin) == number) ++behind.end;
-        finish(behind);
-        before = bin;
-      }
-      bin = {number, i, i + 1};
-    }
+      before = std::exchange(bin, behind);
+    } while (bin.count() > 0);
   }
 
-  /// Echo of some detections: their mean time, and the labels of the first reflection among them, or of the first
-  /// continuous return, if more of them are of such.
+  /// Echo of some detections: their mean time, and the labels of the first reflection, or of the
+  /// first continuous return, if more of them are of such.
   [[nodiscard]] static Echo echo_of(const DetectorInput& input, std::span<const Count> counts, double watts) noexcept {
     double beyond = 0;
     std::ptrdiff_t continuous = 0;  // more detections of continuous returns than of reflections
@@ -285,13 +268,12 @@ class PhotonCounting {
     }
     Reflection source;
     if (continuous > 0) {
-      const ContinuousReturn& r = input.continuous[air->label - input.reflections.size()];
-      source = {.object = r.object, .classification = r.classification, .kind = r.kind};
+      source = labels_of(input.continuous[air->label - input.reflections.size()]);
     } else if (solid) {
       source = input.reflections[solid->label];
     }
     const double number = static_cast<double>(counts.size());
-    return echo_from(source, 0.5 * speed_of_light * (counts.front().time + beyond / number), number * watts);
+    return echo_from(source, range_at(counts.front().time + beyond / number), number * watts);
   }
 
   PhotonCountingSettings s_;

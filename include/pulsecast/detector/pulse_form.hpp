@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_PULSE_FORM_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <numbers>
 #include <vector>
@@ -16,9 +15,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Power of a laser pulse over time. `power(t, length)` is that at a time t since the pulse's peak [s], relative to the
-/// peak, for a pulse of a full width at half maximum of `length` [s]. It is smooth between `begin(length)` and
-/// `end(length)` [s], and 0 or negligible outside.
+/// Power of a laser pulse over time. `power(t, length)` is that at t since the pulse's peak [s], by
+/// the peak's, for a full width at half maximum of `length` [s]. It is smooth between
+/// `begin(length)` and `end(length)` [s], and 0 or negligible outside.
 template <class F>
 concept PulseForm = std::copyable<F> && requires(const F form, double time, double length) {
   { form.power(time, length) }
@@ -29,13 +28,13 @@ concept PulseForm = std::copyable<F> && requires(const F form, double time, doub
   noexcept->std::same_as<double>;
 };
 
-/// Gamma distribution of order 3, a `PulseShape`. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5.
+/// Gamma distribution of order 3. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5.
 struct GammaPulse {
-  double divisor = PulseShape::divisor;  ///< full width at half maximum by tau; the literature says 3.5
+  double divisor = PulseShape::divisor;  ///< as in `PulseShape`
 
   [[nodiscard]] double power(double time, double length) const noexcept { return PulseShape(length, divisor)(time); }
   [[nodiscard]] double begin(double length) const noexcept { return -PulseShape::peak * length / divisor; }
-  [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }  // 1e-10 of the peak is left
+  [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }
 };
 
 /// Gaussian pulse.
@@ -44,7 +43,7 @@ struct GaussianPulse {
     const double halves = 2 * time / length;
     return exponential(-std::numbers::ln2 * halves * halves);
   }
-  [[nodiscard]] double begin(double length) const noexcept { return -3 * length; }  // 1e-11 of the peak is left
+  [[nodiscard]] double begin(double length) const noexcept { return -3 * length; }  // 1e-11 left
   [[nodiscard]] double end(double length) const noexcept { return 3 * length; }
 };
 
@@ -63,14 +62,12 @@ struct PulseSample {
   double power = 0;  ///< in any unit, at least 0
 };
 
-/// Measured pulse, interpolated linearly; power is 0 outside of the table. Its length is that of the table, whatever
-/// the laser's.
+/// Measured pulse, linear in its table, 0 outside, and of its length, whatever the laser's.
 class MeasuredPulse {
  public:
-  /// `samples`: at least two, by increasing time. @throws SettingError for another order, negative powers, or no power
-  /// at all
+  /// `samples`: at least two, by increasing time. @throws SettingError for others, or without power
   explicit MeasuredPulse(std::vector<PulseSample> samples) : samples_(std::move(samples)) {
-    require_within("MeasuredPulse (number of samples)", static_cast<double>(samples_.size()), 2, 1e6, "");
+    require_within("MeasuredPulse (number of samples)", samples_.size(), 2, 1e6, "");
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       require_within("MeasuredPulse: time", samples_[i].time, -1, 1, "s");
       require_not_negative("MeasuredPulse: power", samples_[i].power, "");

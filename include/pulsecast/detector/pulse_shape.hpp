@@ -10,8 +10,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, scaled to a peak of 1 at 2 tau.
-/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5; the literature takes full width at half maximum / 3.5 for tau.
+/// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge on, with a peak of 1.
+/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5; the literature has a divisor of 3.5.
 struct PulseShape {
   double tau;  ///< time constant [s]
 
@@ -21,16 +21,16 @@ struct PulseShape {
   explicit PulseShape(double pulse_length, double by_tau = divisor) noexcept : tau(pulse_length / by_tau) {}
 
   static constexpr double peak = 2;  ///< time of the peak since the leading edge [tau]
-  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< factor that scales the peak to 1
+  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< to a peak of 1
 
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
 
-  /// Upper bound of the time since the peak at which the power falls to a share of it [tau]. As u^2 e^(-u/2) is at most
-  /// 16/e^2, the shape is at most 4 e^(-u/2), with u = t/tau.
+  /// Upper bound of the time since the peak at which a share of the power is left [tau]. As u^2
+  /// e^(-u/2) is at most 16/e^2, the shape is at most 4 e^(-u/2), with u = t/tau.
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
-  [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< time of the leading edge since the peak [s]
+  [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< leading edge [s]
   /// Time since the peak when 1e-22 of a pulse is left [s].
   [[nodiscard]] double end() const noexcept { return 60 * tau; }
 
@@ -43,8 +43,7 @@ struct PulseShape {
 
 namespace detail {
 
-/// Integrals over a pulse of peak 1 up to a time since its arrival: of the pulse [s], and of the pulse times that time
-/// [s^2].
+/// Integrals of a pulse of peak 1 up to a time since its arrival [s], and times that [s^2].
 struct PulseIntegrals {
   double zeroth = 0, first = 0;
 };

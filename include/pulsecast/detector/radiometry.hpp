@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DETECTOR_RADIOMETRY_HPP
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
-#include <cmath>
 #include <limits>
 #include <span>
 
@@ -30,12 +29,12 @@ struct RangeErrors {
   double scale = 0;                   ///< reported minus true range, per metre of range
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
-  bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
-  double deviation_at_watt = 0;       ///< further deviation of an echo of 1 W, added [m]. Source: Wujanz et al. 2018
+  bool grows_with_incidence = false;  ///< by its cosine. Source: Soudarissanane et al. 2011
+  double deviation_at_watt = 0;       ///< further, at 1 W [m]. Source: Wujanz et al. 2018
   double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
-  /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
+  /// Table that replaces both deviations if not empty, by ascending range: linear, constant beyond.
   SharedArray<DeviationAtRange> deviations{};
-  SharedArray<double> channel_biases{};  ///< further bias by channel, as in `Emitter`; 0 for channels beyond [m]
+  SharedArray<double> channel_biases{};  ///< further bias by channel of `Emitter`; 0 beyond [m]
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
@@ -48,9 +47,8 @@ struct RangeErrors {
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
       require_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
-      if (i > 0)
-        require_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range,
-                         "m");
+      const double step = i > 0 ? deviations[i].range - deviations[i - 1].range : 1;
+      require_positive("RangeErrors::deviations (from range to range)", step, "m");
     }
   }
 
@@ -66,37 +64,34 @@ struct RangeErrors {
     return detail::interpolated(deviations, range, &DeviationAtRange::range, &DeviationAtRange::deviation);
   }
 
-  /// Reported minus true range [m] of an echo of a channel, for a draw from the standard normal distribution.
+  /// Reported minus true range [m] of an echo of a channel, for a standard normal draw.
   [[nodiscard]] double at(const Echo& echo, double draw, std::size_t channel = 0) const noexcept {
-    constexpr double min_cosine = 0.01;  // bounds the noise of an edge-on surface
-    const double slant = grows_with_incidence ? (echo.cos_incidence > min_cosine ? echo.cos_incidence : min_cosine) : 1;
+    constexpr double least = 0.01;  // bounds the noise of an edge-on surface
+    const double slant = !grows_with_incidence ? 1 : echo.cos_incidence > least ? echo.cos_incidence : least;
     const double by_power = deviation_at_watt > 0 ? deviation_at_watt * std::pow(echo.amplitude, power_exponent) : 0;
     const double of_channel = channel < channel_biases.size() ? channel_biases[channel] : 0;
-    return bias + of_channel + scale * echo.range + draw * (deviation_at(echo.range) + by_power) / slant;
+    const double noise = draw * (deviation_at(echo.range) + by_power) / slant;
+    return bias + of_channel + scale * echo.range + noise;
   }
 };
 
 namespace detail {
 
-/// Echoes whose reported range is inside the gate, in order: a device gates what it measures. Numbers stay in place.
+/// Echoes whose reported range is inside the gate, in order. Numbers stay in place.
 [[nodiscard]] inline std::span<Echo> inside(const RangeGate& gate, std::span<Echo> echoes) noexcept {
   std::size_t kept = 0;
   for (std::size_t e = 0; e < echoes.size(); ++e) {
     if (!gate.contains(echoes[e].range)) continue;
-    if (e != kept) {
-      std::swap(echoes[e], echoes[kept]);
-      std::swap(echoes[e].number, echoes[kept].number);
-    }
-    ++kept;
+    std::swap(echoes[e], echoes[kept]);
+    std::swap(echoes[e].number, echoes[kept++].number);
   }
   return echoes.first(kept);
 }
 
-/// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are
-/// renumbered in order.
+/// Sorts echoes by reported range, after errors. Numbers stay in place: echoes are renumbered.
+/// Insertion sort: a pulse has few echoes, most of them in order.
 inline void sort_by_range(std::span<Echo> echoes) noexcept {
-  for (std::size_t unsorted = 1; unsorted < echoes.size();
-       ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
+  for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)
     for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
       std::swap(echoes[e - 1], echoes[e]);
       std::swap(echoes[e - 1].number, echoes[e].number);
@@ -113,20 +108,20 @@ struct OverlapAtRange {
 
 /// Receiver of an instrument, and the atmosphere before it.
 struct Receiver {
-  double diameter = 0.15;    ///< aperture, from 0.1 mm to 1 km [m]
-  double efficiency = 0.99;  ///< transmission of the optics, both ways, in [0, 1]
-  double visibility = 23e3;  ///< meteorological visibility, at least 1 m; infinite without aerosols [m]
-  AerosolModel aerosols = AerosolModel::kim;                   ///< extinction by wavelength in haze and fog
-  double absorption = 0;                                       ///< absorption by molecules of the air [1/m]
+  double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
+  double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
+  double visibility = 23e3;                                    ///< at least 1; infinite without aerosols [m]
+  AerosolModel aerosols = AerosolModel::kim;                   ///< extinction in haze and fog
+  double absorption = 0;                                       ///< by molecules of the air [1/m]
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
-  /// Share of the light that the receiver sees by range, as computed by `aperture_overlap`: linear between rows,
-  /// constant beyond them; ranges ascend. All light if empty.
+  /// Share of the light that the receiver sees, by ascending range, as of `aperture_overlap`:
+  /// linear between rows, constant beyond them. All light if empty.
   SharedArray<OverlapAtRange> overlap{};
 
   void validate() const {
-    require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
+    require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");
     require_within("Receiver::efficiency", efficiency, 0, 1, "");
     require_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
     require_not_negative("Receiver::absorption", absorption, "1/m");
@@ -135,19 +130,18 @@ struct Receiver {
     for (std::size_t i = 0; i < overlap.size(); ++i) {
       require_finite("Receiver::overlap (range)", overlap[i].range, "m");
       require_within("Receiver::overlap (share)", overlap[i].share, 0, 1, "");
-      if (i > 0)
-        require_positive("Receiver::overlap (from range to range)", overlap[i].range - overlap[i - 1].range, "m");
+      const double step = i > 0 ? overlap[i].range - overlap[i - 1].range : 1;
+      require_positive("Receiver::overlap (from range to range)", step, "m");
     }
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
-  /// Range gate.
-  [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }
+  [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }  ///< range gate
 };
 
-/// Link budget: received power of a subray from the power of a pulse. Source: laser radar equation for an extended
-/// target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close range, an aperture on the axis collects sin^2
-/// of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
+/// Link budget: received power of a subray from the power of a pulse. Source: laser radar equation
+/// for an extended target, Jelalian 1992, as Winiwarter et al. 2022. Close by, an aperture on the
+/// axis collects sin^2 of half its angle: D^2 / (4 R^2 + D^2) for D^2 / (4 R^2).
 class LinkBudget {
  public:
   /// Budget of no power.
@@ -159,32 +153,31 @@ class LinkBudget {
         both_ways_(-2 * (extinction(laser.wavelength, receiver.visibility, receiver.aerosols) + receiver.absorption)),
         overlap_(receiver.overlap) {}
 
-  /// True for budgets of the same numbers, and the same table of overlap.
   [[nodiscard]] friend bool operator==(const LinkBudget& a, const LinkBudget& b) noexcept {
     return a.gain_ == b.gain_ && a.near_ == b.near_ && a.both_ways_ == b.both_ways_ &&
            a.overlap_.data() == b.overlap_.data();
   }
 
-  /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in
-  /// `Hit`) at a range [m]. At range 0 all the scattered power is received.
+  /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this
+  /// backscatter (as in `Hit`) at a range [m]. At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
-    const double all = of(share, backscatter, range);
+    const double all = power_in_view(share, backscatter, range);
     return sees_all() ? all : all * overlap_at(range);
   }
 
-  /// Received power of several subrays [W], if the receiver sees all of the light.
-  [[nodiscard]] simd::Doubles power_in_view(const simd::Doubles& share, const simd::Doubles& backscatter,
-                                            const simd::Doubles& range) const noexcept {
-    return of(share, backscatter, range);
+  /// Received power of a subray, or several [W], if the receiver sees all of the light.
+  template <class Number>
+  [[nodiscard]] Number power_in_view(const Number& share, const Number& backscatter,
+                                     const Number& range) const noexcept {
+    return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 
-  /// As `power`, of light that spreads as over a range [m], and passes so much air both on its way out and back [m].
+  /// As `power`, of light that spreads as over a range [m], through so much air out and back [m].
   [[nodiscard]] double power_through(double share, double backscatter, double range, double air) const noexcept {
     const double power_in_air = power(share, backscatter, range);
     return air == range ? power_in_air : power_in_air * std::exp(both_ways_ * (air - range));
   }
-  /// Received power [W] of a subray with this share of the pulse's energy that comes back into the aperture itself,
-  /// after so much air [m].
+  /// Received power [W] of a share of the pulse that comes back into the aperture after air [m].
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }
@@ -193,27 +186,21 @@ class LinkBudget {
   /// Radius of the aperture [m].
   [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }
 
-  /// True if the receiver sees all of the light.
-  [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }
+  [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }  ///< true if it sees all light
   /// Share of the light from a range [m] that the receiver sees.
   [[nodiscard]] double overlap_at(double range) const noexcept {
     return sees_all() ? 1 : detail::interpolated(overlap_, range, &OverlapAtRange::range, &OverlapAtRange::share);
   }
 
  private:
-  template <class Number>
-  [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
-    return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
-  }
-
-  double gain_ = 0;       ///< received power times squared range, from a white surface in vacuum [W m^2]
+  double gain_ = 0;       ///< power by squared range of a white surface in vacuum [W m^2]
   double near_ = 0;       ///< square of half the aperture's diameter [m^2]
   double both_ways_ = 0;  ///< slope of the logarithm of the power over range [1/m]
   SharedArray<OverlapAtRange> overlap_{};
 };
 
-/// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo
-/// of a single ray has the range of its hit.
+/// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the
+/// last result: the echo of a single ray has the range of its hit.
 class WhiteTarget {
  public:
   /// Power received from a range [m] by the link budget, always the same one [W].

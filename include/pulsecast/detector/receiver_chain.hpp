@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_RECEIVER_CHAIN_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include <pulsecast/base/require.hpp>
@@ -13,24 +12,23 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Avalanche photodiode or PIN diode with its amplifier and digitiser. Powers are optical powers at the diode. Signal
-/// and noise pass the same low-pass; its gain is calibrated so that a flat target at normal incidence has the height of
-/// its received power. Sources: Richmond & Cain 2010, ch. 1 and 4 (noise of direct detection); McIntyre 1966 (excess
-/// noise).
+/// APD or PIN diode with amplifier and digitiser. Powers are optical. Signal and noise pass the
+/// same low-pass, calibrated: a flat target at normal incidence has the height of its received
+/// power. Sources: Richmond & Cain 2010, ch. 1 and 4; McIntyre 1966 (excess noise).
 struct ReceiverChain {
-  double bandwidth = 0;             ///< 3 dB electrical bandwidth; 0 for that of the pulse, see `filter` [Hz]
-  double noise_power = 0;           ///< noise-equivalent power of the amplifier, one-sided [W/sqrt(Hz)]
+  double bandwidth = 0;             ///< 3 dB electrical bandwidth; 0 for that of the pulse [Hz]
+  double noise_power = 0;           ///< of the amplifier, equivalent, one-sided [W/sqrt(Hz)]
   double background = 0;            ///< received sunlight [W]
   double quantum_efficiency = 0.8;  ///< photoelectrons per photon, in (0, 1]
   bool shot_noise = false;          ///< true if light and dark current have shot noise
   double excess_noise = 1;          ///< excess noise factor of the avalanche gain, from 1 to 100
   double dark_current = 0;          ///< dark current that is multiplied, before the gain [A]
-  double saturation = 0;            ///< greatest power that the amplifier follows; 0 for no limit [W]
+  double saturation = 0;            ///< greatest power of the amplifier; 0 for no limit [W]
   double recovery = 0;              ///< time constant of its fall after saturation [s]
-  double full_scale = 0;            ///< power at the digitiser's highest code; 0 for a digitiser without steps [W]
+  double full_scale = 0;            ///< power at the digitiser's highest code; 0 without steps [W]
   double baseline = 0;              ///< power below zero at the digitiser's lowest code [W]
   int bits = 10;                    ///< resolution of the digitiser, from 1 to 24
-  bool matched_filter = false;      ///< true if the samples are correlated with the pulse before echoes are sought
+  bool matched_filter = false;      ///< true if samples are first correlated with the pulse
 
   void validate() const {
     require_within("ReceiverChain::bandwidth", bandwidth, 0, 1e15, "Hz");
@@ -52,14 +50,14 @@ struct ReceiverChain {
     return noise_power > 0 || (shot_noise && (background > 0 || dark_current > 0));
   }
 
-  /// Low-pass for a pulse of a full width at half maximum of `pulse_length` [s]. Without a bandwidth, its response is
-  /// as wide as the pulse: that of a Gaussian pulse itself, a matched filter.
+  /// Low-pass for a full width at half maximum of `pulse_length` [s]. Without a bandwidth, it is as
+  /// wide as the pulse: a matched filter of a Gaussian pulse.
   [[nodiscard]] LowPass filter(double pulse_length) const noexcept {
     return bandwidth > 0 ? LowPass::of_bandwidth(bandwidth) : LowPass{pulse_length / std::sqrt(8 * std::numbers::ln2)};
   }
 
-  /// One-sided density of the noise before the low-pass, at a power `signal` [W] [W^2/Hz]: of the amplifier, and
-  /// shot noise of signal, background and dark current.
+  /// One-sided density of the noise before the low-pass, at a power `signal` [W]: of the amplifier,
+  /// and shot noise of signal, background and dark current [W^2/Hz].
   [[nodiscard]] double density(double signal, double wavelength) const noexcept {
     constexpr double charge = 1.602176634e-19;  // [C]. Source: SI, exact (26th CGPM, 2018)
     if (!shot_noise) return noise_power * noise_power;

@@ -3,20 +3,15 @@
 #ifndef PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 #define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/ideal_samples.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver of infinite bandwidth, with noise and background light; none by default. Samples are independent. A policy
-/// of `FullWaveform`.
+/// Receiver of infinite bandwidth, with white noise. A policy of `FullWaveform`.
 struct ReceiverNoise {
-  double deviation = 0;           ///< standard deviation of the electronic noise per sample, from 0 to 1e20 [W]
+  double deviation = 0;           ///< of the electronic noise per sample, from 0 to 1e20 [W]
   double background = 0;          ///< received sunlight power, from 0 to 1e20 [W]
   double quantum_efficiency = 1;  ///< share of background photons detected, in (0, 1]
 
@@ -27,26 +22,24 @@ struct ReceiverNoise {
     require_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
   }
 
-  /// True without noise.
-  [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
+  [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }  ///< no noise
 
-  /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The photon count is
-  /// Poisson-distributed, with a variance equal to its mean. It is large per interval, so a normal distribution
-  /// approximates it. Source: Liu et al. 2006, Applied Optics 45.
+  /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The
+  /// photon count is Poisson-distributed, of a variance equal to its mean, and large: nearly
+  /// normal. Source: Liu et al. 2006, Applied Optics 45.
   [[nodiscard]] double deviation_of_sample(double wavelength, double interval) const noexcept {
     const double photon = planck_constant * speed_of_light / wavelength;
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
   }
 
-  static constexpr bool runs_without_reflections = false;  ///< false: it is asked for pulses with reflections only
+  static constexpr bool runs_without_reflections = false;  ///< false: noise alone is not heard
   struct Workspace {};
-  [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
+  [[nodiscard]] Workspace workspace() const { return {}; }
 
   /// Takes away noise and background.
   void silence() noexcept { *this = {}; }
-  /// Computes what pulses of a laser need: nothing.
-  void prepare(const Laser&, const WaveformSettings&) const noexcept {}
-  /// As the concept WaveformReceiver requires: a maximum is that of the samples about it.
+  void prepare(const Laser&, const WaveformSettings&) const noexcept {}  ///< nothing to do
+  /// A maximum is that of the samples about it.
   [[nodiscard]] double timing_reach(const Laser&) const noexcept { return 0; }
   /// As the concept WaveformReceiver requires.
   [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const DetectorInput& input,

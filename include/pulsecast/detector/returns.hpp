@@ -4,11 +4,7 @@
 #define PULSECAST_DETECTOR_RETURNS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -24,18 +20,16 @@ enum class ReturnMode : std::uint8_t {
   n_strongest,         ///< the strongest `n`, in order of range
 };
 
-/// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`. Kept
-/// echoes are numbered anew.
+/// Keeps some echoes of a detector: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`.
 template <Detector Inner>
 class SelectedReturns : public DetectorAdaptor<Inner> {
  public:
   /// `number` is that of `n_nearest` and `n_strongest`, from 1 to 255. @throws SettingError
   SelectedReturns(ReturnMode mode, Inner inside, std::size_t number = 3)
       : DetectorAdaptor<Inner>{validated(std::move(inside))}, mode_(mode), number_(number) {
-    require_within("SelectedReturns (number)", static_cast<double>(number), 1, 255, "");
+    require_within("SelectedReturns (number)", number, 1, 255, "");
   }
 
-  /// Selected echoes of the detector inside.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
     if (d.echoes.size() < 2) return d;
@@ -65,8 +59,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
     }
     return echoes;
   }
-  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has
-  /// few echoes.
+  /// Removes the weakest echoes, until `number` are left; the last `held` stay.
   static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
     while (echoes.size() > number) {
       std::size_t weakest = echoes.size() - 1 - held;
@@ -83,19 +76,18 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   std::size_t number_;
 };
 
-/// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
+/// What an instrument makes of echoes that arrive after the next pulse has left.
 enum class RangeAmbiguity : std::uint8_t {
-  folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
+  folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f
   resolved,  ///< assigns them to their pulse; those that arrive while another leaves are lost
 };
 
-/// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse leaves are lost: blind
-/// zones about the multiples of c / 2f.
+/// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse
+/// leaves are lost: blind zones about the multiples of c / 2f.
 template <Detector Inner>
 class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the pulse rate [Hz], the detector inside, the blind range after the exit [m], and the treatment of ranges.
-  /// @throws SettingError
+  /// Takes pulse rate [Hz], blind range after the exit [m], and treatment. @throws SettingError
   MultiplePulsesInAir(double pulse_rate, Inner inside, double blind = 0, RangeAmbiguity in_air = RangeAmbiguity::folded)
       : DetectorAdaptor<Inner>{validated(std::move(inside))},
         ambiguity_(0.5 * speed_of_light / pulse_rate),
@@ -108,16 +100,13 @@ class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
   /// Range beyond which ranges are folded [m].
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
-  /// Echoes of the detector inside, without those in blind zones.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     Detection d = this->inner.detect(input, w);
-    const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(),
-                                     [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
-    d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));
+    const auto blind = [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; };
+    d.echoes = {d.echoes.begin(), std::remove_if(d.echoes.begin(), d.echoes.end(), blind)};
     if (in_air_ == RangeAmbiguity::folded)
       for (Echo& echo : d.echoes) echo.range = std::fmod(echo.range, ambiguity_);
-    std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    number_echoes(d.echoes);
+    detail::number_by_range(d.echoes);
     return d;
   }
 

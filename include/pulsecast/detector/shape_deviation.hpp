@@ -4,23 +4,17 @@
 #define PULSECAST_DETECTOR_SHAPE_DEVIATION_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Waveform detector that adds each echo's deviation from the shape of a flat target, `Echo::shape_deviation`: the mean
-/// over the samples within a pulse length of the echo, in thousandths of the echo's maximum. 0 is a flat target;
-/// slopes, edges and leaves have more. The detector inside keeps waveforms: its `record_length` is greater than 0, and
-/// echoes beyond the record have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684 (pulse shape deviation).
+/// Waveform detector that adds each echo's deviation from the shape of a flat target,
+/// `Echo::shape_deviation`: the mean over the samples within a pulse length, in thousandths of the
+/// echo's maximum. Slopes, edges and leaves have more. The detector inside keeps waveforms
+/// (`record_length`); echoes beyond have none. Source: Pfennigbauer & Ullrich 2010, SPIE 7684.
 template <class Inner>
 class ShapeDeviation : public DetectorAdaptor<Inner> {
  public:
@@ -35,7 +29,6 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
     if (!shapes_.find(laser)) shapes_.add(laser, shape_of(laser));
   }
 
-  /// Echoes of the detector inside, with deviations.
   [[nodiscard]] Detection detect(const DetectorInput& input, auto& w) const noexcept {
     const Detection d = this->inner.detect(input, w);
     if (const std::vector<double>* shape = shapes_.find(input.emitter.laser))
@@ -49,7 +42,7 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
 
   [[nodiscard]] double interval() const noexcept { return this->inner.settings().sample_interval; }
 
-  /// Waveform of a flat target from a pulse length before its range to one after it, relative to its amplitude.
+  /// Waveform of a flat target from a pulse length before its range to one after, by its amplitude.
   [[nodiscard]] std::vector<double> shape_of(const Laser& laser) const {
     const auto reach = static_cast<std::size_t>(std::ceil(laser.pulse_length / interval())) + 1;
     std::vector<double> shape(2 * reach * places + 1);

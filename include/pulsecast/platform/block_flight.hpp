@@ -4,11 +4,7 @@
 #define PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -36,8 +32,8 @@ struct BlockFlight {
   }
 };
 
-/// Lines of a block flight, from left to right as seen along the first line. Together their swaths cover the area, with
-/// equal margins on both sides. Throws a `SettingError`.
+/// Lines of a block flight, from left to right as seen along the first line. Together their swaths
+/// cover the area, with equal margins on both sides. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<StraightLine> plan_block_flight(const BlockFlight& block) {
   block.validate();
   const Vec3 along{std::sin(block.heading), std::cos(block.heading), 0}, across{along.y, -along.x, 0};
@@ -45,7 +41,7 @@ struct BlockFlight {
   const double length_along = size.x * std::fabs(along.x) + size.y * std::fabs(along.y) + 2 * block.run_in;
   const double width = size.x * std::fabs(across.x) + size.y * std::fabs(across.y);
   const double spacing = block.swath * (1 - block.overlap);
-  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // limit of the leg numbers
+  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // of legs
   // the swaths of n lines cover (n - 1) spacings and one swath; rounding must not add a line
   const auto lines = 1 + static_cast<std::size_t>(std::ceil(std::max(0.0, (width - block.swath) / spacing - 1e-9)));
   const Vec3 centre{block.area.centre().x, block.area.centre().y, block.altitude};

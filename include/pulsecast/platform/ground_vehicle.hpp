@@ -4,10 +4,7 @@
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
@@ -20,15 +17,15 @@ namespace PULSECAST_NAMESPACE {
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
   double speed = 10;            ///< maximum [m/s]
-  double acceleration = 2;      ///< maximum along and across the path combined, as on level ground [m/s^2]
+  double acceleration = 2;      ///< maximum along and across combined, as on level ground [m/s^2]
   double jerk = 2;              ///< maximum change of acceleration along the path [m/s^3]
-  double turn_radius = 5.5;     ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
+  double turn_radius = 5.5;     ///< of every curve, at the middle of the rear axle: the minimum [m]
   double wheelbase = 2.7;       ///< distance from the rear to the front axle [m]
   double track = 1.6;           ///< distance from the left to the right wheels [m]
-  double wheel_radius = 0.316;  ///< [m]; source: tyre 205/55 R16 by ISO 4000-1, half of 16 inches and 55 % of 205 mm
+  double wheel_radius = 0.316;  ///< [m]; source: ISO 4000-1, 205/55 R16: 8 inches + 55 % of 205 mm
   double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
-  double start_height = std::numeric_limits<double>::infinity();  ///< the drive begins on the ground nearest to it [m]
-  std::optional<double> height_without_ground{};  ///< height where there is no ground, which is an error if empty [m]
+  double start_height = std::numeric_limits<double>::infinity();  ///< of the first ground [m]
+  std::optional<double> height_without_ground{};                  ///< an error if empty [m]
 
   void validate() const {
     require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -39,8 +36,8 @@ struct GroundVehicleSettings {
     require_within("GroundVehicleSettings::track", track, 1e-2, 1e2, "m");
     require_within("GroundVehicleSettings::wheel_radius", wheel_radius, 1e-3, 1e2, "m");
     require_within("GroundVehicleSettings::ground_step", ground_step, 1e-3, 1e2, "m");
-    if (height_without_ground)
-      require_within("GroundVehicleSettings::height_without_ground", *height_without_ground, -1e9, 1e9, "m");
+    const double height = height_without_ground.value_or(0);
+    require_within("GroundVehicleSettings::height_without_ground", height, -1e9, 1e9, "m");
   }
 };
 
@@ -52,7 +49,7 @@ struct Footing {
   double along = 0;   ///< length driven in space since the start of its section [m]
 
   /// Attitude by heading, then pitch, then roll, so that up is normal to the plane.
-  /// Source: the up of Rx(pitch) Ry(roll) is (sin r, -sin p cos r, cos p cos r), and the normal is (-aside, -ahead, 1).
+  /// Source: Rx(p) Ry(r) up = (sin r, -sin p cos r, cos p cos r), along (-aside, -ahead, 1).
   [[nodiscard]] Rotation attitude(double heading) const noexcept {
     const double pitch = std::atan(ahead);
     return level(heading) * rotation_about(axis::right, pitch) *
@@ -60,11 +57,11 @@ struct Footing {
   }
 };
 
-/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact.
-/// Position, speed in space and attitude are continuous; the vehicle stops where it changes gear.
+/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the
+/// wheels' contact. Position, speed in space and attitude are continuous; it stops to change gear.
 class GroundVehicleDrive {
  public:
-  /// Piece of the path with the footings at equal distances along it on the map, both ends included.
+  /// Piece of the path, with footings at equal distances along it on the map, both ends included.
   struct Section {
     PathPiece path{};                 ///< piece of the path, on the map
     double start = 0;                 ///< length driven before, in space [m]
@@ -95,8 +92,7 @@ class GroundVehicleDrive {
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
-  /// Sections in order of time.
-  [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
+  [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }  ///< by time
   /// Length driven in space, forwards plus backwards [m].
   [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }
   /// Sentences about ground that no vehicle drives over: too steep, or with gaps.
@@ -111,10 +107,10 @@ class GroundVehicleDrive {
 
 namespace detail {
 
-/// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers`
-/// receives their indices in the list. Throws a `SettingError`.
+/// Checked waypoints without those less than a centimetre from the one before; both ends stay.
+/// `numbers` receives their indices in the list. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
-  require_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_ground_vehicle: waypoints (number)", waypoints.size(), 1, 1e7, "");
   std::vector<Vec2> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_ground_vehicle: waypoints[" + std::to_string(k) + "].";
@@ -141,18 +137,18 @@ class FootingFinder {
   FootingFinder(const G& ground, const GroundVehicleSettings& settings)
       : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
 
-  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. The
-  /// wheels' contact depends on the attitude, so the plane is iterated from that of the footing before; each round
-  /// leaves about the square of the slope of the error before. Where the ground has levels, wheels keep to the one that
-  /// this footing leads to. Throws a `SettingError` where there is no ground. Source: the slopes of a plane through a
-  /// rectangle's corners are the differences of the means of opposite sides.
+  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the
+  /// four wheels. As their contact depends on the attitude, the plane is iterated from the footing
+  /// before; each round leaves about the square of the slope of the error. Wheels keep to the level
+  /// that this footing leads to. Throws a `SettingError` where there is no ground. Source: slopes
+  /// of a plane through a rectangle are differences of the means of opposite sides.
   [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
     Footing expected = before_;
     expected.height += step * expected.ahead;
     if (std::exchange(is_first_, false))
       expected.height = height(stance.position, s_.start_height).value_or(s_.start_height);
     bool gap = false;
-    const auto error = [&](const Footing& footing, double x, double y) {  // height error of a wheel against the ground
+    const auto error = [&](const Footing& footing, double x, double y) {  // of a wheel
       const Vec3 wheel = footing.attitude(stance.heading) * Vec3{x, y, 0};
       const Vec2 place = stance.position + Vec2{wheel.x, wheel.y};
       const double near = expected.height + (expected.attitude(stance.heading) * Vec3{x, y, 0}).z;
@@ -162,8 +158,8 @@ class FootingFinder {
     if (!std::isfinite(footing.height)) footing.height = 0;
     for (int round = 0; round < 6; ++round) {
       const double rear_left = error(footing, -s_.track / 2, 0), rear_right = error(footing, s_.track / 2, 0);
-      const double front_left = error(footing, -s_.track / 2, s_.wheelbase),
-                   front_right = error(footing, s_.track / 2, s_.wheelbase);
+      const double front_left = error(footing, -s_.track / 2, s_.wheelbase);
+      const double front_right = error(footing, s_.track / 2, s_.wheelbase);
       const double rear = 0.5 * (rear_left + rear_right), pitch = 0.5 * (front_left + front_right) - rear;
       const double roll = 0.5 * (rear_right - rear_left + front_right - front_left);
       footing.height += rear;
@@ -190,14 +186,14 @@ class FootingFinder {
     for (const auto& [path, start, footings] : sections) {
       const std::size_t steps = footings.size() - 1;
       const double step = path.length / static_cast<double>(steps);
-      // a section may have no length
-      const auto wheel =
-          static_cast<std::size_t>(std::fmin(std::ceil(s_.wheel_radius / step), static_cast<double>(steps)));
+      const double whole = std::fmin(std::ceil(s_.wheel_radius / step), static_cast<double>(steps));  // step may be 0
+      const auto wheel = static_cast<std::size_t>(whole);
       for (std::size_t i = 0; i <= steps; ++i) {
-        const double rise = i + wheel <= steps ? std::fabs(footings[i + wheel].height - footings[i].height) : 0;
-        const double tilt = std::fmax(std::fabs(footings[i].ahead), std::fabs(footings[i].aside));
+        const Footing &at = footings[i], &ahead = footings[std::min(i + wheel, steps)];
+        const double rise = i + wheel <= steps ? std::fabs(ahead.height - at.height) : 0;
+        const double tilt = std::fmax(std::fabs(at.ahead), std::fabs(at.aside));
         most = std::fmax(most, rise);
-        if (std::fmax(rise / std::fmax(s_.wheel_radius, static_cast<double>(wheel) * step), tilt) <= 1 + 1e-9) continue;
+        if (std::fmax(rise / std::fmax(s_.wheel_radius, whole * step), tilt) <= 1 + 1e-9) continue;
         if (steep++ == 0) first = path.after(step * static_cast<double>(i)).position;
       }
     }
@@ -210,8 +206,7 @@ class FootingFinder {
   }
 
  private:
-  /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this
-  /// tangent.
+  /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g.
   static constexpr double tilt_max = 1.7;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -250,20 +245,20 @@ class FootingFinder {
   Vec2 first_gap_{};
 };
 
-/// Speed limits on a piece of the path. In a curve, acceleration along and across have equal shares of the maximum.
+/// Speed limits on a piece of the path. Acceleration in a curve is shared by along and across.
 [[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
-  const double bend = std::fabs(path.curvature), share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
-  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal: v^2 / r
-  return {speed, share, share, s.jerk};
+  const double bend = std::fabs(path.curvature), share = s.acceleration * std::sqrt(0.5);
+  if (bend == 0) return {s.speed, s.acceleration, s.acceleration, s.jerk};
+  return {std::fmin(s.speed, std::sqrt(share / bend)), share, share, s.jerk};  // v^2 / r
 }
 
 }  // namespace detail
 
-/// Plans a drive from the first waypoint to the last along `path_through`, at rest at both ends and at changes of gear.
-/// All four wheels roll over the ground as far as a rigid body can, and speed and acceleration are limited along the
-/// way in space. A single waypoint looks north. Waypoints less than a centimetre apart are one. The ground is queried
-/// only during planning: one of several levels, as roads and bridges, should model `LevelledGround`. Throws a
-/// `SettingError` for invalid settings or waypoints, a path that is too long, or missing ground.
+/// Plans a drive along `path_through` the waypoints, at rest at both ends and at changes of gear.
+/// All four wheels roll over the ground as far as a rigid body can; speed and acceleration are
+/// limited along the way in space. A single waypoint looks north. Waypoints less than a centimetre
+/// apart are one. Ground of several levels, as roads and bridges, should model `LevelledGround`.
+/// Throws a `SettingError` for invalid settings or waypoints, too long a path, or missing ground.
 [[nodiscard]] inline GroundVehicleDrive plan_ground_vehicle(std::span<const Vec2> waypoints, const Ground auto& ground,
                                                             const GroundVehicleSettings& settings = {}) {
   settings.validate();
@@ -274,8 +269,8 @@ class FootingFinder {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step,
-                 "m");  // footings take some 320 MB
+  const double most = 1e7 * settings.ground_step;  // its footings take some 320 MB
+  require_within("plan_ground_vehicle: path (length)", whole, 0, most, "m");
 
   detail::FootingFinder finder(ground, settings);
   std::vector<GroundVehicleDrive::Section> sections;
@@ -283,20 +278,20 @@ class FootingFinder {
   std::vector<double> joints(path.size() + 1, 0.0);
   double start = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
-    const std::size_t steps =
-        std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(path[k].length / settings.ground_step)));
-    const double step = path[k].length / static_cast<double>(steps);
-    GroundVehicleDrive::Section section{path[k], start, {}};
+    const PathPiece& piece = path[k];
+    const double steps = std::fmax(1.0, std::ceil(piece.length / settings.ground_step));
+    const double step = piece.length / steps;
+    GroundVehicleDrive::Section section{piece, start, {}};
     double climbs = 0;  // length in space beyond that on the map
-    for (std::size_t i = 0; i <= steps; ++i) {
-      const double along = path[k].length * static_cast<double>(i) / static_cast<double>(steps);
-      Footing footing = finder.next(path[k].after(along), i > 0 ? path[k].gear * step : 0, numbers[path[k].waypoint]);
+    for (double i = 0; i <= steps; ++i) {
+      const double along = piece.length * i / steps;
+      Footing footing = finder.next(piece.after(along), i > 0 ? piece.gear * step : 0, numbers[piece.waypoint]);
       if (i > 0) climbs += std::hypot(step, footing.height - section.footings.back().height) - step;
       footing.along = along + climbs;
       section.footings.push_back(footing);
     }
-    path_sections.push_back({section.footings.back().along, detail::limits_on(path[k], settings)});
-    if (k > 0 && path[k].gear == path[k - 1].gear)
+    path_sections.push_back({section.footings.back().along, detail::limits_on(piece, settings)});
+    if (k > 0 && piece.gear == path[k - 1].gear)
       joints[k] = std::fmin(path_sections[k - 1].limits.speed, path_sections[k].limits.speed);
     sections.push_back(std::move(section));
     start += path_sections.back().length;
@@ -306,8 +301,8 @@ class FootingFinder {
   PiecewiseCubic<double> driven(0);
   Tick now{};
   for (std::size_t k = 0; k < sections.size(); ++k) {
-    for (CubicPiece<double> piece :
-         speed_profile(path_sections[k].length, joints[k], joints[k + 1], path_sections[k].limits)) {
+    const auto& [length, limits] = path_sections[k];
+    for (CubicPiece<double> piece : speed_profile(length, joints[k], joints[k + 1], limits)) {
       piece.position += sections[k].start;
       if (piece.duration > 0) driven.add(now, piece);
       now = now + Tick::of_seconds(piece.duration);

@@ -5,32 +5,30 @@
 
 #include <algorithm>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pass of a platform. An inactive leg takes its time, as a turn between two strips, but has no slots.
+/// Pass of a platform. An inactive leg, as a turn between strips, takes its time but has no slots.
 template <WorldSource P>
 struct Leg {
   P platform;                   ///< carrier of the instrument
   bool active = true;           ///< true if pulses are emitted
-  std::optional<Tick> start{};  ///< start since the survey's start; by default the end of the leg before
+  std::optional<Tick> start{};  ///< since the survey's; by default the end of the leg before
 };
 
-/// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at
-/// zero; the survey's time continues from leg to leg, unless a leg says when it starts: such legs may leave gaps and
-/// overlap. Legs with equal tables of emitters share one.
+/// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's
+/// clock starts at zero; the survey's time goes on from leg to leg, or from the start that a leg
+/// states: such legs may leave gaps and overlap. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a
-  /// `SettingError`.
+  /// Up to 65535 legs, with at most 2^60 slots, 1e15 s and `max_emitters`. @throws SettingError
   explicit Legs(std::vector<Leg<P>> legs) {
-    require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
+    require_within("Legs::legs (number)", legs.size(), 1, 65535, "");
     PulseIndex first = 0;
     Tick start{}, last{};
     for (Leg<P>& leg : legs) {
@@ -77,8 +75,7 @@ class Legs {
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);
   }
 
-  /// Platforms of the legs, in order.
-  [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }
+  [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }  ///< platforms in order
 
   /// Begin of leg k since the survey's start.
   [[nodiscard]] Tick start(std::size_t k) const noexcept { return starts_[k].tick; }
@@ -95,7 +92,7 @@ class Legs {
     std::uint16_t first_emitter = 0;  // index of its table in that of all legs
   };
 
-  /// Index of a leg's table in that of all legs, where it is appended unless an earlier leg has an equal one.
+  /// Index of a leg's table in that of all legs: appended, unless an earlier leg has an equal one.
   std::uint16_t add_emitters(const std::vector<Emitter>& table) {
     const std::size_t size = emitters_.size();
     for (std::size_t first = 0; first + table.size() <= size; ++first)

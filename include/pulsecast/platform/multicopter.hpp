@@ -4,10 +4,7 @@
 #define PULSECAST_PLATFORM_MULTICOPTER_HPP
 
 #include <algorithm>
-#include <cmath>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
@@ -23,20 +20,20 @@ struct FlightPoint {
 /// Flight at the waypoints between the first and the last.
 enum class MulticopterTurn {
   stop_and_turn,  ///< hovers at each waypoint until it faces the next leg
-  smooth,         ///< cuts the corner in a banked turn; stops to hover, or to turn by more than 150 degrees
+  smooth,         ///< cuts the corner; stops to hover, or to turn by more than 150 degrees
 };
 
 /// Limits and style of a multicopter's flight.
 struct MulticopterSettings {
   double speed = 8;                                ///< maximum [m/s]
   double acceleration = 3;                         ///< maximum in any direction [m/s^2]
-  double jerk = 6;                                 ///< maximum change of acceleration in any direction [m/s^3]
+  double jerk = 6;                                 ///< maximum in any direction [m/s^3]
   double bank_max = pi / 6;                        ///< maximum angle from upright [rad]
   double yaw_rate = pi / 2;                        ///< maximum [rad/s]
-  MulticopterTurn turn = MulticopterTurn::smooth;  ///< behaviour at waypoints between the first and the last
-  double turn_distance = 10;                  ///< maximum distance from the begin of a smooth turn to its waypoint [m]
-  std::optional<double> departure_heading{};  ///< clockwise from north; along the first leg if empty [rad]
-  std::optional<double> arrival_heading{};    ///< clockwise from north; along the last leg if empty [rad]
+  MulticopterTurn turn = MulticopterTurn::smooth;  ///< at waypoints between the ends
+  double turn_distance = 10;                       ///< maximum from its begin to its waypoint [m]
+  std::optional<double> departure_heading{};       ///< from north; along the first leg if empty [rad]
+  std::optional<double> arrival_heading{};         ///< from north; along the last leg if empty [rad]
 
   void validate() const {
     require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -50,12 +47,11 @@ struct MulticopterSettings {
   }
 };
 
-/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of
-/// acceleration and lift. In a level turn tan(bank) = v^2 / (g r): a coordinated turn. Position, velocity and attitude
-/// are continuous.
+/// Flight in pieces of constant jerk. Thrust alone moves it: its up axis follows acceleration and
+/// lift, tan(bank) = v^2 / (g r) in a level turn. Position, velocity and attitude are continuous.
 class MulticopterFlight {
  public:
-  /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: see `plan_multicopter`.
+  /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: `plan_multicopter`.
   MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration,
                     std::vector<Tick> passes = {})
       : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration), passes_(std::move(passes)) {}
@@ -63,8 +59,7 @@ class MulticopterFlight {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(
-        detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // shortest rotation from up to the thrust
+    const Rotation lean = normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));
     return {lean * level(heading_.at(t).position), state.position};
   }
 
@@ -73,7 +68,7 @@ class MulticopterFlight {
   /// Passing time of each waypoint of the plan: the middle of its turn, or the begin of its hover.
   [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
 
-  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position over time [m]
+  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }  ///< position [m]
   /// Clockwise from north over time [rad].
   [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
 
@@ -86,9 +81,8 @@ class MulticopterFlight {
 
 namespace detail {
 
-/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the
-/// weight. Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the
-/// acceleration.
+/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with a tenth of the
+/// weight as thrust. Source: tan(bank) = horizontal / (g + vertical acceleration).
 [[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
   const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
   double most = settings.acceleration;
@@ -97,8 +91,8 @@ namespace detail {
   return most;
 }
 
-/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so the speed never
-/// grows. Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
+/// Turn between two unit directions at a waypoint: the velocity changes along a line, so the speed
+/// never grows. Source: Craig 2005, sec. 7.3, straight lines with blends.
 struct SmoothTurn {
   Vec3 before{};        ///< direction in, unit
   Vec3 after{};         ///< direction out, unit
@@ -136,7 +130,7 @@ class FlightPlan {
     now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
   }
 
-  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows it. Returns the duration [s].
+  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows. Returns it [s].
   double turn_to(double heading, double time) {
     const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
     const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);
@@ -162,11 +156,11 @@ class FlightPlan {
   std::vector<Tick> passes_;
 };
 
-/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum of hover times.
-/// `numbers` maps each to its merged waypoint. Throws a `SettingError`.
+/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum
+/// of hover times. `numbers` maps each to its merged waypoint. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints,
                                                       std::vector<std::size_t>& numbers) {
-  require_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_multicopter: waypoints (number)", waypoints.size(), 1, 1e7, "");
   std::vector<FlightPoint> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_multicopter: waypoints[" + std::to_string(k) + "].";
@@ -201,7 +195,7 @@ struct FlightLegs {
       sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
       if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
         heading = heading_of(directions[k]);
-        if (!level_leg) std::fill_n(headings.begin(), k, heading);  // a vertical start faces the first level leg
+        if (!level_leg) std::fill_n(headings.begin(), k, heading);  // of a vertical start
         level_leg = true;
       }
       headings[k] = heading;
@@ -211,10 +205,10 @@ struct FlightLegs {
 
 }  // namespace detail
 
-/// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on
-/// a vertical one, and turns in place at departure and arrival. Each leg takes the least time that speed, acceleration,
-/// jerk and bank allow from turn to turn. A smooth turn takes at most a third of either leg, so waypoints close to each
-/// other are flown slowly. Waypoints less than a nanometre apart are one. Throws a `SettingError`.
+/// Plans a flight through the waypoints, at rest at both ends. The vehicle faces its leg, keeps its
+/// heading on a vertical one, and turns in place at both ends. Legs take the least time that speed,
+/// acceleration, jerk and bank allow. A smooth turn takes at most a third of either leg, so close
+/// waypoints are slow; those less than a nanometre apart are one. Throws a `SettingError`.
 [[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints,
                                                         const MulticopterSettings& settings = {}) {
   settings.validate();
@@ -231,10 +225,11 @@ struct FlightLegs {
     if (settings.turn == MulticopterTurn::stop_and_turn || points[k].hover > 0 || dot(before, after) < sharpest)
       continue;
     const Vec3 change = after - before;
-    const double most =
-        length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
+    const bool turned = length(change) > 0;
+    const double most = turned ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
     turns[k] = {before, after, {0, 0, most, settings.jerk}};
-    const double room = std::fmin(settings.turn_distance, std::fmin(sections[k - 1].length, sections[k].length) / 3);
+    const double shorter = std::fmin(sections[k - 1].length, sections[k].length);
+    const double room = std::fmin(settings.turn_distance, shorter / 3);
     speeds[k] = max_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
   }
   std::vector<PathSection> straights = sections;
@@ -246,7 +241,8 @@ struct FlightLegs {
                           settings.yaw_rate);
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 at = points[k].position;
-    const double begin = turns[k].distance(speeds[k]), end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
+    const double begin = turns[k].distance(speeds[k]);
+    const double end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
     const SpeedChange change = turns[k].change(speeds[k]);
     plan.pass(0.5 * change.duration());
     if (speeds[k] == 0) {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
@@ -14,7 +13,7 @@ namespace PULSECAST_NAMESPACE {
 /// Mounting of an instrument on its platform.
 struct Mount {
   Vec3 lever_arm{};                  ///< position of the instrument's origin in the body frame [m]
-  Rotation boresight = no_rotation;  ///< rotation from the instrument to the body; unit to within 1e-3
+  Rotation boresight = no_rotation;  ///< from the instrument to the body; unit to 1e-3
 
   void validate() const {
     require_finite("Mount::lever_arm (length)", length(lever_arm), "m");
@@ -62,11 +61,11 @@ class Platform {
     [[maybe_unused]] const simd::Mask moved = find_poses(path_, inner.tick, inner.sent, world_from_body);
     PULSECAST_ASSERT(rigid_lanes(world_from_body, moved));
     PulseLanes<frame::World> out(world_from_body * PoseLanes(mount_.pose()), inner);
-    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward),
-                    ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
-    // the components to the right of the level heading and down, both times the length of the heading on the map
-    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x,
-                        on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
+    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward);
+    const Vec3Lanes ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
+    // components to the right of the heading and down, by the length of the heading on the map
+    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x;
+    const simd::Doubles on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
       out.scan_angle[lane] = {right[lane], -beam.z[lane] * on_map[lane]};
     return out;
@@ -79,12 +78,9 @@ class Platform {
     return world_from_body * mount_.pose();
   }
 
-  /// Trajectory of the body.
-  [[nodiscard]] const Path& trajectory() const noexcept { return path_; }
-  /// Mounting of the instrument.
-  [[nodiscard]] const Mount& mount() const noexcept { return mount_; }
-  /// Source of the instrument's pulses.
-  [[nodiscard]] const Source& source() const noexcept { return source_; }
+  [[nodiscard]] const Path& trajectory() const noexcept { return path_; }  ///< of the body
+  [[nodiscard]] const Mount& mount() const noexcept { return mount_; }     ///< of the instrument
+  [[nodiscard]] const Source& source() const noexcept { return source_; }  ///< of its pulses
 
  private:
   Path path_;

@@ -5,29 +5,24 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <optional>
-#include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Errors of reported position and attitude, zero by default: standard deviations along or about each axis of the body.
+/// Errors of reported poses, zero by default: deviations along or about each axis of the body.
 struct PoseErrors {
-  double position_noise = 0;  ///< white noise of the position [m]
-  double attitude_noise = 0;  ///< white noise of the attitude [rad]
-  double position_drift = 0;  ///< slow drift of the position: Gauss-Markov process of this deviation [m]
-  double attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
-  double drift_time = 60;  ///< correlation time of drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey [s]
-  double angular_jitter = 0;               ///< unreported white deviation of each beam, to the right and up [rad]
+  double position_noise = 0;               ///< white noise of the position [m]
+  double attitude_noise = 0;               ///< white noise of the attitude [rad]
+  double position_drift = 0;               ///< slow drift of the position: a Gauss-Markov process [m]
+  double attitude_drift = 0;               ///< slow drift of the attitude, of the same kind [rad]
+  double drift_time = 60;                  ///< decay of drifts to 1/e; at least 1e-6 of the survey [s]
+  double angular_jitter = 0;               ///< unreported deviation of each beam, right and up [rad]
   Vec3 lever_arm_error{};                  ///< reported minus true lever arm [m]
-  Rotation boresight_error = no_rotation;  ///< rotation from the instrument's true frame to the reported one
-  std::uint64_t seed = 0;                  ///< seed of all random draws; each of several `Legs` draws its own
+  Rotation boresight_error = no_rotation;  ///< from the true instrument to the reported one
+  std::uint64_t seed = 0;                  ///< of all draws; each of several `Legs` draws its own
 
   void validate() const {
     require_not_negative("PoseErrors::position_noise", position_noise, "m");
@@ -42,19 +37,17 @@ struct PoseErrors {
   void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
-/// Platform with pose errors: rays start at the true pose, points are computed from the reported one. Throws a
-/// `SettingError`.
+/// Platform with pose errors: rays start at the true pose, points are of the reported one.
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
   using refinements = refines<tag::MakesLanes, tag::DrawsByLeg>;
-  /// Plans the drifts. @throws SettingError for settings out of range
+  /// @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
       : truth_(std::move(truth)), errors_(validated(errors)) {
     plan_drift();
   }
 
-  /// Draws independent errors of the same kind for each leg.
   void draw_for_leg(std::uint32_t leg) {
     if (leg == std::exchange(leg_, leg)) return;
     plan_drift();
@@ -63,8 +56,7 @@ class WithPoseErrors {
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
-  /// Platform without errors.
-  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
+  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }  ///< exact
 
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);
@@ -74,9 +66,9 @@ class WithPoseErrors {
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);
     const Drift drift = drift_at(t);
-    const Vec3 position = drift.position + white_noise(t, Purpose::position_noise, errors_.position_noise);
-    const Vec3 attitude = drift.attitude + white_noise(t, Purpose::attitude_noise, errors_.attitude_noise);
-    return world_from_body * Pose<frame::Body, frame::Body>{turned_by(attitude), position};
+    const Vec3 moved = white_noise(t, Purpose::position_noise, errors_.position_noise) + drift.position;
+    const Vec3 turned = white_noise(t, Purpose::attitude_noise, errors_.attitude_noise) + drift.attitude;
+    return world_from_body * Pose<frame::Body, frame::Body>{turned_by(turned), moved};
   }
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
@@ -115,10 +107,11 @@ class WithPoseErrors {
     return {drawn(moment, first, purpose), drawn(moment, first + 1, purpose), drawn(moment, first + 2, purpose)};
   }
 
-  /// White noise, common to emitters that fire at the same time. No two ticks within 45 years share it.
+  /// White noise, common to emitters that fire together. No two ticks within 45 years share it.
   Vec3 white_noise(Tick t, Purpose purpose, double deviation) const noexcept {
     if (deviation == 0) return {};
-    return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
+    const auto part = std::bit_cast<std::uint64_t>(t.fraction);
+    return deviation * normals(part, purpose, static_cast<std::uint32_t>(t.second));
   }
 
   PulseLanes<frame::Instrument> jittered(PulseLanes<frame::Instrument> p, PulseIndex i) const noexcept {
@@ -126,19 +119,19 @@ class WithPoseErrors {
     for (std::size_t lane = 0; lane < p.size; ++lane) {
       const double aside = errors_.angular_jitter * drawn(i + lane, 0, Purpose::angular_jitter);
       const double upwards = errors_.angular_jitter * drawn(i + lane, 1, Purpose::angular_jitter);
-      p.pose.rotation.set(
-          lane, p.pose.rotation[lane] * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards));
+      const Rotation turned = p.pose.rotation[lane] * rotation_about(axis::up, -aside);
+      p.pose.rotation.set(lane, turned * rotation_about(axis::right, upwards));
     }
     return p;
   }
 
-  /// Drift at each node: the previous one, decayed, plus a random part that keeps the deviation. Source: Gelb 1974,
-  /// sec. 3.8.
+  /// Drift at nodes: the last, decayed, plus a random part. Source: Gelb 1974, sec. 3.8.
   void plan_drift() {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
-    require_within("PoseErrors::drift_time (survey duration divided by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    const double times = nodes / nodes_per_drift_time;
+    require_within("PoseErrors::drift_time (survey duration divided by it)", times, 0, 1e6, "");
     drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
       const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);
@@ -158,7 +151,7 @@ class WithPoseErrors {
     return {a.position + share * (b.position - a.position), a.attitude + share * (b.attitude - a.attitude)};
   }
 
-  static constexpr double nodes_per_drift_time = 50;  ///< linear interpolation between nodes takes 1 % off the variance
+  static constexpr double nodes_per_drift_time = 50;  ///< between nodes, 1 % is off the variance
 
   Platform<Path, Source> truth_;
   PoseErrors errors_;

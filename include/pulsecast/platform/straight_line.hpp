@@ -3,13 +3,12 @@
 #ifndef PULSECAST_PLATFORM_STRAIGHT_LINE_HPP
 #define PULSECAST_PLATFORM_STRAIGHT_LINE_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if
-/// vertical or empty.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along it,
+/// or north.
 struct StraightLine {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
@@ -20,16 +19,15 @@ struct StraightLine {
     require_finite("StraightLine::from (length)", length(from), "m");
     require_finite("StraightLine::to (length)", length(to), "m");
     require_positive("StraightLine::speed", speed, "m/s");
-    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // limit of a `Tick`
+    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");
   }
 
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
-  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in
-  /// different ways.
+  /// One copy of the code, as compilers may contract products and sums in different ways.
   [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
     const double whole = length(path);

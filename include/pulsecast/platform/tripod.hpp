@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_TRIPOD_HPP
 #define PULSECAST_PLATFORM_TRIPOD_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

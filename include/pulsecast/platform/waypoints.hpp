@@ -4,11 +4,7 @@
 #define PULSECAST_PLATFORM_WAYPOINTS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
@@ -22,19 +18,18 @@ enum class Interpolation : std::uint8_t {
   cubic,   ///< cubic polynomials through the waypoints, with continuous velocity
 };
 
-/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller angle, so headings may
-/// cross north. Before the first waypoint and after the last one the body rests. Planners and trajectory files end in
-/// this.
+/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller
+/// angle. Before the first waypoint and after the last one the body rests.
 ///
-/// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it
-/// on, the last counts. Cubic positions are interpolated on either side of a jump alone.
+/// A time that occurs more than once is a jump: up to it the first of these waypoints counts, from
+/// it on the last. Cubic positions are interpolated on either side alone.
 class Waypoints {
  public:
   using refinements = refines<tag::MovesInLanes>;
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
       : points_(std::move(points)) {
-    require_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
+    require_within("Waypoints::points (number)", points_.size(), 1, 1e9, "");
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
       TimedPose& p = points_[i];
@@ -55,7 +50,7 @@ class Waypoints {
   /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
 
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const simd::Doubles t = ticks.seconds();
@@ -97,8 +92,7 @@ class Waypoints {
     poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
   }
 
-  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985, Animating rotation with
-  /// quaternion curves.
+  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985.
   [[nodiscard]] static RotationLanes interpolated(const Rotation& from, const Rotation& to,
                                                   const simd::Doubles& share) noexcept {
     const double cosine = dot(from, to), along = std::fabs(cosine);
@@ -122,9 +116,9 @@ class Waypoints {
     for (const Vec3& v : velocities_) require_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
-  /// Velocities between two jumps: at each waypoint that of the parabola through it and its neighbours; at the ends, of
-  /// the parabola through the outer three. Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise
-  /// cubic Bessel interpolation; Catmull & Rom 1974 where the times are evenly spaced.
+  /// Velocities between two jumps: at each waypoint that of the parabola through it and its
+  /// neighbours; at the ends, of the parabola through the outer three. Source: de Boor 1978, A
+  /// Practical Guide to Splines, ch. IV; Catmull & Rom 1974 for even times.
   void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto velocity = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };
@@ -146,12 +140,12 @@ class Waypoints {
   std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty for linear interpolation
 };
 
-/// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal
-/// the direction in. At rest or in vertical motion the last heading is kept, or else the next one taken; without
-/// horizontal motion, north. A repeated time is a jump: neither side looks along it.
+/// Copies poses with level attitudes along the path: at a bend halfway between the directions in
+/// and out; at a reversal that in. At rest or in vertical motion the last heading is kept, or else
+/// the next one taken; without any, north. A repeated time is a jump: neither side looks along it.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
-  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal direction of motion from each waypoint; zero without one
+  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal directions; or zero
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
   const auto way_to = [&](std::size_t i) {
     const Vec3 &from = points[i - 1].position, &to = points[i].position;
@@ -164,7 +158,7 @@ class Waypoints {
     const Vec3 way = way_to(i);
     ahead[i - 1] = way == Vec3{} ? ahead[i] : way;
   }
-  Vec3 behind{}, came{};  // last horizontal direction of motion, and that since the last jump
+  Vec3 behind{}, came{};  // last horizontal direction, and that since the last jump
   for (std::size_t i = 0; i < n; ++i) {
     if (i > 0 && jump_to(i))
       came = Vec3{};
@@ -176,8 +170,8 @@ class Waypoints {
   return points;
 }
 
-/// Waypoints of a body that follows the path through these positions [m] at a constant speed [m/s], level and looking
-/// along it. Repeated positions are left out. Throws a `SettingError`.
+/// Waypoints of a body that follows the path through these positions [m] at a constant speed [m/s],
+/// level and looking along it. Repeated positions are left out. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<TimedPose> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
   require_positive("at_constant_speed (speed)", speed, "m/s");
   std::vector<TimedPose> points;

@@ -3,20 +3,16 @@
 #ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
-#include <optional>
-#include <utility>
 #include <variant>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse source of one of several types, for uses that require a single type, such as platforms of different kinds in
-/// `Legs`, or emitters of one device with different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror,
-/// Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
+/// Pulse source of one of several types, for platforms of different kinds, or emitters with
+/// different optics: `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>,
+/// Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:
@@ -24,7 +20,7 @@ class AnySource {
   /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
-      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): implicit by purpose
+      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] PulseIndex size() const noexcept {
     return std::visit([](const auto& s) noexcept { return s.size(); }, source_);
@@ -44,10 +40,8 @@ class AnySource {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
       (SkipsBlocked<Others> || ...) {
     const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {
-      if constexpr (SkipsBlocked<Source>)
-        return s.next_pulse(i);
-      else
-        return i;
+      if constexpr (SkipsBlocked<Source>) return s.next_pulse(i);
+      return i;
     };
     return std::visit(skip, source_);
   }
@@ -55,10 +49,8 @@ class AnySource {
       PulseIndex i, Tick t) const noexcept requires MeasuresBeam<First> ||(MeasuresBeam<Others> || ...) {
     const auto beam =
         [&]<class Source>(const Source& s) noexcept -> std::optional<Pose<frame::Beam, frame::Instrument>> {
-      if constexpr (MeasuresBeam<Source>)
-        return s.measured(i, t);
-      else
-        return std::nullopt;
+      if constexpr (MeasuresBeam<Source>) return s.measured(i, t);
+      return std::nullopt;
     };
     return std::visit(beam, source_);
   }

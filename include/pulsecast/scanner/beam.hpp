@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCANNER_BEAM_HPP
 #define PULSECAST_SCANNER_BEAM_HPP
 
-#include <cmath>
 #include <limits>
 
 #include <pulsecast/base/require.hpp>
@@ -27,8 +26,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Round beam described by its exit optics, for `gaussian_beam`.
 struct BeamExit {
-  double diameter = 5e-3;                                  ///< beam diameter at 1/e^2 at the exit [m]
-  double focus = std::numeric_limits<double>::infinity();  ///< radius of the wavefront there; negative if divergent [m]
+  double diameter = 5e-3;                                  ///< at 1/e^2, at the exit [m]
+  double focus = std::numeric_limits<double>::infinity();  ///< negative if divergent [m]
   double quality = 1;                                      ///< M^2, at least 1
 
   void validate() const {
@@ -38,14 +37,14 @@ struct BeamExit {
   }
 };
 
-/// Copy of a laser with the divergence and waist of the beam from an exit. The waist of a focused beam lies short of
-/// the focus. Throws a `SettingError`. Source: Carlsson, Steinvall & Letalick 2001: w^2 = w0^2 ((1 - R/F)^2 + (lambda R
-/// / (pi w0^2))^2), with M^2 lambda for lambda as in Siegman 1990; waist and divergence from completing the square.
+/// Copy of a laser with the divergence and waist of the beam from an exit. A focused beam's waist
+/// lies short of the focus. Throws a `SettingError`. Source: Carlsson, Steinvall & Letalick 2001,
+/// w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2); M^2 lambda for lambda, Siegman 1990.
 [[nodiscard]] inline Laser gaussian_beam(const BeamExit& exit, Laser laser) {
   exit.validate();
   require_positive("Laser::wavelength", laser.wavelength, "m");
-  const double radius = exit.diameter / 2,
-               spread = exit.quality * laser.wavelength / pi;  // waist radius times half angle
+  const double radius = exit.diameter / 2;
+  const double spread = exit.quality * laser.wavelength / pi;  // waist radius times half angle
   const double half_angle = std::hypot(radius / exit.focus, spread / radius);
   laser.divergence = 2 * half_angle;
   laser.waist_diameter = 2 * spread / half_angle;

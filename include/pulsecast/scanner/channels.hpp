@@ -4,41 +4,35 @@
 #define PULSECAST_SCANNER_CHANNELS_HPP
 
 #include <algorithm>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one
-/// type. Of n channels, slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in
-/// `Scanner::delay`, which must not decrease from channel to channel; emitters that fire together share it. The
-/// emitters of channel k have the channel number k.
+/// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one
+/// frame and of one type. Of n channels, slot i is slot `i / n` of channel `i % n`. Emitters that
+/// fire in turn differ in `Scanner::delay`, which must not decrease from channel to channel;
+/// emitters that fire together share it. The emitters of channel k have the channel number k.
 template <class Source>
 requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a
-  /// `SettingError`.
+  /// Up to `max_emitters` channels and emitters, of one size and duration. @throws SettingError
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
-    require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, max_emitters, "");
+    require_within("Channels::channels (number)", channels_.size(), 1, max_emitters, "");
     std::size_t emitters = 0;
     for (Source& c : channels_) {
       c = validated(std::move(c));
       first_emitter_.push_back(static_cast<std::uint16_t>(emitters));
       emitters += c.emitters().size();
-      require_within("Channels::channels (emitters)", static_cast<double>(emitters), 0, max_emitters, "");
+      require_within("Channels::channels (emitters)", emitters, 0, max_emitters, "");
     }
-    const double size = static_cast<double>(channels_[0].size()), duration = channels_[0].duration().seconds();
+    const double slots = static_cast<double>(channels_[0].size()), time = duration().seconds();
     for (const Source& c : channels_) {
-      require_within("Channels::channels (slots)", static_cast<double>(c.size()), size, size, "");
-      require_within("Channels::channels (duration)", c.duration().seconds(), duration, duration, "s");
+      require_within("Channels::channels (slots)", c.size(), slots, slots, "");
+      require_within("Channels::channels (duration)", c.duration().seconds(), time, time, "s");
     }
     require_order();
   }
@@ -65,15 +59,16 @@ class Channels {
     detail::PulsesOf<Source> all;
     for (; all.size < count; ++i) {
       all.push_back(find_pulses(channels_[i % n], i / n, 1)[0]);
-      all.emitter[all.size - 1] = static_cast<std::uint16_t>(all.emitter[all.size - 1] + first_emitter_[i % n]);
+      std::uint16_t& emitter = all.emitter[all.size - 1];
+      emitter = static_cast<std::uint16_t>(emitter + first_emitter_[i % n]);
     }
     return all;
   }
 
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     const PulseIndex n = channels_.size(), most = size();
-    PulseIndex next = most;
-    for (PulseIndex slot = i; slot < std::min(most, i + n) && slot < next; ++slot)  // the next slot of each channel
+    PulseIndex next = most;  // first of the next slots of all channels
+    for (PulseIndex slot = i; slot < std::min(most, i + n) && slot < next; ++slot)
       next = std::min(next, channels_[slot % n].next_pulse(slot / n) * n + slot % n);
     return std::min(next, most);
   }
@@ -82,13 +77,12 @@ class Channels {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }
 
-  /// Channels in the order of firing.
-  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
+  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }  ///< in turn
 
  private:
-  /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last rounds: two of each,
-  /// and more until every channel has fired, as an optic may block it at first. Channels of one rate show their order
-  /// in any round.
+  /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last
+  /// two rounds, and more of the first until every channel has fired, as an optic may block it.
+  /// Channels of one rate show their order in any round.
   void require_order() const {
     constexpr PulseIndex max_waiting = 4096;  // slots in which a channel may be blocked
     const PulseIndex n = channels_.size(), some = 2 * n + max_waiting;

@@ -4,13 +4,8 @@
 #define PULSECAST_SCANNER_FOOTPRINT_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
@@ -25,10 +20,10 @@ struct SingleRay {
 
 namespace detail {
 
-/// Moves offsets of equal energy so that their mean is 0 and, if there are more than two, their second moments are
-/// those of the beam: a quarter of its squared radius across and up, none mixed. Slopes then broaden an echo as a beam
-/// does. Each offset is mapped by the inverse square root of the covariance, the map closest to none. Source:
-/// two-by-two square root by the theorem of Cayley and Hamilton.
+/// Moves offsets of equal energy so that their mean is 0 and, if there are more than two, their
+/// second moments are the beam's: a quarter of its squared radius across and up, none mixed. Slopes
+/// then broaden an echo as a beam does. The map is the inverse square root of the covariance, the
+/// closest to none. Source: two-by-two square root by the theorem of Cayley and Hamilton.
 inline void match_moments(std::vector<Vec2>& offsets) noexcept {
   const double n = static_cast<double>(offsets.size());
   Vec2 sum{};
@@ -52,23 +47,23 @@ inline void match_moments(std::vector<Vec2>& offsets) noexcept {
 /// Second moments of a `RingFootprint`.
 enum class RingMoments : std::uint8_t {
   within,  ///< of the beam within its 1/e^2 radius: 0.68 of the whole beam's
-  whole,   ///< of the whole beam: circles are wider by 1.2, and slopes broaden echoes as a beam does
+  whole,   ///< of the whole beam: circles are wider by 1.2, and slopes broaden echoes alike
 };
 
-/// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each circle represents the ring of the
-/// beam up to halfway to its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the
-/// 1/e^2 radius. Source: Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the
-/// footprint. Footprint of XML surveys. The beam extends beyond it, so more than 19 subrays gain little
-/// (docs/tradeoff.md): see `LatticeFootprint`. Slopes broaden an echo by 17 % less than a beam does, unless the moments
-/// are those of the whole beam.
+/// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each represents the
+/// ring of the beam up to halfway to its neighbours, and its subrays share that energy. The
+/// outermost ring ends at the 1/e^2 radius. Footprint of XML surveys. The beam extends beyond it,
+/// so more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`. Slopes broaden
+/// an echo by 17 % less than a beam does, unless the moments are those of the whole beam. Source:
+/// Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
 class RingFootprint {
  public:
-  /// `circles` from 1 to 1000, the central ray included; 3 circles are 19 subrays. Throws a `SettingError`.
+  /// `circles` from 1 to 1000, the central ray included; 3 are 19 subrays. Throws a `SettingError`.
   explicit RingFootprint(std::size_t circles = 3, RingMoments moments = RingMoments::within) {
-    require_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
+    require_within("RingFootprint::circles", circles, 1, 1000, "");
     const double n = static_cast<double>(circles);
     const auto subrays_on = [](std::size_t i) {
-      return i == 0 ? std::size_t{1} : static_cast<std::size_t>(std::floor(2 * pi * static_cast<double>(i)));
+      return std::max<std::size_t>(1, static_cast<std::size_t>(2 * pi * static_cast<double>(i)));
     };
     std::size_t subrays = 0;
     for (std::size_t i = 0; i < circles; ++i) subrays += subrays_on(i);
@@ -78,7 +73,7 @@ class RingFootprint {
       const double radius = static_cast<double>(i) / (n - 0.5);
       const double inner = i == 0 ? 0 : radius - 0.5 / (n - 0.5), outer = radius + 0.5 / (n - 0.5);
       const std::size_t count = subrays_on(i);
-      // share of a Gaussian beam between two radii. Source: irradiance exp(-2 r^2 / w^2), integrated
+      // share of a Gaussian beam between two radii. Source: exp(-2 r^2 / w^2), integrated
       const double ring = std::exp(-2 * inner * inner) - std::exp(-2 * outer * outer);
       for (std::size_t k = 0; k < count; ++k, ++j) {
         const double angle = 2 * pi * static_cast<double>(k) / static_cast<double>(count);
@@ -105,14 +100,14 @@ class RingFootprint {
   std::vector<double> shares_;
 };
 
-/// Subrays of equal energy on a sunflower spiral: golden-angle steps, radii at the quantiles of a Gaussian beam, mapped
-/// so that mean and second moments are the beam's. Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2
-/// r^2 / w^2).
+/// Subrays of equal energy on a sunflower spiral: golden-angle steps, radii at the quantiles of a
+/// Gaussian beam, mapped so that mean and second moments are the beam's. Source: Vogel 1979 for the
+/// spiral; radius from inverting 1 - exp(-2 r^2 / w^2).
 class SunflowerFootprint {
  public:
   /// `subrays` from 1 to 100,000. Throws a `SettingError`.
   explicit SunflowerFootprint(std::size_t subrays = 19) {
-    require_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    require_within("SunflowerFootprint::subrays", subrays, 1, 100'000, "");
     offsets_ = std::vector<Vec2>(subrays);
     const double n = static_cast<double>(subrays);
     const double golden_angle = pi * (3 - std::sqrt(5.0));
@@ -133,16 +128,15 @@ class SunflowerFootprint {
   std::vector<Vec2> offsets_;
 };
 
-/// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam,
-/// mapped so that the second moments are the beam's. Rows follow the order of the multiples of the golden ratio, so
-/// that neighbours across are far apart up. Pareto-optimal in docs/tradeoff.md. Edges and wires that are upright or
-/// level in the beam, such as those of buildings, are sampled as exactly as with twice the number of subrays in rings,
-/// oblique ones as exactly as with the same number on a sunflower. Source: Niederreiter 1992, ch. 3, for the order;
-/// columns and rows from inverting the normal distribution.
+/// Subrays of equal energy on a lattice with a column and a row for each, at the quantiles of a
+/// Gaussian beam, mapped so that the second moments are the beam's. Rows follow the order of the
+/// multiples of the golden ratio: neighbours across are far apart up. Pareto-optimal in
+/// docs/tradeoff.md. Edges and wires upright or level in the beam are sampled as exactly as with
+/// twice the number of subrays in rings, oblique ones as on a sunflower of as many. Source:
+/// Niederreiter 1992, ch. 3, for the order; rows and columns from the normal distribution.
 class LatticeFootprint {
  public:
-  /// `subrays` from 1 to 100,000; 19 are Pareto-optimal in docs/tradeoff.md, more exact on a facade than any rings.
-  /// Throws a `SettingError`.
+  /// `subrays` from 1 to 100,000. Throws a `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
     decorrelate_axes();
@@ -154,15 +148,14 @@ class LatticeFootprint {
   [[nodiscard]] double share(std::size_t) const noexcept { return 1 / static_cast<double>(offsets_.size()); }
 
  private:
-  /// Quantile of column or row `i` of `number`; a beam's standard deviation across and up is half its radius.
+  /// Quantile of column or row `i` of `number`; a standard deviation is half the beam's radius.
   /// Source: irradiance exp(-2 r^2 / w^2).
   static double quantile(std::size_t i, std::size_t number) noexcept {
     return 0.5 * normal_quantile((static_cast<double>(i) + 0.5) / static_cast<double>(number));
   }
 
-  /// Exchanges the rows of the two subrays, and then of others, whose exchange brings across and up nearest to
-  /// independence, so that columns and rows stay nearly upright and level. For few subrays: many are independent
-  /// enough.
+  /// Exchanges the rows of two subrays, and then of others, whose exchange brings across and up
+  /// nearest to independence: columns and rows stay nearly upright and level. Many are so.
   void decorrelate_axes() noexcept {
     const std::size_t n = offsets_.size();
     double mixed = 0;
@@ -172,7 +165,8 @@ class LatticeFootprint {
       double best = mixed;
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j) {
-          const double then = mixed - (offsets_[i].x - offsets_[j].x) * (offsets_[i].y - offsets_[j].y);
+          const Vec2 apart = offsets_[i] - offsets_[j];
+          const double then = mixed - apart.x * apart.y;
           if (!(std::fabs(then) < std::fabs(best))) continue;
           best = then;
           first = i;
@@ -185,7 +179,7 @@ class LatticeFootprint {
 
   /// Offset up of the subray in each column.
   static std::vector<Vec2> rows(std::size_t subrays) {
-    require_within("LatticeFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    require_within("LatticeFootprint::subrays", subrays, 1, 100'000, "");
     struct Column {
       double multiple;
       std::size_t number;
@@ -197,36 +191,33 @@ class LatticeFootprint {
     }
     // no two multiples are equal; std::sort would be compiled in every translation unit
     std::qsort(columns.data(), subrays, sizeof(Column), [](const void* a, const void* b) {
-      const double first = static_cast<const Column*>(a)->multiple, second = static_cast<const Column*>(b)->multiple;
-      return first < second ? -1 : first > second ? 1 : 0;
+      return static_cast<const Column*>(a)->multiple < static_cast<const Column*>(b)->multiple ? -1 : 1;
     });
     std::vector<Vec2> offsets(subrays);
-    for (std::size_t row = 0; row < subrays; ++row) offsets[columns[row].number].y = quantile(row, subrays);
+    for (std::size_t k = 0; k < subrays; ++k) offsets[columns[k].number].y = quantile(k, subrays);
     return offsets;
   }
 
   std::vector<Vec2> offsets_;
 };
 
-/// Footprint that forwards every subray with its hit to the sinks (`EchoBatch::subrays`), for studies of footprints:
-/// `WithSubrayRecord{RingFootprint{5}}`.
+/// Footprint that forwards every subray with its hit to the sinks (`EchoBatch::subrays`), for
+/// studies of footprints: `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
   using refinements = refines<tag::RecordsSubrays>;
   static constexpr bool recorded = true;  ///< as the concept RecordsSubrays describes
-  /// Takes a valid footprint.
-  explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
+  explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
 };
 
-/// Footprint that a survey turns about the axis of each pulse's beam, by a different angle for each pulse:
-/// `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge is then hit by different subrays from pulse to pulse, so
-/// that errors of neighbours do not repeat. For round beams only.
+/// Footprint that a survey turns about the axis of each pulse's beam, by a different angle for each
+/// pulse: `TurnedFootprint{LatticeFootprint{}}`. A thin wire or edge is then hit by different
+/// subrays from pulse to pulse, so that errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
   using refinements = refines<tag::RotatesPerPulse>;
   static constexpr bool rotates_per_pulse = true;  ///< as the concept RotatesPerPulse describes
-  /// Takes a valid footprint.
-  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
+  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_SCANNER_SCANNER_HPP
 #define PULSECAST_SCANNER_SCANNER_HPP
 
-#include <optional>
-#include <vector>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -16,15 +12,14 @@ struct Scanner {
   using refinements = refines<tag::FindsSlots, tag::MakesLanes, tag::Validated>;
   double pulse_rate = 100e3;      ///< pulse repetition rate, from 1e-3 to 1e12 [Hz]
   PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
-  double delay = 0;               ///< delay of every pulse after the begin of its slot; less than one slot [s]
+  double delay = 0;               ///< delay after the begin of a slot; less than one slot [s]
   Laser laser{};                  ///< laser of every pulse
   double footprint_scale = 1;     ///< as in `Emitter`
   std::uint16_t receiver = 0;     ///< as in `Emitter`
 
   void validate() const {
     require_within("Scanner::pulse_rate", pulse_rate, 1e-3, 1e12, "Hz");
-    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52,
-                   "");  // limit of the counts in `Tick` and `step_in_cycle`
+    require_within("Scanner::pulses", pulses, 0, 0x1p52, "");  // as in `Tick`
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
       throw SettingError("Scanner::delay", delay, "s",
@@ -46,17 +41,16 @@ struct Scanner {
     return p;
   }
 
-  /// As the concept FindsSlots requires: the first slot at or after a time.
+  /// First slot at or after a time.
   [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept {
     const double periods = (t.seconds() - delay) * pulse_rate * (1 - 0x1p-50);  // rounded down
     if (!(periods > 0)) return 0;
     if (periods >= static_cast<double>(pulses)) return pulses;
     const auto before = static_cast<PulseIndex>(periods);
-    return tick(before) < t ? before + 1 : before;
+    return Tick::of(before, pulse_rate) + Tick::of_seconds(delay) < t ? before + 1 : before;
   }
 
  private:
-  [[nodiscard]] Tick tick(PulseIndex i) const noexcept { return Tick::of(i, pulse_rate) + Tick::of_seconds(delay); }
   [[nodiscard]] Emitter emitter() const noexcept { return {laser, footprint_scale, receiver}; }
 };
 

@@ -4,13 +4,9 @@
 #define PULSECAST_SCANNER_SUBRAY_DIRECTIONS_HPP
 
 #include <algorithm>
-#include <cmath>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/bundle.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -25,17 +21,17 @@ namespace PULSECAST_NAMESPACE {
   return {aside * scaled.x, std::cos(angle), aside * scaled.y};
 }
 
-/// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from a point. Otherwise
-/// each subray passes the waist a quarter turn ahead of its far-field azimuth, so that the subrays are rulings of the
-/// beam's hyperboloid. At every range, their distances from the axis are those of the footprint times `beam_radius`.
+/// Origin of a subray in the frame of its beam, at the exit [m]; zero for a beam from a point.
+/// Otherwise subrays pass the waist a quarter turn ahead of their azimuth, rulings of a
+/// hyperboloid: at all ranges, their distances from the axis are those of the footprint times
+/// `beam_radius`.
 [[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
   const Vec3 direction = subray_direction(offset, laser.divergence);
   const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};
   return at_waist - direction * (laser.waist_range / direction.y) + Vec3{0, laser.waist_range, 0};
 }
 
-/// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their
-/// memory.
+/// Subrays of an emitter's beam, in its frame, padded to whole SIMD vectors. Copies share memory.
 class SubrayDirections {
  public:
   const double* x = nullptr;       ///< components of the unit directions to the right
@@ -58,12 +54,12 @@ class SubrayDirections {
   /// Room for up to `size` subrays of any laser, which `assign` sets.
   [[nodiscard]] static SubrayDirections room(std::size_t size) { return {size, Laser{.waist_diameter = 1}}; }
 
-  /// Offset of a subray and its share of the energy, as of a `Footprint`.
+  /// Subray, as of a `Footprint`.
   struct Subray {
-    Vec2 offset;   ///< in units of the 1/e^2 radius, as of a `Footprint`
+    Vec2 offset;   ///< in units of the 1/e^2 radius
     double share;  ///< of the pulse's energy, without unit
   };
-  /// Replaces the subrays by `subray(j)`, of which there must be room for `size`. Changes all copies.
+  /// Replaces the subrays by `subray(j)`; there must be room for `size`. Changes all copies.
   void assign(std::size_t size, const Emitter& emitter, const auto& subray) noexcept {
     PULSECAST_ASSERT(size + RayBundle::lanes <= padded_);
     exits = emitter.laser.from_a_point() ? nullptr : exits_.data();
@@ -73,11 +69,10 @@ class SubrayDirections {
       set(j, emitter.footprint_scale * s.offset, s.share, emitter.laser);
     }
     for (std::size_t column = 0; column < 4; ++column)
-      for (std::size_t j = size; j < size + RayBundle::lanes; ++j) columns_[column * padded_ + j] = 0;
+      std::fill_n(columns_.data() + column * padded_ + size, RayBundle::lanes, 0.0);
   }
 
-  /// True if the beam leaves through a point.
-  [[nodiscard]] bool from_a_point() const noexcept { return !exits; }
+  [[nodiscard]] bool from_a_point() const noexcept { return !exits; }  ///< true for a single exit
 
   /// True if two emitters with the same footprint have equal subrays.
   [[nodiscard]] static bool equal(const Emitter& a, const Emitter& b) noexcept {

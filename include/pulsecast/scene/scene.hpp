@@ -45,7 +45,7 @@ class Scene {
   /// As above, in the memory of a scene no longer used: a loop over two soon allocates nothing.
   [[nodiscard]] Scene with_placements(std::span<const Placement> placements, Scene&& unused,
                                       const Workers& workers = {}) const {
-    detail::require_count("Scene::with_placements (number)", placements.size(), parts_.size(), parts_.size());
+    require_within("Scene::with_placements (number)", placements.size(), parts_.size(), parts_.size());
     unused.parts_ = parts_;
     unused.boxes_.resize(placements.size());
     for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -199,7 +199,7 @@ class Scene {
       const auto box_of = [&](const auto& shape) {
         if (!shape) throw_setting_error("Part::geometry (number)", 0, "", "1");
         const std::size_t materials = part.materials ? part.materials->size() : 0;
-        detail::require_count("Part::materials (number)", materials, shape->material_count(), 4294967295);
+        require_within("Part::materials (number)", materials, shape->material_count(), 4294967295);
         return part.motion ? Box{} : part.placement.box(shape->bounds());
       };
       boxes[i] = visit_shape(box_of, part.geometry);

@@ -4,11 +4,7 @@
 #define PULSECAST_SENSOR_SPINNING_SENSOR_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/deflector.hpp>
@@ -25,29 +21,28 @@ struct SensorLaser {
   double elevation = 0;  ///< angle above the head's equator [rad]
   double azimuth = 0;    ///< angle from the head's heading to the right, as seen from above [rad]
   double height = 0;     ///< exit above the sensor's origin [m]
-  double delay = 0;      ///< time after the begin of the firing sequence; does not decrease from laser to laser [s]
+  double delay = 0;      ///< time after the sequence's begin; does not decrease [s]
 };
 
-/// Pulse source of a spinning sensor.
-using SpinningSource = Deflector<RotatingHead, Channels<Deflector<FixedBeam, Scanner>>>;
+using SpinningSource = Deflector<RotatingHead, Channels<Deflector<FixedBeam, Scanner>>>;  ///< its source
 
-/// Data sheet of a lidar with a column of lasers on a head that spins about the sensor's up axis. All lasers fire once
-/// in each firing sequence. Of n lasers, slot i of its source is laser `i % n` in sequence `i / n`, and the number of
-/// the laser is the shot's channel.
+/// Data sheet of a lidar with a column of lasers on a head that spins about the sensor's up axis.
+/// All lasers fire once in each firing sequence. Of n lasers, slot i of its source is laser `i % n`
+/// in sequence `i / n`, and the number of the laser is the shot's channel.
 struct SpinningSensor {
   std::string name{};                 ///< model
   std::vector<SensorLaser> lasers{};  ///< lasers in the order of firing
   double sequence_rate = 18e3;        ///< firing sequences per second, from 1 to 1e9 [Hz]
-  double rotation_rate = 10;   ///< turns of the head per second, to the right if positive, as seen from above [Hz]
-  double start = 0;            ///< heading at the survey's start, from forward to the right [rad]
-  double exit_radius = 0;      ///< distance of the exits from the axis [m]
-  Laser beam{};                ///< every laser's beam
-  double range_min = 0;        ///< minimum measured range [m]
-  double range_max = 100;      ///< maximum measured range [m]
-  double range_deviation = 0;  ///< standard deviation of measured ranges [m]
+  double rotation_rate = 10;          ///< turns of the head, to the right as seen from above [Hz]
+  double start = 0;                   ///< first heading, from forward to the right [rad]
+  double exit_radius = 0;             ///< distance of the exits from the axis [m]
+  Laser beam{};                       ///< every laser's beam
+  double range_min = 0;               ///< minimum measured range [m]
+  double range_max = 100;             ///< maximum measured range [m]
+  double range_deviation = 0;         ///< standard deviation of measured ranges [m]
 
   void validate() const {
-    require_within("SpinningSensor::lasers (number)", static_cast<double>(lasers.size()), 1, max_emitters, "");
+    require_within("SpinningSensor::lasers (number)", lasers.size(), 1, max_emitters, "");
     require_within("SpinningSensor::sequence_rate", sequence_rate, 1, 1e9, "Hz");
     require_within("SpinningSensor::rotation_rate", rotation_rate, -1e6, 1e6, "Hz");
     require_angle("SpinningSensor::start", start);
@@ -73,18 +68,18 @@ struct SpinningSensor {
     return lasers.size() * Scanner{.pulse_rate = sequence_rate, .pulses = PulseIndex{1} << 52}.slot_from(t);
   }
 
-  /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError for settings out of
-  /// range
+  /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError
   [[nodiscard]] SpinningSource source(double duration) const {
     validate();
     require_not_negative("SpinningSensor::source (duration)", duration, "s");
     const auto sequences = static_cast<PulseIndex>(std::ceil(duration * sequence_rate * (1 - 1e-15)));
     std::vector<Deflector<FixedBeam, Scanner>> emitters;
-    for (const SensorLaser& laser : lasers)
-      emitters.push_back(
-          {FixedBeam{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})},
-           Scanner{.pulse_rate = sequence_rate, .pulses = sequences, .delay = laser.delay, .laser = beam}});
-    return {RotatingHead{.angular_rate = -2 * pi * rotation_rate, .start = -start}, Channels{std::move(emitters)}};
+    Scanner scanner{.pulse_rate = sequence_rate, .pulses = sequences, .laser = beam};
+    for (const SensorLaser& laser : lasers) {
+      scanner.delay = laser.delay;
+      emitters.push_back({{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})}, scanner});
+    }
+    return {{.angular_rate = -2 * pi * rotation_rate, .start = -start}, Channels{std::move(emitters)}};
   }
 
   /// Receiver with the sensor's range gate and noise.
@@ -95,9 +90,10 @@ struct SpinningSensor {
   /// Ring of each laser: its place from the lowest elevation up, from 0.
   [[nodiscard]] std::vector<std::uint16_t> rings() const {
     std::vector<std::uint16_t> rings;
-    for (const SensorLaser& laser : lasers)
-      rings.push_back(static_cast<std::uint16_t>(std::count_if(
-          lasers.begin(), lasers.end(), [&](const SensorLaser& other) { return other.elevation < laser.elevation; })));
+    for (const SensorLaser& laser : lasers) {
+      const auto lower = [&](const SensorLaser& other) { return other.elevation < laser.elevation; };
+      rings.push_back(static_cast<std::uint16_t>(std::count_if(lasers.begin(), lasers.end(), lower)));
+    }
     return rings;
   }
 };

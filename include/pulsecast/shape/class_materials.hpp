@@ -19,7 +19,7 @@ struct ClassMaterials {
   std::vector<Material> materials{1};  ///< of a part; the first is that of pixels without a class
   std::vector<CodeMaterial> listed{};  ///< code of each other material
 
-  void validate() const { detail::require_count("ClassMaterials::materials (number)", materials.size(), 1, 256); }
+  void validate() const { require_within("ClassMaterials::materials (number)", materials.size(), 1, 256); }
 };
 
 /// Gives each code that occurs in a raster its entry of a table of colours (sRGB, from 0 to 1), by
@@ -42,7 +42,7 @@ inline void colour_classes(ClassMaterials& classes, const Raster& codes, std::sp
     std::size_t i = 0;
     while (i < listed.size() && listed[i].code != number) ++i;
     if (i == listed.size()) {
-      detail::require_count("ClassMaterials::materials (number)", materials.size() + 1, 1, 256);
+      require_within("ClassMaterials::materials (number)", materials.size() + 1, 1, 256);
       listed.push_back({number, static_cast<std::uint8_t>(materials.size())});
       materials.push_back(materials.front());
       materials.back().name += " " + std::to_string(code);

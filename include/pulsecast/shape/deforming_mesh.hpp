@@ -37,7 +37,7 @@ class DeformingMesh {
   /// caller's thread; `workers` build an index anew. @throws SettingError for another number of
   /// vertices, or one in use beyond 1e18 m from the origin; the current mesh then stays
   std::shared_ptr<const Mesh> refit(std::span<const Vec3> vertices, const Workers& workers = {}) {
-    detail::require_count("DeformingMesh::vertices (number)", vertices.size(), vertices_, vertices_);
+    require_within("DeformingMesh::vertices (number)", vertices.size(), vertices_, vertices_);
     const Frame& now = frames_[now_];
     Frame& next = frames_[1 - now_];
     if (next.mesh.use_count() != 1) next.mesh = std::make_shared<Mesh>(*now.mesh);

@@ -45,7 +45,7 @@ struct Mask {
     require_within("Mask::width", width, 0, 65536, "pixel");
     require_within("Mask::height", height, width == 0 ? 0 : 1, width == 0 ? 0 : 65536, "pixel");
     const std::size_t words = (std::size_t{width} * height + 63) / 64;
-    detail::require_count("Mask::bits (number of words)", bits.size(), words, words);
+    require_within("Mask::bits (number of words)", bits.size(), words, words);
   }
 };
 

@@ -42,8 +42,8 @@ struct MeshData {
 
   /// Refuses counts beyond 32 bits before allocation. @throws SettingError
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
-    detail::require_count("MeshData::vertices (number)", vertices, 0, 4294967295);
-    detail::require_count("MeshData::triangles (number)", triangles, 1, 4294967294);
+    require_within("MeshData::vertices (number)", vertices, 0, 4294967295);
+    require_within("MeshData::triangles (number)", triangles, 1, 4294967294);
   }
 
   /// Triangle i [m].

@@ -186,7 +186,7 @@ struct Raster {
 
   void check_packed() const {
     packed.validate();
-    detail::require_count("Raster::heights (number of them beside `packed`)", heights.size(), 0, 0);
+    require_within("Raster::heights (number of them beside `packed`)", heights.size(), 0, 0);
     require_pixels("Raster::packed.numbers", packed.numbers.size(), ", or none");
   }
 };
@@ -223,7 +223,7 @@ namespace detail {
 /// Its heights are packed if all are, with one scale. @throws SettingError as `Raster::validate`;
 /// for no tile, pixels of different lattices, or tiles on less than a 64th of their extent
 [[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
-  detail::require_count("mosaic (number of tiles)", tiles.size(), 1, 1'000'000);
+  require_within("mosaic (number of tiles)", tiles.size(), 1, 1'000'000);
   const Vec2 pixel = tiles.front().pixel, first = tiles.front().first;
   double west = first.x, north = first.y, east = west, south = north, pixels = 0;
   for (const Raster& tile : tiles) {

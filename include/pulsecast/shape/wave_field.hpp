@@ -113,7 +113,7 @@ class WaveField {
 
   /// Of at most `max_size` waves. @throws SettingError for a wave out of range, or too many of them
   explicit WaveField(std::vector<SineWave> waves) {
-    detail::require_count("WaveField::waves (number)", waves.size(), 0, max_size);
+    require_within("WaveField::waves (number)", waves.size(), 0, max_size);
     for (const SineWave& wave : waves) wave.validate();
     std::erase_if(waves, [](const SineWave& wave) { return wave.amplitude == 0; });
     if (waves.empty()) return;

@@ -49,7 +49,7 @@ struct WindWaves {
     require_angle("WindWaves::toward", toward);
     require_within("WindWaves::fetch", fetch, 1, detail::infinity, "m");
     require_within("WindWaves::shortest", shortest, 2e-3, 0.1, "m");
-    detail::require_count("WindWaves::components (number)", components, 16, WaveField::max_size);
+    require_within("WindWaves::components (number)", components, 16, WaveField::max_size);
   }
 };
 

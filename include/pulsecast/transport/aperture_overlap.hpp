@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -18,12 +17,10 @@ namespace PULSECAST_NAMESPACE {
 
 /// Place and view of a receiver's aperture beside that of the beam.
 struct ApertureGeometry {
-  double separation = 0;  ///< distance of the two axes at the instrument: 0 for coaxial apertures [m]
-  double inclination =
-      0;  ///< angle at which the receiver's axis approaches the beam's: 0 for parallel ones, from -0.1 to 0.1 [rad]
+  double separation = 0;        ///< distance of the axes at the instrument [m]
+  double inclination = 0;       ///< of the receiver's axis to the beam's, from -0.1 to 0.1 [rad]
   double field_of_view = 2e-3;  ///< full angle of the receiver's view, from 1e-6 to 1 [rad]
-  double obstruction =
-      0;  ///< diameter of what stands in the middle of the receiver's aperture, as a mirror for the beam [m]
+  double obstruction = 0;       ///< diameter of what covers the middle of the aperture [m]
 
   void validate() const {
     require_within("ApertureGeometry::separation", separation, 0, 1e3, "m");
@@ -46,22 +43,22 @@ struct ApertureGeometry {
   return segment(a, from_a) + segment(b, from_b);
 }
 
-/// Share of a beam's cross section, to the 1/e^2 radius, that is in the view of a receiver at a range [m]; of an
-/// ellipse, that of the disc of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc
-/// 1978; Measures 1984, for an even beam.
+/// Share of a beam's cross section, to the 1/e^2 radius, that a receiver sees at a range [m]; of an
+/// ellipse, that of the disc of its area. Source: overlap function of geometrical optics for an
+/// even beam, Halldorsson & Langerholc 1978; Measures 1984.
 [[nodiscard]] inline double aperture_overlap(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
                                              double range) noexcept {
   const Vec2 axes = beam_radius(laser, range);
   const double beam = std::max(std::sqrt(axes.x * axes.y), 1e-9);  // a line is a thin disc
-  const double aperture = 0.5 * receiver.diameter, view = aperture + range * std::tan(0.5 * g.field_of_view);
+  const double wider = range * std::tan(0.5 * g.field_of_view), view = 0.5 * receiver.diameter + wider;
   const double distance = std::fabs(g.separation - range * std::tan(g.inclination));
-  // the shadow of the obstruction ends where its edge no longer covers the view
-  const double shadow = std::max(0.5 * g.obstruction - range * std::tan(0.5 * g.field_of_view), 0.0);
-  return (shared_area(beam, view, distance) - shared_area(beam, std::min(shadow, view), distance)) / (pi * beam * beam);
+  const double shadow = std::max(0.5 * g.obstruction - wider, 0.0);
+  const double seen = shared_area(beam, view, distance) - shared_area(beam, std::min(shadow, view), distance);
+  return seen / (pi * beam * beam);
 }
 
-/// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range, and of a hundredth
-/// of `near` [m] before ten times that. @throws SettingError
+/// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range,
+/// and of a hundredth of `near` [m] before ten times that. @throws SettingError
 [[nodiscard]] inline SharedArray<OverlapAtRange> overlap_table(const ApertureGeometry& g, const Receiver& receiver,
                                                                const Laser& laser, double near = 0.1,
                                                                double far = 1000) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>
@@ -15,20 +14,17 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed:
-/// what is not scattered counts as absorbed.
+/// Transport of light that first surfaces scatter straight back; the rest is absorbed.
 struct DirectLight {
-  bool spread_planes =
-      true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`
+  bool spread_planes = true;  ///< spreads light over smooth surfaces: `spread_over_plane`
 
-  /// Scratch memory of one worker.
   struct Workspace {
     std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
     bool met_nothing = false;                   ///< true if the last pulse met nothing
     SubrayDirections slope{};                   ///< subrays for a smooth surface
   };
 
-  /// Room for the reflections of a pulse of so many subrays.
+  /// Room for the reflections of a pulse.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
     return spreads(subrays) ? std::max(subrays, slope_subrays_max) : subrays;
   }
@@ -36,18 +32,15 @@ struct DirectLight {
     return {.hits = {}, .slope = spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
   }
 
-  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one often meets
-  /// nothing, too. Others pay no test, nor do single rays, which cost as little. Sets velocities, too, if
-  /// `with_velocity`: the rays that return are then asked again one by one.
-  // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140
-  // instructions a pulse
+  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next
+  /// one often meets nothing, too. Asks rays that return again for velocities, if `with_velocity`.
+  // always inlined: a footprint of one subray is then known to be one, which saves 140 instructions
   template <bool with_velocity = false, Target Target>
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Target& target, const TransportInput& light,
                                                           Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
-    const bool may_spread =
-        !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
+    const bool may_spread = !with_velocity && spreads(light.subrays);  // while one is known to be one
     if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() &&
         misses(target, light)) {
       result.energy.sent = light.energy();
@@ -82,14 +75,10 @@ struct DirectLight {
                                                    TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
     RayBundle rays;
-    rays.origin = light.pulse.origin();
-    rays.wavelength = light.emitter.laser.wavelength;
-    rays.tick = light.pulse.tick;
-    rays.seed = light.seed;
-    rays.pulse = light.index;
+    detail::set_origin(light, rays);
     const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
-    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
+    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     bool met = false, in_gate = false;
     RayBundle::Column power;
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {
@@ -140,11 +129,9 @@ struct DirectLight {
   /// True only if no subray of a beam from a point meets anything.
   template <Target Target>
   [[nodiscard]] static bool misses(const Target& target, const TransportInput& light) noexcept {
-    constexpr double not_quite_unit = 1.01;  // factor for rotations that are unit within a thousandth
     const Pose<frame::Beam, frame::World>& pose = light.pulse.pose;
-    const Vec3 direction = matrix_of(pose.rotation)[1];
-    return detail::misses_cone(target,
-                               RayCone{pose.position, direction, not_quite_unit * light.beam.spread, light.pulse.tick});
+    const double spread = 1.01 * light.beam.spread;  // rotations are unit within a thousandth
+    return detail::misses_cone(target, RayCone{pose.position, matrix_of(pose.rotation)[1], spread, light.pulse.tick});
   }
 };
 

@@ -4,16 +4,8 @@
 #define PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
@@ -30,8 +22,8 @@ struct ReceiverUnit {
   Detector detector;    ///< detector
 };
 
-/// Echoes of pulses as a pure function: what light, receivers and detectors make of each. A `Survey` is this after a
-/// source of pulses. Immutable. Refers to the map, which must outlive it.
+/// Echoes of pulses as a pure function: what light, receivers and detectors make of each. A
+/// `Survey` is this after a source of pulses. Immutable. Refers to the map, which must outlive it.
 template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport = DirectLight>
 class EchoSimulator {
   static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
@@ -41,26 +33,23 @@ class EchoSimulator {
                 "DirectLight has");
 
  public:
-  /// For pulses of `emitters`, by number, each of which has its receiver.
-  /// @throws SettingError for settings out of range, footprint shares that do not sum to one, an emitter without a
-  /// receiver, or a laser that the detector refuses
+  /// For pulses of `emitters`, by number, with receivers. @throws SettingError for settings out of
+  /// range, an emitter without a receiver, or a refused laser
   EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
                 const std::vector<Emitter>& emitters, std::uint64_t seed = 0);
   // a temporary map would dangle
   EchoSimulator(std::vector<ReceiverUnit<Footprint, Detector>>, const Target&&, Transport, const std::vector<Emitter>&,
                 std::uint64_t = 0) = delete;
 
-  /// Scratch memory of one worker.
   struct Workspace {
-    decltype(std::declval<const Transport&>().workspace(0)) transport;  ///< workspace of the transport
-    SharedBuffer<Reflection> reflections;                               ///< reflections of a pulse, with room for all
-    std::vector<SubrayRecord> subrays;                                  ///< all of a pulse, if recorded
-    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< workspace of each receiver's
-    std::uint16_t emitter = 0;                                                      ///< emitter of the last pulse
-    WhiteTarget white_target{};                                                     ///< white target of that emitter
+    decltype(std::declval<const Transport&>().workspace(0)) transport;              ///< of the transport
+    SharedBuffer<Reflection> reflections;                                           ///< of a pulse
+    std::vector<SubrayRecord> subrays;                                              ///< of a pulse, if recorded
+    std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< by receiver
+    std::uint16_t emitter = 0;                                                      ///< of the last pulse
+    WhiteTarget white_target{};                                                     ///< of that emitter
   };
 
-  /// Scratch memory for one worker.
   [[nodiscard]] Workspace workspace() const;
 
   /// Subrays of a pulse: the mean over the emitters, if their receivers differ.
@@ -72,11 +61,11 @@ class EchoSimulator {
   }
   /// Subrays passed to the sinks with each pulse.
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }
-  /// Receivers.
+  /// Receivers, by number.
   [[nodiscard]] std::span<const ReceiverUnit<Footprint, Detector>> receivers() const noexcept { return receivers_; }
   /// Sample spacing of a waveform; 0 if the detectors have none [s].
   [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
-  /// Token that this survey shares with its copies alone: they may use each other's workspaces.
+  /// Token of this survey and its copies, which may use each other's workspaces.
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
 
   /// Result of slot i, whose pulse is empty if it is blocked.
@@ -103,7 +92,7 @@ class EchoSimulator {
       require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
       sum += share;
     }
-    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // rounding of a sum of a million
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");
   }
 
   /// Refuses receivers whose results do not fit in one batch.
@@ -112,8 +101,7 @@ class EchoSimulator {
     for (const Unit& unit : receivers_) {
       if (interval_of(unit) != interval)
         throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
-      if (recorded)
-        require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
+      if (recorded) require_within("Survey::receivers (subrays)", unit.footprint.size(), subrays, subrays, "");
     }
   }
 
@@ -122,8 +110,8 @@ class EchoSimulator {
     return 0;
   }
 
-  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no
-  /// receiver, or if the detector refuses its laser.
+  /// Computes the constants of a valid emitter; those from `first` on are known. @throws
+  /// SettingError if it has no receiver, or the detector refuses its laser
   void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     Unit& unit = receivers_[emitter.receiver];
@@ -153,23 +141,17 @@ class EchoSimulator {
   [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
                                       Workspace& w) const noexcept {
     const Unit& unit = receivers_[constants.emitter.receiver];
-    const TransportInput light{pulse,
-                               i,
-                               seed_,
-                               constants.emitter,
-                               constants.beam,
-                               unit.footprint.size(),
-                               constants.budget,
-                               w.white_target,
-                               unit.receiver.gate(),
-                               recorded ? std::span(w.subrays) : std::span<SubrayRecord>{}};
+    const auto& [emitter, budget, beam, errs] = constants;
+    TransportInput light{pulse, i, seed_, emitter, beam, unit.footprint.size(), budget, w.white_target};
+    light.gate = unit.receiver.gate();
+    if constexpr (recorded) light.record = w.subrays;
     if constexpr (ReadsVelocity<Detector>)
       return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
     else
       return transport_.trace(*target_, light, w.transport, w.reflections);
   }
 
-  /// Error of a pulse that may have one: light did not return, the map answered with NaN, or a pose is reported.
+  /// Error of a pulse without light, of a map that answered with NaN, or with a reported pose.
   static PulseError error_of(const Pulse<frame::World>& pulse, bool nan_of_map) noexcept {
     if (!pulse.pose.finite() || (pulse.reported && !pulse.reported->finite())) return PulseError::pose;
     return nan_of_map ? PulseError::map : PulseError::none;
@@ -188,7 +170,7 @@ EchoSimulator<Footprint, Target, Detector, Transport>::EchoSimulator(
     std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
     const std::vector<Emitter>& emitters, std::uint64_t seed)
     : target_(&target), transport_(validated(std::move(transport))), receivers_(std::move(receivers)), seed_(seed) {
-  require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
+  require_within("Survey::receivers (number)", receivers_.size(), 1, max_emitters, "");
   for (Unit& unit : receivers_) {
     detail::validate_in_place(unit.footprint);
     detail::validate_in_place(unit.receiver);

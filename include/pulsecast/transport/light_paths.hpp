@@ -3,7 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 #define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
@@ -12,35 +11,33 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform, footprint, scene,
-/// LightPaths{}, receiver, detector}`. Every surface that it meets on its way sends light back along the same way,
-/// which an instrument reports in the direction of its beam, at half the optical path.
+/// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform,
+/// footprint, scene, LightPaths{}, receiver, detector}`. Every surface on its way sends light back
+/// along the same way, reported along the beam, at half the optical path.
 ///
-/// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the ledger, a surface's share
-/// of the light is scattered, and the rest is absorbed.
+/// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the
+/// ledger, a surface's share of the light is scattered, and the rest is absorbed.
 ///
-/// Mirrors and panes that are plane pass subrays on together; bodies refract them one by one. Light spreads by the
-/// plane that each ray meets. Left out: polarisation from one surface to the next, interference, diffraction.
+/// Plane mirrors and panes pass subrays on together; bodies refract them one by one. Light spreads
+/// by the plane that each ray meets. Left out: polarisation, interference, diffraction.
 struct LightPaths {
-  std::size_t passages = 8;         ///< greatest number of surfaces that pass light on, from 0 to 32
-  double share_min = 1e-4;          ///< least share of a subray's light that is followed, one way, in [0, 1]
+  std::size_t passages = 8;         ///< most surfaces that pass light on, from 0 to 32
+  double share_min = 1e-4;          ///< least share of a subray's light that is followed, one way
   bool spread_planes = true;        ///< as in `DirectLight`
   MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
-  /// Number of stretches, beside whole cells, by which what media in the air send back is told exactly, and that of
-  /// bodies, from 4 to 1e6: where there are more, their ends are blurred by a twelfth of their range.
+  /// Number of stretches, beside whole cells, that media in the air, and bodies, send back exactly,
+  /// from 4 to 1e6: the ends of more are blurred by a twelfth of their range.
   std::size_t volume_cells = 8192;
 
   void validate() const {
-    require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
+    require_within("LightPaths::passages", passages, 0, 32, "");
     require_within("LightPaths::share_min", share_min, 0, 1, "");
     scattering.validate();
-    require_within("LightPaths::volume_cells", static_cast<double>(volume_cells), 4, 1e6, "");
+    require_within("LightPaths::volume_cells", volume_cells, 4, 1e6, "");
   }
 
-  /// Refuses a target that `VisitsMaterials` for a law that does not `ScattersBetween`, if light is scattered to and
-  /// fro.
-  /// @throws SettingError
+  /// Refuses laws that are no `ScattersBetween`, for light to and fro. @throws SettingError
   template <SceneQueries Target>
   void validate(const Target& target) const {
     if (scattering.orders == 1) return;
@@ -53,13 +50,12 @@ struct LightPaths {
     });
   }
 
-  /// Scratch memory of one worker.
-  using Workspace = detail::PathWorkspace;
+  using Workspace = detail::PathWorkspace;  ///< scratch memory of one worker
 
-  /// Room for the reflections of a pulse of so many subrays. Light of further ones is counted as cut.
+  /// Room for the reflections of a pulse. Light of further ones is counted as cut.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
-    const std::size_t particles =
-        air.has_particles() ? static_cast<std::size_t>(1.2 * detail::BeamParticles::most) : 0;  // six deviations more
+    constexpr double expected = detail::BeamParticles::most;
+    const std::size_t particles = air.has_particles() ? static_cast<std::size_t>(1.2 * expected) : 0;
     const std::size_t most = subrays * (2 * passages + 1) + scattering.reflections() + particles;
     return spreads(subrays) ? most + slope_subrays_max : most;
   }
@@ -71,18 +67,18 @@ struct LightPaths {
   template <bool with_velocity = false, SceneQueries Target>
   [[nodiscard]] TransportResult trace(const Target& target, const TransportInput& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
-    const detail::PathSettings settings{passages, share_min, air, scattering};
     TransportResult result;
-    detail::PathTracer<with_velocity, Target> tracer(target, light, settings, w, reflections, result);
+    detail::PathTracer<with_velocity, Target> tracer(target, light, *this, w, reflections, result);
     tracer.trace();
-    if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
-      if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections)));
-          span > 1)
+    if (!with_velocity && spreads(light.subrays) && !tracer.passed_on()) {
+      const auto direct = detail::direct_ones(reflections.first(result.reflections));
+      if (const double span = span_of_ranges(light, direct); span > 1)
         spread_over_plane(light, span, reflections, w.slope, result, [&](const TransportInput& again) noexcept {
           TransportResult other;
-          detail::PathTracer<with_velocity, Target>(target, again, settings, w, reflections, other).trace();
+          detail::PathTracer<with_velocity, Target>(target, again, *this, w, reflections, other).trace();
           return other;
         });
+    }
     return result;
   }
 

@@ -10,14 +10,13 @@ namespace PULSECAST_NAMESPACE {
 
 /// Light that is scattered more than once before it returns.
 struct MultipleScattering {
-  std::size_t orders = 1;       ///< greatest number of surfaces that scatter it, from 1 to 64; 1: none of it
+  std::size_t orders = 1;       ///< most surfaces that scatter it, from 1 to 64; 1: none of it
   std::size_t paths = 8;        ///< number of random paths of a pulse, from 1 to 100,000
-  double field_of_view = 2e-3;  ///< full angle about the beam's axis that the receiver sees, from 0 to 2 pi; at least
-                                ///< that of the beam [rad]
+  double field_of_view = 2e-3;  ///< full angle that the receiver sees, from the beam's to 2 pi [rad]
 
   void validate() const {
-    require_within("MultipleScattering::orders", static_cast<double>(orders), 1, 64, "");
-    require_within("MultipleScattering::paths", static_cast<double>(paths), 1, 100'000, "");
+    require_within("MultipleScattering::orders", orders, 1, 64, "");
+    require_within("MultipleScattering::paths", paths, 1, 100'000, "");
     require_within("MultipleScattering::field_of_view", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");
   }
   /// Number of reflections that it may add to a pulse.

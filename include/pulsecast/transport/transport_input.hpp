@@ -8,8 +8,6 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
-#include <pulsecast/echo.hpp>
-#include <pulsecast/pulse.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -25,8 +23,12 @@ struct TransportInput {
   const LinkBudget& budget;          ///< link budget of emitter and receiver
   WhiteTarget& white_target;         ///< memory of that budget's last result
   RangeGate gate{};                  ///< range gate of the receiver
-  std::span<SubrayRecord> record{};  ///< first surface of each subray, to be set; empty unless subrays are recorded
+  std::span<SubrayRecord> record{};  ///< first surfaces of the subrays, to be set, if recorded
 
+  /// The same light by other subrays, without a record.
+  [[nodiscard]] TransportInput by(const SubrayDirections& others, std::size_t count) const noexcept {
+    return {pulse, index, seed, emitter, others, count, budget, white_target, gate};
+  }
   /// Energy of the pulse [J].
   [[nodiscard]] double energy() const noexcept { return emitter.laser.energy(); }
   /// Pose of the beam as known to the instrument.
@@ -37,7 +39,7 @@ struct TransportInput {
 
 namespace detail {
 
-/// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.
+/// Memory for the reflections of a pulse. Those that pulses seldom reach are not initialized.
 [[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections, std::size_t subrays) {
   const SharedBuffer<Reflection> room(reflections);
   std::fill_n(room.begin(), std::min(reflections, 20 * subrays), Reflection{});

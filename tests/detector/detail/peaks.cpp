@@ -67,7 +67,7 @@ TEST_CASE("after an echo, the receiver is blind for its dead time, whatever come
 TEST_CASE("of too many echoes, the first are kept, and those of the air only where there is room; or the strongest") {
   const auto kept_of = [](KeptReturns which, std::size_t most, const std::vector<Echo>& all) {
     std::vector<Echo> echoes;
-    for (const Echo& echo : all) keep_return(echo, which, most, echoes);
+    for (const Echo& echo : all) keep_return(echo, WaveformSettings{.returns_max = most, .returns_kept = which}, echoes);
     std::vector<double> ranges;
     for (const Echo& echo : echoes) ranges.push_back(echo.range);
     return ranges;

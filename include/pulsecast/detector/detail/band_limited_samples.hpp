@@ -4,12 +4,7 @@
 #define PULSECAST_DETECTOR_DETAIL_BAND_LIMITED_SAMPLES_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/filtered_noise.hpp>
@@ -35,8 +30,8 @@ struct ReceivedPulses {
 
 }  // namespace detail
 
-/// Samples after a receiver of finite bandwidth, in sections with gaps where no light arrives. With noise there is one
-/// section of at most 1e7 samples: the range gate, up to the last reflection if the gate has no end.
+/// Samples after a receiver of finite bandwidth, in sections with gaps where no light arrives. With
+/// noise there is one of at most 1e7 samples: the range gate, or up to the last reflection.
 class BandLimitedSamples {
  public:
   struct Workspace {
@@ -56,7 +51,7 @@ class BandLimitedSamples {
         w_(w),
         interval_(s.sample_interval),
         wavelength_(input.emitter.laser.wavelength),
-        noise_(pulses.filter, noise_key(input.key)),
+        noise_(pulses.filter, input.key.with(Purpose::receiver_noise)),
         noisy_(chain.noisy()),
         peaks_only_(peaks_only && !noisy_ && pulses.taps.empty() && s.record_length == 0 &&
                     s.timing == EchoTiming::peak) {
@@ -81,12 +76,12 @@ class BandLimitedSamples {
     [[nodiscard]] double begin() const noexcept { return pulse.begin() - pulse.peak(); }
     [[nodiscard]] double end() const noexcept { return pulse.end() - pulse.peak(); }
   };
-  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }   ///< shape of the pulses of these samples
-  [[nodiscard]] double start() const noexcept { return start_; }           ///< number of the first sample
-  [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }  ///< of a pulse's maximum in the samples [s]
-  /// Mean that is not in the samples [W].
+  // as `IdealSamples` describes
+  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }
+  [[nodiscard]] double start() const noexcept { return start_; }
+  [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }
   [[nodiscard]] double background() const noexcept { return chain_.background; }
-  [[nodiscard]] bool independent_noise() const noexcept { return false; }  ///< noise is filtered
+  [[nodiscard]] bool independent_noise() const noexcept { return false; }
 
   [[nodiscard]] bool begin_section() noexcept {
     if (noisy_ ? begun_ || !(number_ <= end_ || !reflections_.empty()) : !std::isfinite(first_of_section()))
@@ -126,20 +121,16 @@ class BandLimitedSamples {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr double margin = 2;         ///< samples beside a pulse, so that a peak has neighbours
+  static constexpr double margin = 2;         ///< samples beside a pulse, for its peaks
   static constexpr double samples_max = 1e7;  ///< of a gate
   static constexpr std::size_t fallen = 4;    ///< falling samples after a maximum
 
-  [[nodiscard]] static RandomKey noise_key(RandomKey key) noexcept {
-    key.purpose = Purpose::receiver_noise;
-    return key;
-  }
-
   [[nodiscard]] double deviation(double signal) const noexcept {
-    return std::sqrt(chain_.density(signal, wavelength_) * pulses_.filter.noise_bandwidth()) / pulses_.pulse.gain();
+    const double variance = chain_.density(signal, wavelength_) * pulses_.filter.noise_bandwidth();
+    return std::sqrt(variance) / pulses_.pulse.gain();
   }
 
-  /// Number of the first sample of a section that light begins, whose own first sample has a number.
+  /// Number of the first sample of a section, from that of the light that begins it.
   [[nodiscard]] double before(double first) const noexcept {
     if (pulses_.taps.empty()) return first - margin;
     return first - margin - static_cast<double>(pulses_.first_tap) - static_cast<double>(pulses_.taps.size());
@@ -150,8 +141,8 @@ class BandLimitedSamples {
   }
   /// Number of the first sample of the next section; infinite if there is none.
   [[nodiscard]] double first_of_section() const noexcept {
-    const double rise = before(std::ceil(continuous_.next() / interval_)),
-                 solid = next_ < reflections_.size() ? first_of(next_) : infinity;
+    const double rise = before(std::ceil(continuous_.next() / interval_));
+    const double solid = next_ < reflections_.size() ? first_of(next_) : infinity;
     const double late = before(std::floor(continuous_.first_peak() / interval_));
     return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }
@@ -179,18 +170,18 @@ class BandLimitedSamples {
     }
     const std::size_t size = w_.sums.size();
     std::size_t at = static_cast<std::size_t>(static_cast<std::int64_t>(first)) & (size - 1);
-    auto k =
-        static_cast<std::size_t>(std::max(std::int64_t{0}, raw_ - static_cast<std::int64_t>(first)));  // samples gone
+    const std::int64_t gone = raw_ - static_cast<std::int64_t>(first);  // samples of the pulse
+    auto k = static_cast<std::size_t>(std::max(std::int64_t{0}, gone));
     at = (at + k) & (size - 1);
     for (std::size_t end; k < pulse.stride(); k = end, at = 0) {
       end = std::min(pulse.stride(), k + (size - at));
       for (std::size_t q = 0; q < pulse.rows(); ++q)
         if (w_.phases[q] != 0) add(w_.phases[q], pulse.row(q) + k, end - k, w_.sums.data() + at);
     }
-    end_ = std::max(end_, first + static_cast<double>(pulse.count()) + margin - static_cast<double>(pulses_.first_tap));
+    const double last = first + static_cast<double>(pulse.count()) + margin;
+    end_ = std::max(end_, last - static_cast<double>(pulses_.first_tap));
   }
 
-  /// Adds `factor` times some numbers to others.
   static void add(double factor, const double* from, std::size_t count, double* to) noexcept {
     std::size_t k = 0;
     for (; k + simd::lane_count <= count; k += simd::lane_count)

@@ -10,7 +10,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Data that a detector prepares for each pulse length, before the first pulse. A device has few of them.
+/// Data that a detector prepares for each pulse length, of which a device has few.
 template <class Prepared>
 class ByPulseLength {
  public:
@@ -21,7 +21,6 @@ class ByPulseLength {
     return nullptr;
   }
 
-  /// Keeps what was prepared for a laser, for which there was nothing.
   void add(const Laser& laser, Prepared prepared) { known_.emplace_back(laser.pulse_length, std::move(prepared)); }
 
   void each(const auto& visit) const {

@@ -4,10 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_CONTINUOUS_WAVEFORM_HPP
 
 #include <algorithm>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
@@ -19,12 +17,12 @@ namespace PULSECAST_NAMESPACE::detail {
   return r.end - r.begin > negligible ? (r.at_end - r.at_begin) / (r.end - r.begin) : 0;
 }
 
-/// Waveform of continuous returns, for `PulseShape`, at times that ascend: exact, as density is linear in each return.
+/// Waveform of continuous returns of linear density, for `PulseShape`, at ascending times: exact.
 ///
-/// A step J of the density by range, whose leading edge passed an age u [tau] ago, contributes J (2 - e^-u (u^2 + 2 u +
-/// 2)) to the sum of pulses u^2 e^-u, and a change K of its slope by tau contributes K (2 u - 6 + e^-u (u^2 + 4 u +
-/// 6)). What has no e^-u is 2 q - 6 q', of the density q at the leading edge; the others add up to a quadratic in time,
-/// times an exponential. By integration of `PulseShape`.
+/// A step J of the density by range, whose edge passed an age u [tau] ago, contributes J (2 - e^-u
+/// (u^2 + 2 u + 2)) to the sum of pulses u^2 e^-u; a change K of its slope by tau, K (2 u - 6 +
+/// e^-u (u^2 + 4 u + 6)). Without e^-u that is 2 q - 6 q', of the density q at the leading edge;
+/// the rest is a quadratic in time, times an exponential. By integration of `PulseShape`.
 class ContinuousSum {
  public:
   ContinuousSum(std::span<const ContinuousReturn> returns, const PulseShape& shape) noexcept
@@ -71,7 +69,7 @@ class ContinuousSum {
 
   [[nodiscard]] double scale() const noexcept { return PulseShape::to_unit_peak * tau_ * metres; }
 
-  /// Adds a step of the density [W/m], and one of its slope [W/m by tau], whose edge passed an age ago [tau].
+  /// Adds steps of the density [W/m] and its slope [W/m by tau], of an age [tau].
   void add(double step, double bend, double age) noexcept {
     if (!(age < faded)) return;
     const double left = exponential(-age), square = bend - step, linear = 4 * bend - 2 * step;
@@ -81,9 +79,9 @@ class ContinuousSum {
   }
 
   std::span<const ContinuousReturn> returns_;
-  double tau_, edge_ = -std::numeric_limits<double>::infinity();  ///< edge: range whose leading edge arrives now [m]
+  double tau_, edge_ = -std::numeric_limits<double>::infinity();  ///< range of the edge now [m]
   double density_ = 0, slope_ = 0;                                ///< at the edge [W/m], by tau
-  double zeroth_ = 0, first_ = 0, second_ = 0;  ///< e^-x (second + first x + zeroth x^2), a time x from now on [tau]
+  double zeroth_ = 0, first_ = 0, second_ = 0;                    ///< e^-x (second + first x + zeroth x^2) in x [tau]
   std::size_t passed_ = 0, begun_ = 0;
 };
 
@@ -96,7 +94,7 @@ class GammaIntegrals {
   [[nodiscard]] double begin() const noexcept { return shape_.begin(); }
   /// Time since the arrival when 1e-13 of a pulse is left [s].
   [[nodiscard]] double end() const noexcept { return 36 * shape_.tau; }
-  [[nodiscard]] double peak() const noexcept { return 0; }  ///< time of the maximum since the arrival [s]
+  [[nodiscard]] double peak() const noexcept { return 0; }  ///< maximum since the arrival [s]
   /// Integrals up to a time since the arrival [s].
   [[nodiscard]] PulseIntegrals until(double t) const noexcept {
     if (!(t < end())) return of(2, 6);
@@ -107,7 +105,7 @@ class GammaIntegrals {
   }
 
  private:
-  [[nodiscard]] PulseIntegrals of(double zeroth, double first) const noexcept {  // of u^2 e^-u, and of u^3 e^-u
+  [[nodiscard]] PulseIntegrals of(double zeroth, double first) const noexcept {  // u^2 e^-u, u^3 e^-u
     const double scale = PulseShape::to_unit_peak * shape_.tau;
     return {scale * zeroth, scale * shape_.tau * (first - PulseShape::peak * zeroth)};
   }
@@ -115,11 +113,10 @@ class GammaIntegrals {
   PulseShape shape_;
 };
 
-/// Places at which the waveform of continuous returns may have maxima, and echoes that are theirs. `Pulse` is as
-/// `GammaIntegrals`.
+/// Places of maxima of continuous returns, and their echoes. `Pulse`: as `GammaIntegrals`.
 ///
-/// The waveform rises only where density does, and until the light of there has passed its maximum, as a pulse has only
-/// one: a search for maxima looks there alone, and at reflections.
+/// The waveform rises only where density does, and until the light of there has passed its maximum:
+/// a search for maxima looks there alone, and at reflections.
 template <class Pulse>
 class ContinuousRises {
  public:
@@ -138,21 +135,21 @@ class ContinuousRises {
     return time_of(last) + pulse_.end();
   }
 
-  /// Time from which the next return that has not passed may let the waveform rise; infinite if there is none [s].
+  /// Time from which the next return may let the waveform rise; infinite if there is none [s].
   [[nodiscard]] double next() const noexcept {
     return next_ < returns_.size() ? time_of(returns_[next_].begin) + pulse_.begin() : infinity;
   }
-  /// Time up to which the waveform only rises, if `next` is the first return: no light has passed its maximum [s].
+  /// Time up to which the waveform only rises, if `next` is the first return [s].
   [[nodiscard]] double first_peak() const noexcept {
     return next_ == 0 && !empty() ? start() - pulse_.begin() + pulse_.peak() : -infinity;
   }
-  /// Time up to which returns that have passed may let the waveform rise, although it falls before [s].
+  /// Time up to which returns that have passed may let it rise, although it falls before [s].
   [[nodiscard]] double until() const noexcept { return until_; }
   /// Passes all returns whose light has begun to arrive at a time [s].
   void pass(double time) noexcept {
     while (next() <= time) {
       const ContinuousReturn& r = returns_[next_];
-      const double late = next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as those may fall faster
+      const double late = next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // others may fall faster
       until_ = std::max(until_, time_of(r.at_end > r.at_begin ? r.end : r.begin) + late);
       const ContinuousReturn *last = &r, *const end = returns_.data() + returns_.size();
       while (last + 1 != end && goes_on(last[0], last[1])) ++last;
@@ -178,15 +175,15 @@ class ContinuousRises {
       return rises.source(peak, delay, solid, met);
     }
   };
-  [[nodiscard]] Sources sources(double delay) const noexcept { return {*this, delay}; }  ///< those of this waveform
+  [[nodiscard]] Sources sources(double delay) const noexcept { return {*this, delay}; }
 
-  /// Return that a peak is of, of whose height `solid` is of reflections [W]; its times count from `solid` is of
-  /// reflections, whose times count from `delay` before those of the waveform [s]; null if it would rise without
-  /// continuous returns. `met`: true if there are reflections in it.
+  /// Return that a peak is of, whose height has `solid` of reflections [W], and whose times count
+  /// from `delay` before those of the waveform [s]; null if it would rise without continuous
+  /// returns. `met`: true if there are reflections in it.
   [[nodiscard]] const ContinuousReturn* source(const Peak& peak, double delay, double solid, bool met) const noexcept {
     if (empty() || (met && (solid >= 0.5 * peak.height || at(peak.begin + delay, 0) >= peak.height - 2 * solid)))
       return nullptr;
-    const double begun = 0.5 * speed_of_light * (peak.time + delay - pulse_.begin());
+    const double begun = range_at(peak.time + delay - pulse_.begin());
     const ContinuousReturn* source = nullptr;
     for (const ContinuousReturn& r : returns_) {
       if (r.begin >= begun) break;
@@ -206,8 +203,7 @@ class ContinuousRises {
 
   /// Waveform at a time [s], of the returns from a number on [W].
   [[nodiscard]] double at(double time, std::size_t from) const noexcept {
-    const double begun = 0.5 * speed_of_light * (time - pulse_.begin()),
-                 passed = 0.5 * speed_of_light * (time - pulse_.end());
+    const double begun = range_at(time - pulse_.begin()), passed = range_at(time - pulse_.end());
     const double negligible = 1e-6 * pulse_.end() * speed_of_light;
     double sum = 0, known = -infinity;  // range
     PulseIntegrals of_known;            // the end of a return is mostly the begin of the next
@@ -218,7 +214,7 @@ class ContinuousRises {
       const double young = time - time_of(r.end);
       known = r.end;
       of_known = pulse_.until(young);
-      const double slope = -slope_of(r, negligible) * 0.5 * speed_of_light;  // by the age of the light
+      const double slope = -slope_of(r, negligible) * 0.5 * speed_of_light;  // by age
       const double origin = slope != 0 ? r.at_end - slope * young : 0.5 * (r.at_begin + r.at_end);
       sum += origin * (old.zeroth - of_known.zeroth) + slope * (old.first - of_known.first);
     }

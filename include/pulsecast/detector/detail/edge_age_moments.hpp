@@ -4,19 +4,18 @@
 #define PULSECAST_DETECTOR_DETAIL_EDGE_AGE_MOMENTS_HPP
 
 #include <array>
-#include <cmath>
 
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next edge.
+/// Sum of the pulse shapes whose leading edges have passed, in closed form until the next edge.
 ///
-/// An edge of age u [tau] contributes P u^2 e^-u. Weight each age by P e^-u; let W be the sum of the weights, m the
-/// mean and v the variance of the ages. The sum of pulses is W (m^2 + v), and W e^-x ((m + x)^2 + v) a time x later.
-/// Its slope is zero at the ages m + x = 1 - sqrt(1 - v), a valley, and 1 + sqrt(1 - v), a peak; nowhere for v > 1.
-/// Derived from `PulseShape`.
+/// An edge of age u [tau] contributes P u^2 e^-u. Weight each age by P e^-u; let W be the sum of
+/// the weights, m the mean and v the variance of the ages. The sum of pulses is W (m^2 + v), and W
+/// e^-x ((m + x)^2 + v) a time x later. Its slope is zero at the ages m + x = 1 - sqrt(1 - v), a
+/// valley, and 1 + sqrt(1 - v), a peak; nowhere for v > 1. Derived from `PulseShape`.
 class EdgeAgeMoments {
  public:
   /// Adds a pulse whose leading edge arrives now.
@@ -35,9 +34,8 @@ class EdgeAgeMoments {
 
   /// True if the slope of the sum has zeros, passed or to come.
   [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
-  /// Negative if passed [tau].
+  // times to these zeros, negative if passed [tau]
   [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }
-  /// Negative if passed [tau].
   [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }
 
   /// Sum of pulses now [W].

@@ -16,20 +16,18 @@ namespace PULSECAST_NAMESPACE {
 struct LowPass {
   double deviation = 0;  ///< standard deviation of the impulse response [s]
 
-  /// Low-pass whose response to power falls by half (3 dB) at a frequency [Hz]: |H(f)|^2 = exp(-(2 pi f deviation)^2).
+  /// Low-pass that falls by 3 dB at a frequency [Hz]: |H(f)|^2 = exp(-(2 pi f deviation)^2).
   [[nodiscard]] static LowPass of_bandwidth(double bandwidth) noexcept {
     return {std::sqrt(std::numbers::ln2) / (2 * std::numbers::pi * bandwidth)};
   }
 
-  /// Bandwidth of a rectangular filter that passes as much white noise [Hz]: the integral of |H|^2 over positive
-  /// frequencies.
+  /// Bandwidth of a rectangular filter that passes as much white noise, the integral of |H|^2 [Hz].
   [[nodiscard]] double noise_bandwidth() const noexcept { return std::numbers::inv_sqrtpi / (4 * deviation); }
 };
 
-/// White Gaussian noise after a `LowPass`, scaled to a deviation of 1: a function of time that does not depend on the
-/// sampling. Impulses, whose heights are drawn by the key and their number, follow each other at 3/4 of the filter's
-/// deviation, so that the deviation at different times differs by less than 1e-7. Its autocorrelation is exp(-(t / 2
-/// deviation)^2).
+/// White Gaussian noise after a `LowPass`, scaled to a deviation of 1: a function of time, whatever
+/// the sampling. Impulses of heights drawn by the key and their number follow each other at 3/4 of
+/// the filter's deviation, even to 1e-7. Its autocorrelation is exp(-(t / 2 deviation)^2).
 class FilteredNoise {
  public:
   /// Noise of a pulse; the key's subray and part number the impulses.
@@ -42,8 +40,7 @@ class FilteredNoise {
     const auto first = static_cast<std::int64_t>(middle) - (reach - 1);
     for (next_ = next_ < first ? first : next_; next_ < first + 2 * reach; ++next_)
       impulses_[index(next_)] = impulse(next_);
-    // weights exp(-(j - from)^2 step^2 / 2) of impulses first + j: each is a factor times the one before, and the
-    // factor falls by a constant
+    // weights exp(-(j - from)^2 step^2 / 2): each a factor by the last, which falls by a constant
     constexpr double square = 0.75 * 0.75, decay = 0.569782824730923;  // exp(-square)
     const double from = beyond + (reach - 1);
     double weight = exponential(-0.5 * square * from * from), factor = exponential(square * (from - 0.5)), sum = 0;
@@ -53,7 +50,7 @@ class FilteredNoise {
   }
 
  private:
-  static constexpr std::int64_t reach = 7;  ///< impulses on either side that count: up to 5 deviations
+  static constexpr std::int64_t reach = 7;  ///< impulses on either side: up to 5 deviations
 
   static std::size_t index(std::int64_t number) noexcept { return static_cast<std::size_t>(number & 15); }
 

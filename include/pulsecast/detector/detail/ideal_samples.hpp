@@ -3,10 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 #define PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 
-#include <cmath>
-#include <limits>
-
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
@@ -15,25 +11,24 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Samples of a receiver of infinite bandwidth: the sum of the pulses of all reflections and continuous returns, with
-/// independent noise of each sample. Samples come in sections, with gaps where there is no light or no maximum. With
-/// noise, they begin with the first light and last for the length of the record, or as long as light arrives.
+/// Samples of a receiver of infinite bandwidth: the sum of all pulses, with independent noise.
+/// Samples come in sections, with gaps where there is no light or no maximum. With noise, they
+/// begin with the first light and last for the length of the record, or as long as light arrives.
 class IdealSamples {
  public:
-  /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the
-  /// samples [W]. `width_tail` is the time after the last pulse's peak that a width or a centroid needs [tau].
+  /// For reflections sorted by range. `deviation` is that of the noise [W], `background` a mean
+  /// that is not in the samples [W]. `width_tail`: time that a width or centroid needs [tau].
   IdealSamples(double deviation, double background, const WaveformSettings& s, const DetectorInput& input,
                std::span<const Reflection> reflections, double width_tail) noexcept
       : reflections_(reflections),
         shape_(input.emitter.laser.pulse_length, s.shape_divisor),
         continuous_(input.continuous, shape_),
         rises_(input.continuous, detail::GammaIntegrals(shape_)),
-        key_(input.key),
+        key_(input.key.with(Purpose::receiver_noise)),
         interval_(s.sample_interval),
         record_size_(static_cast<double>(s.record_capacity())),
         deviation_(deviation),
         background_(background) {
-    key_.purpose = Purpose::receiver_noise;
     if (reflections.empty() && continuous_.empty()) return;
     died_away_ = SampledSum::negligible * shape_.tau;
     tail_ = noisy() || record_size_ > 0 ? died_away_ : std::fmax(3 * interval_, width_tail * shape_.tau);
@@ -46,18 +41,17 @@ class IdealSamples {
   [[nodiscard]] const PulseShape& shape() const noexcept { return shape_; }
   /// Number of the first sample.
   [[nodiscard]] double start() const noexcept { return start_; }
-
-  [[nodiscard]] double delay() const noexcept { return 0; }                 ///< of a pulse's maximum in the samples [s]
-  [[nodiscard]] double background() const noexcept { return background_; }  ///< mean that is not in the samples [W]
+  /// Delay of a pulse's maximum in the samples [s].
+  [[nodiscard]] double delay() const noexcept { return 0; }
+  [[nodiscard]] double background() const noexcept { return background_; }
   /// True if samples have noise of their own each.
   [[nodiscard]] bool independent_noise() const noexcept { return noisy(); }
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
-    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_),
-                 late = before(rises_.first_peak());
-    const double first =
-        std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, before(rises_.next())) : before(rises_.next()));
+    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_);
+    const double rise = before(rises_.next()), late = before(rises_.first_peak());
+    const double first = std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
     if (!(first < infinity)) return false;
     sum_.emplace(reflections_, shape_, interval_, next_, first);
     falling_ = 0;
@@ -121,8 +115,8 @@ class IdealSamples {
   RandomKey key_;
   double interval_, record_size_, deviation_, background_;
   double died_away_ = 0, tail_ = 0, start_ = 0;
-  double heard_until_ = 0,
-         last_ = 0;          ///< time up to which continuous returns are sampled everywhere [s]; their last sample [W]
+  double heard_until_ = 0;   ///< time up to which continuous returns are sampled everywhere [s]
+  double last_ = 0;          ///< their last sample [W]
   int falling_ = 0;          ///< samples since they rose
   bool peaks_only_ = false;  ///< true if nothing but maxima is of interest
   std::size_t next_ = 0;

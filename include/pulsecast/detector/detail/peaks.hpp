@@ -4,11 +4,7 @@
 #define PULSECAST_DETECTOR_DETAIL_PEAKS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
@@ -28,9 +24,9 @@ struct Peak {
   bool dominated = false;  ///< true if a higher peak is within the window
 };
 
-/// Appends a peak after those before it, within the capacity. Merges it with the last one and returns true if they are
-/// closer than `min_separation` [s], or if the lower of the two rises by less than `prominence` [W] above the valley
-/// between them.
+/// Appends a peak after those before it, within the capacity. Merges it with the last one and
+/// returns true if they are closer than `min_separation` [s], or if the lower of the two rises by
+/// less than `prominence` [W] above the valley between them.
 inline bool merge_or_append(const Peak& peak, double min_separation, double prominence,
                             std::vector<Peak>& peaks) noexcept {
   if (!peaks.empty()) {
@@ -51,7 +47,7 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
   return false;
 }
 
-/// True if a higher peak, or an earlier one as high, is within the window of peak i. Requires peaks in order of time.
+/// True if a higher peak, or an earlier one as high, is in the window of peak i, in order of time.
 [[nodiscard]] inline bool is_dominated(std::size_t i, const WaveformSettings& s,
                                        const std::vector<Peak>& peaks) noexcept {
   const Peak& peak = peaks[i];
@@ -68,8 +64,9 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
   std::size_t before = i, after = i + 1;
   while (before > 0 && is_dominated(before - 1, s, peaks)) --before;
   while (after < peaks.size() && is_dominated(after, s, peaks)) ++after;
-  const double earlier = before > 0 ? peaks[i].time - peaks[before - 1].time : std::numeric_limits<double>::infinity();
-  return after < peaks.size() ? std::fmin(earlier, peaks[after].time - peaks[i].time) : earlier;
+  double nearest = std::numeric_limits<double>::infinity();
+  if (before > 0) nearest = peaks[i].time - peaks[before - 1].time;
+  return after < peaks.size() ? std::fmin(nearest, peaks[after].time - peaks[i].time) : nearest;
 }
 
 /// Keeps the peaks that are echoes by window and dead time. Requires order of time.
@@ -84,19 +81,20 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   peaks.resize(kept);
 }
 
-/// Keeps an echo, the farthest so far, unless `most` others go before.
-inline void keep_return(const Echo& echo, KeptReturns kept, std::size_t most, std::vector<Echo>& echoes) noexcept {
-  if (echoes.size() == most) {
+/// Keeps an echo, the farthest so far, unless `s.returns_max` others go before.
+inline void keep_return(const Echo& echo, const auto& s, std::vector<Echo>& echoes) noexcept {
+  if (echoes.size() == s.returns_max) {
     const auto of_air = [](const Echo& e) { return e.kind == ReflectionKind::air; };
+    const auto weaker = [](const Echo& a, const Echo& b) { return a.amplitude < b.amplitude; };
     auto out = echoes.end();
-    if (kept == KeptReturns::strongest)
-      out = std::min_element(echoes.begin(), echoes.end(),
-                             [](const Echo& a, const Echo& b) { return a.amplitude < b.amplitude; });
-    else if (!of_air(echo))
-      while (out != echoes.begin() && !of_air(*--out)) {
-      }
-    if (out == echoes.end() || (kept == KeptReturns::strongest ? !(out->amplitude < echo.amplitude) : !of_air(*out)))
-      return;
+    if (s.returns_kept == KeptReturns::strongest) {
+      out = std::min_element(echoes.begin(), echoes.end(), weaker);
+      if (!weaker(*out, echo)) return;
+    } else {
+      if (of_air(echo)) return;
+      while (out != echoes.begin() && !of_air(*--out)) continue;
+      if (!of_air(*out)) return;
+    }
     echoes.erase(out);
   }
   echoes.push_back(echo);
@@ -109,21 +107,17 @@ struct OnlyPeak {
   const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
 };
 
-/// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its
-/// peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the
-/// peak is of, if it is of one, for the power of reflections in it [W]; `met` is true if there are any.
+/// Echo of a peak of the sum of reflections, sorted by range. `shape(t)` is the pulse at t since
+/// its peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the
+/// continuous return that it is of, or none, for the power of reflections in it [W] if `met`.
 [[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const auto& shape,
                            EchoTiming timing, const auto& continuous) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
-  const auto from = [&](double time) noexcept {
-    return reflections.data() +
-           detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
-  };
-
-  Echo echo{.range = 0.5 * speed_of_light * peak.mark, .amplitude = peak.height, .width = peak.width};
+  const auto from = [&](double time) noexcept { return reflections.data() + detail::first_arrival(reflections, time); };
+  Echo echo{.range = range_at(peak.mark), .amplitude = peak.height, .width = peak.width};
   double strongest = 0, solid = 0;
   for (auto r = from(peak.time - shape.end()); r != end && arrival(*r) < peak.time - shape.begin(); ++r) {
-    if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // its share at this time is at most its power
+    if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // power is its maximum
     const double power = r->power * shape(peak.time - arrival(*r));
     solid += power;
     if (!(power > strongest)) continue;

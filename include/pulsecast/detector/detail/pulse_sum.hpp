@@ -4,11 +4,9 @@
 #define PULSECAST_DETECTOR_DETAIL_PULSE_SUM_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
@@ -16,6 +14,16 @@ namespace PULSECAST_NAMESPACE {
 
 /// Arrival time of the peak of a reflection's pulse, since emission [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
+
+/// Range from which light arrives at a time since emission [s], in [m].
+[[nodiscard]] inline double range_at(double time) noexcept { return 0.5 * speed_of_light * time; }
+
+namespace detail {
+/// Index of the first reflection, of some sorted by range, that does not arrive before a time [s].
+[[nodiscard]] inline std::size_t first_arrival(std::span<const Reflection> all, double time) noexcept {
+  return first_not(all.size(), [&](std::size_t i) { return arrival(all[i]) < time; });
+}
+}  // namespace detail
 
 /// Echo of a range [m] and an amplitude [W] with the labels of a reflection.
 [[nodiscard]] inline Echo echo_from(const Reflection& r, double range, double amplitude) noexcept {
@@ -27,7 +35,12 @@ namespace PULSECAST_NAMESPACE {
           .kind = r.kind};
 }
 
-/// True if a reflection can be an echo: it has power, and is nearer than 2^52 samples, so that they can be counted.
+/// Reflection with the labels of a continuous return alone.
+[[nodiscard]] inline Reflection labels_of(const ContinuousReturn& r) noexcept {
+  return {.object = r.object, .classification = r.classification, .kind = r.kind};
+}
+
+/// True if a reflection can be an echo: of power, and nearer than 2^52 samples.
 [[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
   return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;
 }
@@ -43,17 +56,14 @@ namespace PULSECAST_NAMESPACE {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
-/// Sum of the pulse shapes of reflections, sorted by range, sample by sample.
-///
-/// The shape is a polynomial times an exponential. Three moments about the leading edges advance the sum of any number
-/// of shapes by one sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus
-/// reflections instead of their product.
+/// Sum of the pulse shapes of reflections, sorted by range, sample by sample. Three moments about
+/// the leading edges advance the sum of any number of shapes by one sample: the sums of P e^-u, P u
+/// e^-u and P u^2 e^-u. This is exact, and costs samples plus reflections instead of their product.
 class SampledSum {
  public:
-  static constexpr double negligible = 20;  ///< time since its peak at which 1e-6 of a pulse is left [tau]
+  static constexpr double negligible = 20;  ///< time since a peak with 1e-6 left [tau]
 
-  /// Starts at a reflection and a sample number. Earlier reflections are ignored; `first` and later ones count once
-  /// their edges have passed.
+  /// Starts at a reflection and a sample number. Earlier reflections are ignored.
   SampledSum(std::span<const Reflection> reflections, const PulseShape& shape, double interval, std::size_t first,
              double sample) noexcept
       : reflections_(reflections),
@@ -71,9 +81,9 @@ class SampledSum {
     return std::floor((arrival(r) - PulseShape::peak * shape.tau) / interval) - 2;
   }
 
-  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
-  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
-  [[nodiscard]] std::size_t next() const noexcept { return next_; }  ///< index of the first reflection still to arrive
+  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< next sample
+  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< of the next sample [s]
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< reflection to arrive
   /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
   /// Arrival of the last reflection so far [s].

@@ -15,9 +15,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pulse after a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any phase are
-/// interpolated to 1e-6 of the peak. All samples of a pulse have the same weights, so the pulses of many reflections
-/// between two samples cost one sum of rows, one row per phase.
+/// Pulse after a receiver's low-pass, scaled to a peak of 1, as a table from which samples of any
+/// phase are interpolated to 1e-6 of the peak. All samples of a pulse have the same weights: the
+/// pulses of many reflections between two samples cost one sum of rows, one row per phase.
 class ReceivedPulse {
  public:
   /// For pulses of a full width at half maximum of `length` [s], and samples every `interval` [s].
@@ -32,14 +32,14 @@ class ReceivedPulse {
       values[i] = filtered(form, length, filter, start + static_cast<double>(i) * step_);
     const auto top = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
     const auto value = [&](std::size_t i) { return i < values.size() ? values[i] : 0; };
-    const double slope = 0.5 * (value(top + 1) - value(top - 1)),
-                 bend = value(top - 1) - 2 * value(top) + value(top + 1);
+    const double slope = 0.5 * (value(top + 1) - value(top - 1));
+    const double bend = value(top - 1) - 2 * value(top) + value(top + 1);
     const double beyond = bend < 0 ? -slope / bend : 0;
     gain_ = value(top) + 0.5 * slope * beyond;
     peak_ = start + (static_cast<double>(top) + beyond) * step_;
     concave_ = concave_about(values, top) * step_;
-    width_ = step_ * static_cast<double>(
-                         std::count_if(values.begin(), values.end(), [&](double v) { return v >= 0.5 * gain_; }));
+    const auto high = [&](double v) { return v >= 0.5 * gain_; };
+    width_ = step_ * static_cast<double>(std::count_if(values.begin(), values.end(), high));
     begin_ = start;
     while (size > top && values[size - 1] < negligible * gain_) --size;
     values.resize(size);
@@ -60,9 +60,8 @@ class ReceivedPulse {
   [[nodiscard]] double end() const noexcept { return begin_ + static_cast<double>(count_ * phases_) * step_; }
   /// Time of the maximum after the low-pass since the peak before it [s].
   [[nodiscard]] double peak() const noexcept { return peak_; }
-  /// Time on either side of the maximum, within which the pulse is concave, less a sample of the table; 0 for a pulse
-  /// with another maximum. Pulses no further apart than this have a sum with a single maximum: it falls, bends down and
-  /// rises where all of them do [s].
+  /// Time on either side of the maximum within which the pulse is concave, less a sample of the
+  /// table; 0 for a pulse with another maximum. Closer pulses have one maximum [s].
   [[nodiscard]] double concave() const noexcept { return concave_; }
   /// Full width at half maximum [s].
   [[nodiscard]] double width() const noexcept { return width_; }
@@ -91,16 +90,16 @@ class ReceivedPulse {
 
   /// Number of rows: phases of the samples, and three more for the interpolation.
   [[nodiscard]] std::size_t rows() const noexcept { return phases_ + 3; }
-  /// Samples of a pulse of one phase: `stride()` numbers, at least `count()`, that are 0 after the pulse.
+  /// Samples of a pulse of one phase: `stride()` numbers, 0 after the pulse.
   [[nodiscard]] const double* row(std::size_t q) const noexcept { return rows_.data() + q * stride_; }
-  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }  ///< length of a row, of whole registers
+  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }  ///< of whole registers
 
-  /// Weights of the four rows, from `first` on, whose sum are the samples of a pulse from `first_sample(arrival)` on.
+  /// Weights of the four rows whose sum are the samples of a pulse from `first_sample` on.
   struct Phase {
     std::size_t first;              ///< number of the first row
     std::array<double, 4> weights;  ///< Lagrange's polynomial
   };
-  /// Rows and weights for a pulse whose peak arrives before the low-pass at a time [s].
+  /// Those of a pulse whose peak arrives before the low-pass at a time [s].
   [[nodiscard]] Phase phase(double arrival) const noexcept {
     const double place = (first_sample(arrival) * interval_ - arrival - begin_) / step_;
     const double whole = std::min(std::floor(place), static_cast<double>(phases_ - 1)), x = place - whole;
@@ -148,13 +147,12 @@ class ReceivedPulse {
 
   double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0, width_ = 0;
   std::size_t phases_ = 1, count_ = 0, stride_ = 0;
-  /// Value of the table.
   struct Point {
     detail::PulseIntegrals integrals{};  ///< up to there
     double value = 0;
   };
   std::vector<Point> points_;
-  std::vector<double> rows_;  ///< value i, from -1 on, is number (i + 1) / phases of row (i + 1) % phases and later
+  std::vector<double> rows_;  ///< value i - 1 is number i / phases of row i % phases
 };
 
 }  // namespace PULSECAST_NAMESPACE

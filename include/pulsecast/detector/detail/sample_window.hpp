@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
 
 #include <array>
-#include <cmath>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
@@ -14,21 +13,20 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Samples of a waveform as they arrive, in a window of bounded size, and the peaks that are found in it.
+/// Samples of a waveform as they arrive, in a window of bounded size, and the peaks in it.
 template <EchoWidth Width>
 class SampleWindow {
  public:
-  /// Settings of a search.
   struct Search {
     const WaveformSettings& settings;  ///< of the detector
     const Width& width;                ///< measure of widths
     double min_separation = 0;         ///< closer peaks merge [s]
-    double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
-    bool by_sample = false;  ///< true if the highest sample must reach the threshold, not the maximum between samples
-    double reach = 0;        ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
+    double delay = 0;                  ///< from a pulse's arrival to its maximum in the samples [s]
+    bool by_sample = false;            ///< true if a sample itself must reach the threshold
+    double reach = 0;                  ///< time beside a maximum that places it; 0: five samples [s]
   };
 
-  static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
+  static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse
 
   SampleWindow() { samples_.reserve(capacity); }
 
@@ -36,8 +34,7 @@ class SampleWindow {
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
 
-  /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to `peaks` when more are to
-  /// come.
+  /// Takes the next sample, a power [W]. Appends the peaks of a full window to `peaks`.
   void take(double number, double power, bool more, const Search& search, std::vector<Peak>& peaks) noexcept {
     samples_.push_back(power);
     if (more && samples_.size() == capacity) {
@@ -62,8 +59,7 @@ class SampleWindow {
     return i;
   }
 
-  /// Maximum about a plateau of samples: between samples, unless the plateau is longer than two, such as that of a
-  /// saturated or coarse digitiser.
+  /// Maximum about a plateau of samples: between samples, unless it is longer than two.
   [[nodiscard]] detail::Vertex top_of(std::size_t first, std::size_t last) const noexcept {
     if (last > first + 1) return {0.5 * static_cast<double>(last - first), samples_[first]};
     return detail::vertex(&samples_[first]);
@@ -100,9 +96,10 @@ class SampleWindow {
                 .before = y[from],
                 .after = y[to]};
       peak.mark = peak.time;
-      if (s.timing > EchoTiming::peak)
-        peak.mark = (start + detail::echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval -
-                    search.delay;
+      if (s.timing > EchoTiming::peak) {
+        const double at = detail::echo_time(s.timing, y, i, top, s.threshold, s.fraction);
+        peak.mark = (start + at) * s.sample_interval - search.delay;
+      }
       merge_or_append(peak, search.min_separation, s.prominence, peaks);
     }
     const auto place = [&](double t) { return (t + search.delay) / s.sample_interval - start; };
@@ -110,8 +107,8 @@ class SampleWindow {
       for (std::size_t k = entered; k < peaks.size(); ++k) {
         Peak& peak = peaks[k];
         if (is_dominated(k, s, peaks)) continue;
-        const double reach = std::fmin(search.reach, 0.5 * distance_of_echoes(k, s, peaks)) / s.sample_interval;
-        peak.mark += (detail::filtered_top(y, place(peak.time), reach) - place(peak.time)) * s.sample_interval;
+        const double reach = std::fmin(search.reach, 0.5 * distance_of_echoes(k, s, peaks)), at = place(peak.time);
+        peak.mark += (detail::filtered_top(y, at, reach / s.sample_interval) - at) * s.sample_interval;
       }
     }
     if constexpr (!std::same_as<Width, NoWidth>) {

@@ -4,12 +4,8 @@
 #define PULSECAST_DETECTOR_DETAIL_SINGLE_PEAK_GROUP_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
@@ -18,13 +14,13 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Sum of the pulse shapes of reflections within 2 tau: the last leading edge arrives before the first pulse has
-/// peaked. All pulses rise until then, so the sum has a single peak. Reflections are in any order.
+/// Sum of the pulse shapes of reflections within 2 tau, in any order: the last leading edge arrives
+/// before the first pulse has peaked. All pulses rise until then, so the sum has a single peak.
 ///
-/// An edge that passed an age u [tau] before the last one contributes P (u + x)^2 e^-(u + x) a time x after it. Weight
-/// each by P e^-u; let M0, M1 and M2 be the sums of the weights times u^0, u and u^2. The sum of pulses is e^-x (M2 + 2
-/// M1 x + M0 x^2). Its slope is zero at x = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0
-/// - m^2 of the ages. Derived from `PulseShape`.
+/// An edge that passed an age u [tau] before the last one contributes P (u + x)^2 e^-(u + x) a time
+/// x after it. Let M0, M1 and M2 be the sums of the weights P e^-u times u^0, u and u^2. The sum of
+/// pulses is e^-x (M2 + 2 M1 x + M0 x^2). Its slope is zero at x = 1 + sqrt(1 - v) - m, with the
+/// mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
 class SinglePeakGroup {
  public:
   /// Ages and weights, one per reflection, padded to whole SIMD vectors.
@@ -35,9 +31,8 @@ class SinglePeakGroup {
         : ages(std::min<std::size_t>(reflections, 2048) + simd::lane_count), weights(ages) {}
   };
 
-  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are
-  /// none, too far apart, more than the workspace holds, without power, or too far away. Nothing else may be called
-  /// then.
+  /// Computes ages and weights in a workspace that outlives it. `one()` is false for reflections
+  /// that are none, too far apart or away, too many, or without power; then call nothing else.
   SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval,
                   Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
@@ -67,7 +62,7 @@ class SinglePeakGroup {
     for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
       simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
       for (std::size_t j = part; j < n; j += simd::sum_stride) {
-        const simd::Doubles distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
+        const auto distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
         const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
         power += p;
         before += p * distance;
@@ -86,7 +81,6 @@ class SinglePeakGroup {
     mean_range_ = farthest - all_before / all_power;
   }
 
-  /// True if the reflections form such a group.
   [[nodiscard]] bool one() const noexcept { return one_; }
   /// Two-way travel time, origin of the times below [s].
   [[nodiscard]] double last_edge() const noexcept { return last_edge_; }
@@ -118,13 +112,13 @@ class SinglePeakGroup {
     return {c * 2 * sum, c * (6 * sum - 2 * first), c * (24 * sum - 12 * first + 2 * second)};
   }
 
-  /// Reflection with the greatest share of the sum at a time since the last edge [tau]; the first of equals.
+  /// Reflection of the greatest share of the sum at a time since the last edge [tau].
   [[nodiscard]] const Reflection& strongest(double x) const noexcept {
     simd::Doubles most{}, number{}, best{};
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);
     for (std::size_t j = 0; j < reflections_.size(); j += simd::lane_count) {
-      const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x,
-                          power = simd::load<simd::Doubles>(weights_[j]) * u * u;
+      const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x;
+      const simd::Doubles power = simd::load<simd::Doubles>(weights_[j]) * u * u;
       best = power > most ? number : best;
       most = simd::max(power, most);
       number += simd::lane_count;
@@ -138,7 +132,7 @@ class SinglePeakGroup {
   /// The only echo of the group, for a peak at a two-way time [s] and of a height [W].
   [[nodiscard]] Echo echo(double time, double height, EchoTiming timing) const noexcept {
     const Reflection& most = strongest((time - last_edge_) * per_tau_);
-    return echo_from(most, timing == EchoTiming::true_range ? mean_range_ : 0.5 * speed_of_light * time, height);
+    return echo_from(most, timing == EchoTiming::true_range ? mean_range_ : range_at(time), height);
   }
 
  private:

@@ -13,13 +13,12 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian about it, as tables:
-/// one for each of some variances, interpolated by cubics in time and in the variance. As the convolution with a
-/// Gaussian obeys the equation of heat, the slope in the variance is half the second derivative in time.
+/// Waveform of a flat target after the receiver, and of targets whose ranges spread as a Gaussian
+/// about it: a table for each of some variances, interpolated by cubics in time and variance. By
+/// the equation of heat, the slope in the variance is half the second derivative in time.
 class SystemWaveform {
  public:
-  /// Takes samples of the waveform of a flat target of power 1, every `step` [s], the first at a time `begin` since its
-  /// arrival [s].
+  /// Takes samples of a flat target of power 1, every `step` [s], from `begin` on [s].
   SystemWaveform(std::vector<double> flat, double begin, double step) : begin_(begin), step_(step) {
     double energy = 0, first = 0, second = 0;
     for (std::size_t i = 0; i < flat.size(); ++i) {
@@ -39,21 +38,20 @@ class SystemWaveform {
       levels_[j] = widened(levels_[j - 1], std::sqrt(added(j) - added(j - 1)) / step);
   }
 
-  [[nodiscard]] double variance() const noexcept { return variance_; }            ///< of a flat target [s^2]
-  [[nodiscard]] double rise() const noexcept { return rise_; }                    ///< time of the first thousandth [s]
-  [[nodiscard]] double fall() const noexcept { return fall_; }                    ///< time of the last thousandth [s]
-  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }  ///< least variance in use [s^2]
-  /// Greatest variance in use [s^2].
+  [[nodiscard]] double variance() const noexcept { return variance_; }  ///< of a flat target [s^2]
+  [[nodiscard]] double rise() const noexcept { return rise_; }          ///< at a thousandth [s]
+  [[nodiscard]] double fall() const noexcept { return fall_; }          ///< at a thousandth [s]
+  // least and greatest variance in use [s^2]
+  [[nodiscard]] double least_added() const noexcept { return -0.3 * variance_; }
   [[nodiscard]] double most_added() const noexcept { return 0.999 * added(levels_.size() - 1); }
 
   /// Place between two tables.
   struct Blend {
     std::size_t level = 0;
-    double place = 0,
-           span = 0;  ///< from 0 to 1, or a variance below that of a flat target, by the distance of the tables [s^2]
+    double place = 0;  ///< from 0 to 1; below 0 for less than a flat target
+    double span = 0;   ///< distance of the tables [s^2]
   };
-  /// Place of a variance in use, beyond that of a flat target [s^2]. Below 0 the waveform is extrapolated, so that
-  /// noise moves it both ways.
+  /// Place of a variance beyond that of a flat target [s^2]; extrapolated below 0, for noise.
   [[nodiscard]] Blend blend(double variance) const noexcept {
     std::size_t j = 0;
     while (j + 2 < levels_.size() && added(j + 1) <= variance) ++j;
@@ -84,7 +82,6 @@ class SystemWaveform {
   struct Cubic {
     double value = 0, slope = 0, bend = 0;
   };
-  /// Waveform of a variance.
   struct Level {
     double before = 0;           ///< samples before the first of a flat target
     std::vector<double> values;  ///< 0 beyond
@@ -117,7 +114,7 @@ class SystemWaveform {
     for (std::size_t i = 0; i < from.values.size(); ++i)
       for (std::size_t k = 0; k < kernel.size(); ++k) values[i + k] += from.values[i] * kernel[k] / sum;
     const auto counts = [](double value) { return std::fabs(value) > 1e-9; };
-    const auto first = std::find_if(values.begin(), values.end(), counts) - 2;  // each end of a level has some zeros
+    const auto first = std::find_if(values.begin(), values.end(), counts) - 2;  // some zeros stay
     values.erase(std::find_if(values.rbegin(), values.rend(), counts).base() + 2, values.end());
     Level to{from.before + static_cast<double>(reach) - static_cast<double>(first - values.begin()), {}};
     to.values.assign(first, values.end());
@@ -128,8 +125,8 @@ class SystemWaveform {
   std::array<Level, 24> levels_{};  ///< up to 8 times the deviation of a flat target
 };
 
-/// Sum of up to six system waveforms and a constant, fitted to samples by least squares without weights, because the
-/// noise of a digitiser is the same for all samples. Source: Levenberg 1944; Marquardt 1963.
+/// Sum of up to six system waveforms and a constant, fitted to samples by least squares, whose
+/// weights are equal, as the noise of a digitiser. Source: Levenberg 1944; Marquardt 1963.
 class WaveformSum {
  public:
   static constexpr std::size_t most = 6;  ///< parts
@@ -138,7 +135,7 @@ class WaveformSum {
     double power = 0, arrival = 0;  ///< power of a flat target [W], and arrival [s]
     double added = 0;               ///< variance beyond that of a flat target [s^2]
     bool flat = false;              ///< true if that is 0 and not fitted
-    double spread = 0;              ///< that variance, as measured aside for a part that is flat [s^2]
+    double spread = 0;              ///< the same, as measured aside of a flat part [s^2]
   };
 
   std::array<Part, most> parts{};  ///< estimate, and result
@@ -147,8 +144,7 @@ class WaveformSum {
   double start = 0;                ///< time of the first sample [s]
   double squares = 0;              ///< sum of the squared residuals [W^2]
 
-  /// Improves the estimate; false if it does not converge to a sum of positive parts within the samples, which are
-  /// `interval` apart [s].
+  /// Improves the estimate; false without positive parts within the samples, `interval` apart [s].
   [[nodiscard]] bool fit(const SystemWaveform& wave, std::span<const float> y, double interval) noexcept {
     double damping = 1e-3;
     Equations here = equations(wave, y, interval);
@@ -236,7 +232,7 @@ class WaveformSum {
     return e;
   }
 
-  /// Solves the damped normal equations by Cholesky's decomposition and takes the step; false if they are singular.
+  /// Takes the step of the damped normal equations, by Cholesky's decomposition; false if singular.
   [[nodiscard]] bool step(const SystemWaveform& wave, Equations e, double damping) noexcept {
     const std::size_t n = 3 * count + 1;
     auto& [matrix, right, squares_here] = e;

@@ -25,28 +25,27 @@ struct PathPiece {
   double gear = 1;           ///< 1 forwards, -1 backwards
   std::size_t waypoint = 0;  ///< number of the waypoint ahead
 
-  /// Stance after a driven length of the piece [m]. Source: the chord of an arc is 2 r sin(angle / 2), along the
-  /// heading in its middle.
+  /// Stance after a driven length [m]. Source: chord of an arc, 2 r sin(angle / 2).
   [[nodiscard]] Stance after(double driven) const noexcept {
     const double way = gear * driven, half = 0.5 * curvature * way;
-    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;  // +-1e-18
+    const double chord = std::fabs(half) < 1e-4 ? way * (1 - half * half / 6) : way * std::sin(half) / half;
     const double middle = start.heading + half;
     return {start.position + chord * Vec2{std::sin(middle), std::cos(middle)}, start.heading + 2 * half};
   }
-  [[nodiscard]] Stance end() const noexcept { return after(length); }  ///< stance at the end of the piece
+  [[nodiscard]] Stance end() const noexcept { return after(length); }  ///< at its end
 };
 
-/// Angle of the first and the last arc of a three-point turn on the spot; the middle arc, driven backwards, turns by
-/// the rest. All have one radius, and the vehicle ends where it began, turned by `angle` in [0, pi]; for pi, each arc
-/// is pi/3. Source: family C|C|C of Reeds & Shepp 1990, with centres 2 r apart, for zero displacement: sin(middle / 2)
-/// = sin(angle / 2) / 2.
+/// Angle of the first and the last arc of a three-point turn on the spot by `angle` in [0, pi]; the
+/// middle one, backwards, turns by the rest. All have one radius; for pi, each is pi/3. Source:
+/// family C|C|C of Reeds & Shepp 1990, with centres 2 r apart, for zero displacement: sin(middle /
+/// 2) = sin(angle / 2) / 2.
 [[nodiscard]] inline double outer_arc_of_three_point_turn(double angle) noexcept {
   return 0.5 * angle - std::asin(0.5 * std::sin(0.5 * angle));
 }
 
-/// Path through waypoints: straight legs joined by tangent arcs of one radius (the circles and lines of Dubins 1957). A
-/// curve is too tight if its arc would take more than half of a leg. The path then reaches the waypoint and turns there
-/// by a three-point turn. Consecutive waypoints must differ; a single one gives an empty path. Headings are continuous.
+/// Path through waypoints: straight legs joined by tangent arcs of one radius (the circles and
+/// lines of Dubins 1957). Where an arc would take more than half of a leg, there is a three-point
+/// turn. Consecutive waypoints must differ. Headings are continuous.
 [[nodiscard]] inline std::vector<PathPiece> path_through(std::span<const Vec2> waypoints, double radius) {
   std::vector<PathPiece> path;
   const std::size_t legs = waypoints.empty() ? 0 : waypoints.size() - 1;
@@ -58,7 +57,7 @@ struct PathPiece {
     const Vec2 direction = way(k) / whole;
     const double touch = radius * std::tan(0.5 * std::fabs(angle)),
                  room = k + 1 < legs ? 0.5 * std::fmin(whole, length(way(k + 1))) : 0;
-    const bool tight = !(touch <= room) || std::fabs(angle) > 3;  // near a reversal the tangent is meaningless
+    const bool tight = !(touch <= room) || std::fabs(angle) > 3;  // the tangent is meaningless
     const double left = tight ? 0 : touch, curvature = std::copysign(1 / radius, angle);
     path.push_back({{waypoints[k] + taken * direction, looks}, std::fmax(0.0, whole - taken - left), 0, 1, k + 1});
     const Stance corner{waypoints[k] + (whole - left) * direction, looks};

@@ -28,8 +28,8 @@ struct CubicPiece {
   }
 };
 
-/// Motion in closed form: pieces in order of time, each valid until the next begins. A piece shorter than that holds
-/// its last state, as does the last piece for ever. Before the first piece, its start state holds.
+/// Motion in closed form: pieces in order of time, each valid until the next begins. The last state
+/// of a shorter or the last piece holds on, and the start state of the first one holds before it.
 template <class V>
 class PiecewiseCubic {
  public:

@@ -12,17 +12,17 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Lowest point [m] that a wheel of a radius `r` [m] reaches as it rolls along a profile: the closing of the profile
-/// with the wheel's disc, which is the ground itself wherever that bends less than the wheel. `at(way)` is the height a
-/// way ahead [m], minus infinity without ground; `below` is that at the wheel. Source: ISO 16610-41:2015, closing with
-/// a disk.
+/// Lowest point [m] that a wheel of a radius `r` [m] reaches as it rolls along a profile: the
+/// closing of the profile with the wheel's disc, which is the ground itself wherever that bends
+/// less than the wheel. `at(way)` is the height a way ahead [m], minus infinity without ground;
+/// `below` is that at the wheel. Source: ISO 16610-41:2015, closing with a disk.
 [[nodiscard]] std::optional<double> lowest_of_wheel(double r, const auto& at, const std::optional<double>& below) {
   constexpr double nothing = -std::numeric_limits<double>::infinity();
   if (below) {
     const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
         heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
     const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
-    bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
+    bool touched = true;  // the ground stays below a parabola of half the wheel's curvature
     for (std::size_t k = 0; k < 4; ++k)
       touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
     if (touched) return below;

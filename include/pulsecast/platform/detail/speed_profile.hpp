@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 #define PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -20,8 +19,8 @@ struct SpeedLimits {
   double jerk = 1;          ///< maximum change of acceleration [m/s^3]
 };
 
-/// Fastest change of speed between states of zero acceleration: the acceleration rises, holds, and falls.
-/// Source: Biagiotti & Melchiorri 2008, section 3.4, the acceleration phase of the double S profile.
+/// Fastest change of speed between states of zero acceleration, which rises, holds, and falls.
+/// Source: Biagiotti & Melchiorri 2008, section 3.4, acceleration phase of the double S profile.
 struct SpeedChange {
   double from = 0;          ///< initial speed [m/s]
   double to = 0;            ///< final speed [m/s]
@@ -54,7 +53,7 @@ struct SpeedChange {
   }
 };
 
-/// Largest fitting speed from `low` to `high`, by bisection. `low` must fit, and every speed below one that fits.
+/// Largest speed from `low` to `high` that fits, by bisection. `low` and all below one must fit.
 [[nodiscard]] double max_speed(double low, double high, auto&& fits) {
   if (fits(high)) return high;
   for (int i = 0; i < 100; ++i) {
@@ -64,9 +63,8 @@ struct SpeedChange {
   return low;
 }
 
-/// Fastest motion over a length [m] between two speeds [m/s] that `reachable_speed` allows, in up to seven pieces.
-/// Source: Biagiotti & Melchiorri 2008, section 3.4; over a short length, the speed in the middle is found by
-/// bisection.
+/// Fastest motion over a length [m] between two speeds [m/s] that `reachable_speed` allows, in up
+/// to seven pieces. Source: Biagiotti & Melchiorri 2008, section 3.4.
 [[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to,
                                                                    const SpeedLimits& limits) {
   const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
@@ -96,9 +94,8 @@ struct PathSection {
   SpeedLimits limits{};  ///< limits all along it
 };
 
-/// Lowers the speeds at the joints of sections until each section can be driven within its limits: forwards for
-/// speeding up, then backwards for braking. Joints are one more than sections. Source: look-ahead of machine tools,
-/// with zero acceleration at a joint.
+/// Lowers the speeds at the joints of sections, until each can be driven within its limits:
+/// forwards for speeding up, backwards for braking. Source: machine tools.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {

@@ -21,7 +21,7 @@ struct MovingIndexSettings {
     require_within("MovingIndexSettings::from", from, -1e15, 1e15, "s");
     if (!(to > from && to <= 1e15))
       throw SettingError("MovingIndexSettings::to", to, "s", "after `from`, at most 1e+15");
-    detail::require_count("MovingIndexSettings::boxes_max", boxes_max, 1, 4294967295);
+    require_within("MovingIndexSettings::boxes_max", boxes_max, 1, 4294967295, "");
   }
 };
 

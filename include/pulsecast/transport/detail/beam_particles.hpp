@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
@@ -16,12 +13,11 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Rain and snow that a beam meets drop by drop: a Poisson process in its volume, which reaches to two of its radii,
-/// where 99.97 % of its light is. Pure in the pulse.
+/// Rain and snow that a beam meets drop by drop: a Poisson process in its volume to two of its
+/// radii, where 99.97 % of its light is. Pure in the pulse.
 class BeamParticles {
  public:
-  static constexpr double most =
-      1000;  ///< expected number of particles from the beam's beginning on that are met one by one
+  static constexpr double most = 1000;  ///< expected number of particles that are met one by one
 
   BeamParticles(const TransportInput& light, LightLedger& ledger) noexcept : light_(light), ledger_(ledger) {}
 
@@ -32,11 +28,10 @@ class BeamParticles {
     return std::clamp(range_of(0, most / per_volume), from, to);
   }
 
-  /// Adds the echoes of the particles between two ranges [m]. `both`: share of the light that is there on both ways at
-  /// the first; `occluded(ray, range)` tells if a ray meets a surface.
-  template <class Occluded>
+  /// Adds the echoes of the particles between two ranges [m], from a share of the light on both
+  /// ways. `occluded(ray, range)` tells if a ray meets a surface.
   void meet(double from, double to, const MediumRegion& region, double density, double two_way_share,
-            const Occluded& occluded) noexcept {
+            const auto& occluded) noexcept {
     const double all = volume(from, to), per_volume = density * region.particles.number();
     const Vec3 origin = light_.pulse.origin();
     const Rotation& turn = light_.pulse.pose.rotation;
@@ -52,12 +47,10 @@ class BeamParticles {
       const Vec3 to_it = range * ahead + aside.x * right + aside.y * up;
       const double distance = length(to_it);
       if (occluded(Ray{.origin = origin, .direction = to_it / distance, .tick = light_.pulse.tick}, distance)) continue;
-      const double irradiance =
-          2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // by the power of the beam [1/m^2]
-      const double scattered =
-          pi * region.particles.backscatter_cross_section(region.particles.diameter(size)) * irradiance;
+      const double irradiance = 2 / (pi * w.x * w.y) * std::exp(-2 * radius * radius);  // [1/m^2]
+      const double section = region.particles.backscatter_cross_section(region.particles.diameter(size));
       const double left = two_way_share * std::exp(-2 * density * region.medium.extinction() * (range - from));
-      const double power = light_.budget.power(left, scattered, distance);
+      const double power = light_.budget.power(left, pi * section * irradiance, distance);
       if (power > 0 && light_.gate.contains(distance))
         ledger_.reflect({.range = distance}, power, {ReflectionKind::air});
     }

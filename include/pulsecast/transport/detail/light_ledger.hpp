@@ -3,8 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 #define PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 
-#include <cmath>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
@@ -16,11 +14,11 @@ namespace PULSECAST_NAMESPACE::detail {
 struct PathState {
   ReflectionKind kind = ReflectionKind::surface;  ///< kind of the way
   double share = 0;                               ///< share of the pulse's energy that arrives
-  double velocity = 0;                            ///< rate at which the optical path to the place grows [m/s]
+  double velocity = 0;                            ///< rate at which the optical path grows [m/s]
 };
 
-/// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by
-/// that of a lobe much wider than it; 1 without a width.
+/// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as
+/// over a range [m], by that of a much wider lobe; 1 without a width.
 inline double aperture_fraction(const LinkBudget& budget, const Material& material, double range) noexcept {
   const double half_angle = material.law.returned_half_angle();
   if (!(half_angle > 0)) return 1;
@@ -42,8 +40,8 @@ class LightLedger {
     shares.missed += share;
   }
 
-  /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the
-  /// hit is half the optical path [m].
+  /// Counts the share of the light that a surface scatters, what it keeps, and what returns [W].
+  /// The range of the hit is half the optical path [m].
   void end_at(const Hit& hit, const Material& material, double power, const PathState& way) noexcept {
     met_ = true;
     const double scattered = hit.scattered_share;
@@ -61,8 +59,7 @@ class LightLedger {
       shares.scattered += scattered * way.share;
   }
 
-  /// Adds a reflection of a power [W], for light that is scattered or comes back into the aperture: cut, if there is no
-  /// room.
+  /// Adds a reflection of a power [W], for light that is scattered or comes back into the aperture.
   void reflect(const Hit& hit, double power, const PathState& way) noexcept {
     met_ = true;
     if (!light_.gate.contains(hit.range)) {

@@ -5,33 +5,30 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/material.hpp>
 
-/// Contract: light on its way. A `CoaxialRays` is the subrays of a pulse that still seem to come from one point, a
-/// `LightPath` a subray that was refracted.
+/// Contract: light on its way. A `CoaxialRays` is the subrays of a pulse that still seem to come
+/// from one point, a `LightPath` a subray that was refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
-inline constexpr double surface_epsilon = 1e-6;  ///< surfaces nearer to each other than this are one [m]
+inline constexpr double surface_epsilon = 1e-6;  ///< nearer surfaces are one [m]
 
 /// Normal of a plane that a ray meets, towards the ray.
 [[nodiscard]] inline Vec3 towards(const Vec3& normal, const Vec3& direction) noexcept {
   return dot(normal, direction) > 0 ? -normal : normal;
 }
 
-/// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are
-/// counted from there, so that they are lengths of the whole way.
+/// Rays in air that seem to come from one point, the pulse's exit or its image in mirrors and
+/// panes, from where ranges are counted: lengths of the whole way.
 struct CoaxialRays {
   StaggeredBundle rays{};                       ///< with the range from which each exists
   alignas(64) RayBundle::Column sent;           ///< share of the pulse's energy on its way
-  alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes the same way back
+  alignas(64) RayBundle::Column two_way_share;  ///< the same times the share that passes back
   RayBundle::Column delay;                      ///< optical path so far less the range [m]
-  RayBundle::Column path_rate;                  ///< rate at which the optical path so far grows, as mirrors move [m/s]
+  RayBundle::Column path_rate;                  ///< growth of the optical path so far [m/s]
   unsigned passages = 0;                        ///< surfaces that passed the light on
   ReflectionKind kind = ReflectionKind::surface;
 };
@@ -44,8 +41,8 @@ struct PathVertex {
   std::optional<Vec2> texture{};
 };
 
-/// Subray after it entered a body, with the derivatives of place and direction by the angles at the pulse's exit.
-/// Source: Igehy 1999, Tracing ray differentials.
+/// Subray after it entered a body, with the derivatives of place and direction by the angles at the
+/// pulse's exit. Source: Igehy 1999, Tracing ray differentials.
 struct LightPath {
   Ray ray{};                 ///< from the last surface on
   double sent = 0;           ///< share of the pulse's energy on its way
@@ -55,7 +52,7 @@ struct LightPath {
   double path_rate = 0;      ///< as in `CoaxialRays` [m/s]
   unsigned passages = 0;     ///< as in `CoaxialRays`
   ReflectionKind kind = ReflectionKind::surface;
-  std::array<Vec3, 2> place{}, turn{};      ///< derivatives of the ray's origin [m/rad] and direction
+  std::array<Vec3, 2> place{}, turn{};      ///< derivatives of origin [m/rad] and direction
   std::array<const Material*, 4> bodies{};  ///< bodies that it is in, the outermost first
   std::size_t depth = 0;                    ///< number of bodies
 
@@ -73,14 +70,13 @@ struct LightPath {
     static constexpr Medium air_{};
     return depth > 0 ? bodies[depth - 1]->smooth.inside : air_;
   }
-  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it. Bodies are told by their
-  /// material.
+  /// Medium behind a surface of a material: inside its body, or outside, if the ray is in it.
   [[nodiscard]] const Medium& behind(const Material& body) const noexcept {
     LightPath after = *this;
     after.cross_face(body);
     return after.depth > 0 ? after.bodies[after.depth - 1]->smooth.inside : LightPath{}.medium();
   }
-  /// Enters a body, or leaves it, if the ray is in it. The innermost of too many is forgotten.
+  /// Enters a body, told by its material, or leaves it. The innermost of too many is forgotten.
   void cross_face(const Material& body) noexcept {
     const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(depth), at = std::find(bodies.begin(), end, &body);
     if (at != end) {
@@ -103,19 +99,16 @@ struct LightPath {
       if (slope != 0) place[k] -= dot(place[k], normal) / slope * ray.direction;
     }
   }
-  /// Range at which light in air would have spread as far as here at a distance along the ray, and come back as weak
-  /// [m].
+  /// Range in air over which light would spread as far and return as weak, at a distance [m].
   [[nodiscard]] double spread(double distance = 0) const noexcept {
     return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]),
                                                     ray.direction)));
   }
 
-  /// Takes a share of the light along.
   void keep(double share) noexcept {
     sent *= share;
     two_way_share *= share * share;
   }
-  /// Continues in the mirror's direction.
   void reflect(const Vec3& normal) noexcept {
     ray.direction = mirrored(ray.direction, normal);
     for (Vec3& t : turn) t = mirrored(t, normal);

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
@@ -21,11 +16,10 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Takes the light of one pulse through media: what they absorb and scatter, and what they send back.
+/// Takes the light of a pulse through media: what they absorb, scatter and send back.
 class MediaPassage {
  public:
-  /// `air`: media between the surfaces; `share_min` as in `LightPaths`; `in_air`, `in_water`: memory for what media
-  /// in the air and bodies send back; `returns`: memory for both.
+  /// `air`: media between the surfaces; `share_min` as in `LightPaths`; others are memory.
   MediaPassage(const TransportInput& light, const Media& air, double share_min, LightLedger& ledger,
                VolumeProfile& in_air, VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
       : light_(light),
@@ -47,10 +41,9 @@ class MediaPassage {
     in_water_.classification = classification;
   }
 
-  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all.
+  /// Takes rays through the air up to their hits: what is lost of each, and what returns of all.
   /// `occluded(ray, range)` tells if a ray meets a surface.
-  template <class Occluded>
-  void pass_air(CoaxialRays& p, std::span<const Hit> hits, const Occluded& occluded) noexcept {
+  void pass_air(CoaxialRays& p, std::span<const Hit> hits, const auto& occluded) noexcept {
     if (air_.empty()) return;
     struct End {
       double range, two_way_share;
@@ -65,7 +58,7 @@ class MediaPassage {
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size),
               [](const End& a, const End& b) { return a.range < b.range; });
     const double resolution = pulse_ / 32;
-    for (std::size_t j = 0, next = 0; j < size; j = next) {  // rays that end together end at their mean
+    for (std::size_t j = 0, next = 0; j < size; j = next) {  // that end together
       double two_way_share = 0, moment = 0;
       for (next = j; next < size && ends[next].range - ends[j].range < resolution; ++next) {
         two_way_share += ends[next].two_way_share;
@@ -81,8 +74,8 @@ class MediaPassage {
     const auto same = [](double s) noexcept { return s; };
     const auto stretch = [&](double from, double to, const MediumRegion& region, double density) noexcept {
       const Medium& medium = region.medium;
-      const double loss = density * medium.extinction(),
-                   grains = of_beam ? particles_.end(from, to, region, density) : from;
+      const double loss = density * medium.extinction();
+      const double grains = of_beam ? particles_.end(from, to, region, density) : from;
       if (meets_particles && grains > from) particles_.meet(from, grains, region, density, passed, occluded);
       for (double at = from; at < to;) {
         for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].two_way_share;
@@ -151,7 +144,7 @@ class MediaPassage {
   }
 
  private:
-  /// Takes away what a medium absorbs and scatters of light on a way [m]. Returns the share that is left.
+  /// Takes away what a medium absorbs and scatters on a way [m]. Returns the share that is left.
   double lose(const Medium& medium, double density, double way, double sent) noexcept {
     const double per_metre = density * medium.extinction(), left = per_metre > 0 ? std::exp(-per_metre * way) : 1;
     if (per_metre > 0) {
@@ -171,15 +164,13 @@ class MediaPassage {
     double backscatter = 0;    ///< of the medium [1/(m sr)]
     double optical = 0;        ///< optical path up to its beginning [m]
     double delay = 1;          ///< optical path by way
-    bool straight = false;     ///< true if it began at the instrument, and all of the way so far was through the medium
+    bool straight = false;     ///< true if all of the way so far was through the medium
   };
-  /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air
-  /// [m].
+  /// Adds returns of a stretch. `spread(s)`: range of its spread; `air(s)`: way in air [m].
   ///
-  /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the mean. Nodes are
-  /// lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).
-  template <class Spread, class Air>
-  void add_volume(VolumeProfile& profile, const VolumeSegment& way, const Spread& spread, const Air& air) noexcept {
+  /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the
+  /// mean. Nodes are lowered by that: f'' h^2 / 12, for f as exp(-k s) / (s^2 + a^2).
+  void add_volume(VolumeProfile& profile, const VolumeSegment& way, const auto& spread, const auto& air) noexcept {
     const double aperture2 = light_.budget.aperture_radius() * light_.budget.aperture_radius(),
                  white = pi * way.backscatter / way.delay;
     const double loss = 2 * way.extinction + light_.budget.loss(), most = loss > 0 ? loss_step / loss : infinity;
@@ -196,18 +187,17 @@ class MediaPassage {
     if (way.extinction > 0 && way.least > 0)
       end = std::min(end, way.from + std::log(way.two_way_share / way.least) / (2 * way.extinction));
     if (!(begin < end)) return;
-    double two_way_share = way.two_way_share * std::exp(-2 * way.extinction * (begin - way.from)),
-           density = density_at(begin, two_way_share);
+    double two_way_share = way.two_way_share * std::exp(-2 * way.extinction * (begin - way.from));
+    double density = density_at(begin, two_way_share);
     std::size_t cell = profile.cell_of(range_at(begin));
     bool at_node = range_at(begin) == 0;
     for (double at = begin; at < end;) {
       if (at_node && way.straight &&
           add_straight(profile, way, end, most, density_at, cell, at, two_way_share, density))
         continue;
-      const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity,
-                   to = std::min(node, end);
-      const double s = spread(at),
-                   widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
+      const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity;
+      const double to = std::min(node, end), s = spread(at), wide = std::sqrt(s * s + aperture2);
+      const double widest = std::min(most, 1.2 * VolumeProfile::step(wide, pulse_));
       const bool whole = to - at <= widest;
       const double next = whole ? to : to < infinity ? at + (to - at) / std::ceil((to - at) / widest) : at + widest;
       two_way_share *= std::exp(-2 * way.extinction * (next - at));
@@ -222,12 +212,10 @@ class MediaPassage {
       density = then;
     }
   }
-  /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no
+  /// Adds the next whole cells of a straight way, from a node up to an end [m], while they are no
   /// wider than `most` [m]; false if there are none.
-  template <class DensityAt>
-  bool add_straight(VolumeProfile& profile, const VolumeSegment& way, double end, double most,
-                    const DensityAt& density_at, std::size_t& cell, double& at, double& two_way_share,
-                    double& density) noexcept {
+  bool add_straight(VolumeProfile& profile, const VolumeSegment& way, double end, double most, const auto& density_at,
+                    std::size_t& cell, double& at, double& two_way_share, double& density) noexcept {
     VolumeProfile::Straight& known = profile.straight(light_.budget, way.extinction, way.backscatter);
     const auto node = [&](std::size_t k) noexcept { return k > 0 ? profile.end_of(k - 1) : 0; };
     std::size_t to = profile.cell_of(end);
@@ -236,8 +224,8 @@ class MediaPassage {
       const std::size_t k = known.known;
       known.left[k] = std::exp(-2 * way.extinction * node(k));
       known.density[k] = density_at(node(k), known.left[k]);
-      known.power[k] =
-          k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
+      const double mean = k > 0 ? 0.5 * (known.density[k - 1] + known.density[k]) : 0;
+      known.power[k] = k > 0 ? known.power[k - 1] + mean * (node(k) - node(k - 1)) : 0;
     }
     to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
     if (!(to > cell)) return false;
@@ -248,12 +236,11 @@ class MediaPassage {
     density = way.two_way_share * known.density[cell];
     return true;
   }
-  /// Share of light to and fro, of that with which it begins a way, below which what media send back is left out.
+  /// Share of light to and fro, by that at a way's begin, below which nothing returns.
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, share_min_ * share_min_); }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr double loss_step =
-      0.08;  ///< greatest loss of power between nodes; with that of `VolumeProfile`, power by range is linear to 0.4 %
+  static constexpr double loss_step = 0.08;  ///< between nodes: power is linear to 0.4 %
 
   const TransportInput& light_;
   const Media& air_;

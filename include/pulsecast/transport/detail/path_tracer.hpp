@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/find_hits.hpp>
@@ -31,14 +28,6 @@ struct PathLevel {
   RayBundle::Column power{};
 };
 
-/// Settings of a `PathTracer`.
-struct PathSettings {
-  std::size_t passages;
-  double share_min;
-  const Media& air;
-  const MultipleScattering& scattering;
-};
-
 /// Scratch memory of a `PathTracer`.
 struct PathWorkspace {
   std::vector<PathLevel> levels;            ///< by number of surfaces that passed light on
@@ -52,11 +41,11 @@ struct PathWorkspace {
   }
 };
 
-/// Follows the light of one pulse.
+/// Follows the light of one pulse, by the settings of `LightPaths`.
 template <bool with_velocity, SceneQueries Target>
 class PathTracer {
  public:
-  PathTracer(const Target& target, const TransportInput& light, const PathSettings& settings, PathWorkspace& w,
+  PathTracer(const Target& target, const TransportInput& light, const auto& settings, PathWorkspace& w,
              std::span<Reflection> reflections, TransportResult& result) noexcept
       : target_(target),
         light_(light),
@@ -67,17 +56,12 @@ class PathTracer {
         bodies_(target, light, settings.share_min, settings.passages, ledger_, media_),
         scattered_(target, light, settings.air, settings.scattering, ledger_) {}
 
-  /// Follows all subrays.
   void trace() noexcept {
     const SubrayDirections& beam = light_.beam;
     const Matrix3 world_from_beam = matrix_of(light_.pulse.pose.rotation);
     CoaxialRays& p = w_.levels[0].pencil;
     StaggeredBundle& rays = p.rays;
-    rays.origin = light_.pulse.origin();
-    rays.wavelength = light_.emitter.laser.wavelength;
-    rays.tick = light_.pulse.tick;
-    rays.seed = light_.seed;
-    rays.pulse = light_.index;
+    set_origin(light_, rays);
     for (std::size_t first = 0; first < light_.subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(beam.from_a_point() ? RayBundle::capacity : 1, light_.subrays - first);
@@ -93,7 +77,6 @@ class PathTracer {
     ledger_.close(media_.close());
   }
 
-  /// True if a surface passed light on.
   [[nodiscard]] bool passed_on() const noexcept { return passed_on_; }
 
  private:
@@ -103,11 +86,11 @@ class PathTracer {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     const std::span<Hit> all(hits);
     const double wavelength = p.rays.wavelength;
-    target_.closest(
-        p.rays, hits, [=, &met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
-          scatter_at(*at.material, wavelength, at.texture, all.subspan(first, end - first));
-          std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
-        });
+    const auto visit = [=, &met = surfaces](std::size_t first, std::size_t end, const SurfaceInteraction& at) noexcept {
+      scatter_at(*at.material, wavelength, at.texture, all.subspan(first, end - first));
+      std::fill(met.begin() + first, met.begin() + end, PathVertex{at.material, at.normal, at.foliage, at.texture});
+    };
+    target_.closest(p.rays, hits, visit);
     if (level > 0) retrace_before_origin(level);
     media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return target_.occluded(ray, range); });
     received_power(light_, p.two_way_share.data(), p.rays.size, hits, power);
@@ -138,7 +121,7 @@ class PathTracer {
     return ray;
   }
 
-  /// Traces the rays again that met something before they begin: shapes other than triangles do not heed that.
+  /// Traces rays again that met something before they begin: only triangles heed that.
   void retrace_before_origin(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     for (std::size_t j = 0; j < p.rays.size; ++j) {
@@ -175,7 +158,7 @@ class PathTracer {
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
       const double reaching = 1 - hits[first].scattered_share;
       const bool mirror = smooth.kind == InterfaceKind::mirror;
-      const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;  // a pane loses its own
+      const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;
       for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += lost * p.sent[j];
       if (p.passages + 1 == w_.levels.size()) {
         for (std::size_t j = first; j < end; ++j) ledger_.shares.cut += (reaching - lost) * p.sent[j];
@@ -197,13 +180,12 @@ class PathTracer {
   }
 
   /// Sends rays on from the image of their origin in a plane; `share(j)` is the share reflected.
-  template <class Share>
-  void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const Share& share) noexcept {
+  void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const auto& share) noexcept {
     const PathLevel& met = w_.levels[level];
     const CoaxialRays& p = met.pencil;
     const auto& hits = met.hits;
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
-    const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // height of the origin above the plane
+    const double above = -dot(p.rays.direction(first), n) * hits[first].range;
     const auto next = [&](std::size_t j) noexcept -> Next {
       return {mirrored(p.rays.direction(j), n), share(j), hits[j].range, p.delay[j]};
     };
@@ -227,12 +209,11 @@ class PathTracer {
     send_mirrored(level, first, end, [&](std::size_t j) noexcept { return reaching * split[j].reflected; });
     const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const auto next = [&](std::size_t j) noexcept -> Next {
-      const double inside =
-          pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
+      const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // [m]
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside,
               p.delay[j] + split[j].delay};
     };
-    const bool together = most - least < surface_epsilon;  // no ray is out of place by more than half of that
+    const bool together = most - least < surface_epsilon;  // twice the greatest displacement
     for (std::size_t from = first, to = 0; from < end; from = to) {
       to = together ? end : from + 1;
       const double shift = together ? (least + most) / 2 : split[from].shift;
@@ -249,9 +230,8 @@ class PathTracer {
   };
 
   /// Sends rays of a level on from a common origin; `next(j)` tells of each how.
-  template <class NextOf>
   void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind,
-            const NextOf& next) noexcept {
+            const auto& next) noexcept {
     const CoaxialRays& p = w_.levels[level].pencil;
     CoaxialRays& to = w_.levels[level + 1].pencil;
     static_cast<BundleOrigin&>(to.rays) = p.rays;

@@ -4,11 +4,7 @@
 #define PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
@@ -19,7 +15,7 @@ namespace PULSECAST_NAMESPACE {
 /// Plane that all subrays of a beam met, in the frame of the beam.
 class MetPlane {
  public:
-  /// Fits a plane to the reflections of all subrays, in their order, by least squares along the beam.
+  /// Fits a plane to the reflections of all subrays, in order, by least squares along the beam.
   MetPlane(const SubrayDirections& beam, std::span<const Reflection> reflections) noexcept {
     const double n = static_cast<double>(reflections.size());
     Vec3 mean{};
@@ -44,8 +40,8 @@ class MetPlane {
                                      std::span<const Reflection> reflections) const noexcept {
     double most = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double off =
-          std::fabs(range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]}) - reflections[j].range);
+      const double range = range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]});
+      const double off = std::fabs(range - reflections[j].range);
       if (!(off <= most)) most = off;
     }
     return most;
@@ -81,7 +77,7 @@ class MetPlane {
   double ahead_ = 0, across_ = 0, up_ = 0;  ///< place on the axis [m], and its slopes
 };
 
-inline constexpr std::size_t slope_subrays_max = 32'768;  ///< greatest number of subrays that light is spread to
+inline constexpr std::size_t slope_subrays_max = 32'768;  ///< most subrays that light is spread to
 
 namespace detail {
 
@@ -99,8 +95,7 @@ namespace detail {
 
 /// Smooth surface that a pulse met obliquely.
 struct Slope {
-  double spread =
-      0;  ///< deviation of the ranges at which it scatters the light of a Gaussian beam; 0 if there is none [m]
+  double spread = 0;   ///< deviation of the ranges of a Gaussian beam; 0 if there is none [m]
   Vec2 farther{1, 0};  ///< direction across the footprint in which ranges grow, as a unit offset
   double range = 0;    ///< range on the axis of a plane; 0 for another surface [m]
 };
@@ -112,15 +107,15 @@ struct Slope {
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
   const Vec2 farther = plane.farther(light.emitter);
-  const double begin = plane.range_at(-2.0 * farther, light.emitter),
-               end = plane.range_at(2.0 * farther, light.emitter);  // 4 deviations
+  const double begin = plane.range_at(-2.0 * farther, light.emitter);  // 4 deviations
+  const double end = plane.range_at(2.0 * farther, light.emitter);
   if (!(begin > 0 && end > begin)) return {};
   return {(end - begin) / 8, farther, plane.range_at({}, light.emitter)};
 }
 
-/// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that
-/// one plane of that incidence would spread their light by more than the pulse's time constant, successive ones met it
-/// alike: a tenth of all subrays or more.
+/// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met
+/// something so obliquely that one plane of that incidence would spread their light by more than
+/// the pulse's time constant, successive ones met it alike: a tenth of all subrays or more.
 [[nodiscard, gnu::noinline]] inline Slope met_facets(const TransportInput& light,
                                                      std::span<const Reflection> met) noexcept {
   const double tau = pulse_constant(light.emitter.laser);
@@ -129,8 +124,8 @@ struct Slope {
   Slope slope;
   for (const Reflection& r : met) {
     const Vec2 radius = beam_radius(light.emitter.laser, r.range);  // twice the deviation
-    const double cosine = r.cos_incidence, wide = 0.5 * light.emitter.footprint_scale * std::max(radius.x, radius.y),
-                 spread = wide * std::sqrt(1 - cosine * cosine) / cosine;
+    const double wide = 0.5 * light.emitter.footprint_scale * std::max(radius.x, radius.y);
+    const double cosine = r.cos_incidence, spread = wide * std::sqrt(1 - cosine * cosine) / cosine;
     if (!(spread > tau)) continue;
     if (last && std::fabs(cosine - last->cos_incidence) < 2 * light.beam.spread &&
         std::fabs(r.range - last->range) < 8 * spread) {
@@ -142,8 +137,7 @@ struct Slope {
   return pairs < 2 || 10 * pairs < light.subrays ? Slope{} : slope;
 }
 
-/// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the
-/// light.
+/// True if subrays on a plane have the same labels, and powers by share within a tenth.
 [[nodiscard, gnu::noinline]] inline bool alike(const TransportInput& light, std::span<const Reflection> met) noexcept {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t j = 0; j < met.size(); ++j) {
@@ -160,14 +154,12 @@ struct RowPlace {
   double along, width;
 };
 
-/// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples of the golden
-/// ratio, so that neighbours lie anywhere. Those off the row are longer ways off: on a plane, they lie as much nearer
-/// along it.
-template <class Place>
-void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope,
-             const Place& place) noexcept {
-  const Vec2 deviation =
-      0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
+/// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples
+/// of the golden ratio. Those off the row are farther off: on a plane, they lie nearer along it.
+inline void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope,
+                    const auto& place) noexcept {
+  const Divergence& divergence = emitter.laser.divergence;
+  const Vec2 deviation = 0.25 * emitter.footprint_scale * Vec2{divergence.across, divergence.up};
   const Vec2 farther = slope.farther, aside{-farther.y, farther.x};
   const auto square = [&](const Vec2& at) noexcept { return dot(at * deviation, at * deviation); };
   const auto share = [&](const RowPlace& at) noexcept { return std::exp(-0.5 * at.along * at.along) * at.width; };
@@ -175,22 +167,21 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
   for (std::size_t j = 0; j < size; ++j) sum += share(place(static_cast<double>(j)));
   row.assign(size, emitter, [&](std::size_t j) noexcept -> SubrayDirections::Subray {
     const RowPlace at = place(static_cast<double>(j));
-    const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1),
-                 across = normal_quantile(m - std::floor(m));
+    const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
+    const double across = normal_quantile(m - std::floor(m));
     const Vec2 on = at.along * farther, off = on + across * aside;
     const double longer = 0.5 * slope.range * (square(off) - square(on));
     return {0.5 * (off - longer / slope.spread * farther), share(at) / sum};
   });
 }
 
-/// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and `number` of them;
-/// returns how many there should be.
+/// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and
+/// `number` of them; returns how many there should be.
 [[nodiscard, gnu::noinline]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane,
                                                         const Emitter& emitter) noexcept {
   constexpr double reach = 4, smooth = 2;  // deviations; places over which the distances settle
-  const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;  // variances [tau^2]
-  const double most =
-      (3 - 3 / ss) / r - 5 * plane.spread / plane.range;  // place whose pulse begins at the maximum [deviations]
+  const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;
+  const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;  // its pulse begins at the maximum
   const double half = reach + std::fabs(most), wanted = std::sqrt(half * ss * r / (3 * 0.55 * 0.55));
   const double side = std::floor(std::clamp(wanted, 128.0, 0.5 * slope_subrays_max - 1)), step = half / (side * side);
   number = static_cast<std::size_t>(2 * side + 1);
@@ -201,7 +192,7 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
   return 2 * wanted;
 }
 
-/// True if neighbours in a row of subrays send back alike: the same labels, and powers on a curve without noise.
+/// True if neighbours in a row of subrays send back the same labels, and powers on a smooth curve.
 [[nodiscard]] inline bool sends_evenly(const SubrayDirections& row, std::size_t size, std::span<const Reflection> met,
                                        double noise) noexcept {
   if (met.size() < size) return false;
@@ -215,7 +206,7 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 
 }  // namespace detail
 
-/// Span of the ranges of reflections from surfaces that subrays met directly, in deviations of the pulse.
+/// Span of the ranges of direct reflections, in deviations of the pulse.
 [[nodiscard]] inline double span_of_ranges(const TransportInput& light,
                                            std::span<const Reflection> reflections) noexcept {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -226,24 +217,23 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
   return (farthest - nearest) / (std::sqrt(3.0) * detail::pulse_constant(light.emitter.laser));
 }
 
-/// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they did: the pulse is
-/// traced again, by as many subrays as make one echo of a plane. `span` is that of the ranges. `trace(light)` sets the
-/// reflections anew, and returns their result; `row` is memory.
+/// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they
+/// did: the pulse is traced again, by as many subrays as make one echo of a plane. `span` is that
+/// of the ranges. `trace(light)` sets the reflections anew, and returns the result.
 ///
-/// On a plane, only the place of a subray along the slope matters. The subrays are in a row along it, and anywhere
-/// across. Derived for pulses of a `PulseShape`, with lengths in units of its tau, and s the echo's deviation. Each
-/// pulse begins as the square of time, so the slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of its
-/// height (Source: formula of Euler and Maclaurin). The slope of the echo is x / s^2 of its height at a distance x from
-/// its maximum. If d grows as the root of 12 x / s^2, there is no other maximum.
+/// On a plane, only places along the slope matter: the subrays are a row along it. Derived for
+/// pulses of a `PulseShape`, in units of its tau, with the echo's deviation s. Each pulse begins as
+/// the square of time, so the slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of
+/// its height (Source: formula of Euler and Maclaurin). The slope of the echo is x / s^2 of its
+/// height at x from its maximum: if d grows as the root of 12 x / s^2, it is the only one.
 ///
-/// Where neighbours in the row send back other powers or labels, or the surface is not one plane, the row is even, and
-/// longer, as the paint across the slope is then a sum over neighbours. Its errors were measured: docs/physics.md.
-/// Beyond its room, false echoes are left, and the pulse is unresolved.
-template <class Trace>
+/// Where neighbours in the row send back other powers or labels, or the surface is not one plane,
+/// the row is even, and longer, as paint across the slope is then a sum over neighbours. Errors
+/// measured: docs/physics.md. Beyond its room, false echoes are left, and the pulse is unresolved.
 void spread_over_plane(const TransportInput& light, double span, std::span<const Reflection> reflections,
-                       SubrayDirections& row, TransportResult& result, const Trace& trace) noexcept {
+                       SubrayDirections& row, TransportResult& result, const auto& trace) noexcept {
   const double tau = detail::pulse_constant(light.emitter.laser);
-  // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
+  // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations, as few subrays may be
   const bool part = span > std::min(2.0, 0.38 * static_cast<double>(light.subrays - 1));
   const auto met = [&] { return detail::direct_ones(reflections.first(result.reflections)); };
   if (!part && (met().size() != light.subrays || detail::alike(light, met()))) return;
@@ -254,32 +244,21 @@ void spread_over_plane(const TransportInput& light, double span, std::span<const
   const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
   if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
   const auto trace_row = [&](std::size_t size) noexcept {
-    result = trace(TransportInput{light.pulse,
-                                  light.index,
-                                  light.seed,
-                                  light.emitter,
-                                  row,
-                                  size,
-                                  light.budget,
-                                  light.white_target,
-                                  light.gate,
-                                  {}});
+    result = trace(light.by(row, size));
     result.spread = true;
   };
   if (plane && part) {
     std::size_t size = 0;
-    const bool room = detail::set_even_row(row, size, slope, light.emitter) <
-                      1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
+    const double wanted = detail::set_even_row(row, size, slope, light.emitter);
+    const bool room = wanted < 1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
     trace_row(size);
     result.unresolved = !room || 16 * slope.spread > slope.range;
     if (detail::sends_evenly(row, size, met(), std::min(0.1, 0.5 / (s * std::sqrt(s))))) return;
   }
   constexpr double most = slope_subrays_max;
   const double size = std::ceil(std::min(1024 * r * s, most)), width = 8 / size;
-  detail::set_row(row, static_cast<std::size_t>(size), light.emitter, slope,
-                  [&](double j) noexcept -> detail::RowPlace {
-                    return {width * (j + 0.5) - 4, width};
-                  });
+  const auto place = [&](double j) noexcept -> detail::RowPlace { return {width * (j + 0.5) - 4, width}; };
+  detail::set_row(row, static_cast<std::size_t>(size), light.emitter, slope, place);
   trace_row(static_cast<std::size_t>(size));
   result.unresolved = s > 16;
 }

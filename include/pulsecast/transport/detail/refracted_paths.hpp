@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 
 #include <algorithm>
-#include <limits>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
@@ -53,8 +52,7 @@ class RefractedPaths {
     double relative = 1;   ///< index behind it by that before it
     double scattered = 0;  ///< share of the light that it scatters
   };
-  template <class Point>
-  Face face_at(const LightPath& path, const Point& at) const noexcept {
+  Face face_at(const LightPath& path, const SurfaceInteraction& at) const noexcept {
     Face face{towards(at.normal, path.ray.direction)};
     if (at.normal != Vec3{}) face.cosine = std::min(1.0, -dot(face.normal, path.ray.direction));
     face.relative = path.behind(*at.material).index / path.medium().index;
@@ -65,16 +63,15 @@ class RefractedPaths {
   }
 
   /// Light that a surface sends back to a path that ends there.
-  template <class Point>
-  void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
+  void end_at(const LightPath& path, const SurfaceInteraction& at, const Face& face) noexcept {
     Hit hit{.range = path.optical,
             .cos_incidence = face.cosine,
             .object = at.object,
             .classification = at.classification,
             .scattered_share = face.scattered};
     hit.backscatter = at.material->backscatter(hit.cos_incidence, light_.emitter.laser.wavelength, at.texture);
-    const double spread = path.spread(),
-                 wide = light_.budget.power_through(path.two_way_share, hit.backscatter, spread, path.air);
+    const double spread = path.spread();
+    const double wide = light_.budget.power_through(path.two_way_share, hit.backscatter, spread, path.air);
     const double power = wide * aperture_fraction(light_.budget, *at.material, spread);
     PathState way{path.kind, path.sent};
     if constexpr (with_velocity)
@@ -82,9 +79,8 @@ class RefractedPaths {
     ledger_.end_at(hit, *at.material, power, way);
   }
 
-  /// Passes a path on: reflects a part of it, and goes on with the other. Returns false if nothing goes on.
-  template <class Point>
-  bool pass_on(LightPath& path, const Point& at, const Face& face) noexcept {
+  /// Passes a path on: reflects a part of it, and goes on with the other; false if nothing goes on.
+  bool pass_on(LightPath& path, const SurfaceInteraction& at, const Face& face) noexcept {
     const SmoothInterface& smooth = at.material->smooth;
     const double reaching = 1 - face.scattered;
     const Vec3 n = face.normal, before = path.ray.direction;
@@ -134,8 +130,8 @@ class RefractedPaths {
     }
     if (!rough) reflect_too(reaching * split.reflected);
     path.keep(rough ? reaching : reaching * split.refracted());
-    path.kind =
-        std::max(path.kind, smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass);
+    const bool water = smooth.kind == InterfaceKind::water;
+    path.kind = std::max(path.kind, water ? ReflectionKind::water : ReflectionKind::glass);
     path.refract(n, face.relative, split);
     path.cross_face(*at.material);
     media_.label_body(at.object, at.classification);

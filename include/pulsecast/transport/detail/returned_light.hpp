@@ -3,12 +3,20 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 #define PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 /// Light that the hits of a bundle send back, for all transports.
 namespace PULSECAST_NAMESPACE::detail {
+
+/// Gives a bundle the names of a pulse's rays and their exit.
+[[gnu::always_inline]] inline void set_origin(const TransportInput& light, BundleOrigin& rays) noexcept {
+  rays.origin = light.pulse.origin();
+  rays.wavelength = light.emitter.laser.wavelength;
+  rays.tick = light.pulse.tick;
+  rays.seed = light.seed;
+  rays.pulse = light.index;
+}
 
 /// Takes away what the receiver does not see of the power of a bundle [W].
 [[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits,
@@ -16,8 +24,7 @@ namespace PULSECAST_NAMESPACE::detail {
   for (std::size_t j = 0; j < hits.size(); ++j) power[j] *= budget.overlap_at(hits[j].range);
 }
 
-/// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W].
-/// Undefined for misses.
+/// Power received from the hits of rays with shares of the energy; no gate; not for misses [W].
 [[gnu::always_inline]] inline void received_power(const TransportInput& light, const double* shares, std::size_t size,
                                                   std::span<const Hit> hits, RayBundle::Column& power) noexcept {
   if (size == 1) {

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
@@ -18,11 +15,11 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Follows light from surface to surface at random, and at each takes what returns straight to the receiver.
-/// Foliage scatters as a leaf of it: of the normals of leaves of all directions, light meets each as often as its
-/// cosine of incidence says, so that they are by the cosine about its way back. Their mean is the phase function of a
-/// turbid medium of such leaves. Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine,
-/// from a uniform disk; leaves: Ross 1981.
+/// Follows light from surface to surface at random, and at each takes what returns straight to the
+/// receiver. Of foliage's leaves of all directions, light meets each as often as its cosine of
+/// incidence says: their normals are by the cosine about its way back, and their mean is the phase
+/// function of a turbid medium. Source: next-event estimation, Coveyou, Cain & Yost 1967;
+/// directions by the cosine, from a uniform disk; leaves: Ross 1981.
 template <SceneQueries Target>
 class ScatteredPaths {
  public:
@@ -30,8 +27,7 @@ class ScatteredPaths {
                  const MultipleScattering& settings, LightLedger& ledger) noexcept
       : target_(target), light_(light), air_(air), settings_(settings), ledger_(ledger) {}
 
-  /// Continues some of the subrays of a pencil from the beam, that met these surfaces: as many as their share of all
-  /// paths.
+  /// Continues some of a beam's subrays that met these surfaces, by their share of all paths.
   void start(const CoaxialRays& p, std::span<const Hit> hits, std::span<const PathVertex> surfaces) noexcept {
     if (settings_.orders < 2) return;
     const auto paths = static_cast<double>(settings_.paths);

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
@@ -14,8 +12,8 @@
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Light that a medium scatters back, by range. Stretches between neighbouring nodes are added up; others are kept
-/// apart as long as there is room.
+/// Light that a medium scatters back, by range. Stretches between neighbouring nodes are added up;
+/// others are kept apart as long as there is room.
 class VolumeProfile {
  public:
   ObjectId object = 0;               ///< label of the returns
@@ -23,9 +21,9 @@ class VolumeProfile {
 
   static constexpr std::size_t cells = 512;
 
-  /// Distance from a node to the next [m], where light has spread by `wide`, the root of the squares of range and
-  /// aperture [m]: power by its inverse square is linear to 0.35 % there. Closer than a sixteenth of a pulse, of a
-  /// length in range [m], only the mean counts.
+  /// Distance from a node to the next [m], where light has spread by `wide`, the root of the
+  /// squares of range and aperture [m]: power by its inverse square is linear to 0.35 % there.
+  /// Below a sixteenth of a pulse, of a length in range [m], only the mean counts.
   [[nodiscard]] static double step(double wide, double pulse) noexcept {
     return std::max(wide / 12, std::min(wide / 2, pulse / 16));
   }
@@ -36,8 +34,7 @@ class VolumeProfile {
   /// Greatest number of returns.
   [[nodiscard]] std::size_t size_max() const noexcept { return cells + parts_.capacity() + 1; }
 
-  /// Densities at the nodes of light that leaves the instrument with a share of 1 through a medium, by a link budget:
-  /// the same for all pulses.
+  /// Densities at the nodes of all light through a medium, the same for all pulses.
   struct Straight {
     LinkBudget budget{};
     double extinction = 0, backscatter = 0;
@@ -60,7 +57,7 @@ class VolumeProfile {
     return s;
   }
 
-  /// Empties the profile, for an aperture of a radius [m] and a pulse of a length [m]. All returns are within the gate.
+  /// Empties the profile, for an aperture of a radius and a pulse of a length [m], within the gate.
   void begin(double aperture, double pulse, const RangeGate& gate) noexcept {
     gate_ = gate;
     if (aperture != aperture_ || pulse != pulse_) {
@@ -107,8 +104,7 @@ class VolumeProfile {
     }
     return share * (straight_.power[end] - straight_.power[first]);
   }
-  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. If there is no room, cells take the light of
-  /// all such stretches.
+  /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. Cells take the rest.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
     const Part part{begin, end, at_begin, at_end};
     if (parts_.size() == parts_.capacity()) {
@@ -123,9 +119,8 @@ class VolumeProfile {
     return part.power();
   }
 
-  /// Writes the returns in order of range, from a number on; there is room for `size_max()` more. Returns the number
-  /// after the last. Those of known light are there already if the last pulse had as much of it, and nothing else wrote
-  /// to them.
+  /// Writes the returns in order of range, from a number on; there is room for `size_max()` more.
+  /// Returns the number after the last. Those of known light stay if the last pulse had as much.
   std::size_t write_to(std::vector<ContinuousReturn>& returns, std::size_t count, ReflectionKind kind) noexcept {
     if (parts_.empty() && first_ >= end_ && lit_.share == 0) return count;
     const auto nearer = [](const Part& a, const Part& b) { return a.from < b.from; };
@@ -213,7 +208,7 @@ class VolumeProfile {
   std::array<double, cells> begins_{}, ends_{};  ///< densities at the ends of cells [W/m]
   std::size_t first_ = cells, end_ = 0;          ///< cells in use
   Straight straight_{};
-  Lit lit_{}, written_{};       ///< of this pulse, beside the densities; as the returns were written last
+  Lit lit_{}, written_{};       ///< of this pulse; as the returns were written last
   std::size_t written_at_ = 0;  ///< number of the first return that was written so
   std::vector<Part> parts_;
   bool crowded_ = false;
