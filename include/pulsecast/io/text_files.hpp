@@ -36,17 +36,15 @@ struct PointTextColumns {
 ///
 ///     x y z intensity echo_width returnNumber pulseReturnNumber fullwaveIndex hitObjectId classification gpsTime
 ///
-/// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals;
-/// gpsTime [s] has 9. The others are integers: return number, returns of the pulse, index of the pulse, object, class.
-/// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated
-/// here. Further columns follow on request, in the shortest form that reads back the same, nan if unknown. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found,
+/// have 4 decimals; gpsTime [s] has 9. The others are integers: return number, returns of the
+/// pulse, index of the pulse, object, class. HELIOS++ has these columns. Further ones follow on
+/// request, in the shortest form that reads back the same, nan if unknown. Only `close()` completes
+/// the file: see `OutputFile`. @throws FileError @throws SettingError
 class XyzWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {}, PointTextColumns more = {})
       : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
   explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}, PointTextColumns more = {})
       : settings_(validated(settings)), more_(encoder(settings, std::move(more))), text_(std::move(file)) {}
 
@@ -55,7 +53,7 @@ class XyzWriter {
       for (const Echo& echo : batch.echoes_of(shot)) write(batch, shot, echo);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
   void close() { text_.close(); }
 
  private:
@@ -92,22 +90,20 @@ class XyzWriter {
 };
 static_assert(EchoSink<XyzWriter>);
 
-/// Writes pulses as text, with or without echoes, one a line, in these blank-separated columns, without a header:
+/// Writes pulses as text, with or without echoes, one a line, in these columns, without header:
 ///
 ///     ox oy oz dx dy dz time pulseIndex deviceIndex fate
 ///
-/// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; time: departure [ns], 4 decimals, all
-/// exact; pulseIndex: slot, the fullwaveIndex of points and waveforms; deviceIndex: emitter, from 0; fate: number of
-/// its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1)
-/// were never sent, and have no line. The first nine are the columns of HELIOS++ pulse files, so that their readers
-/// work. As there, time is in nanoseconds, unlike in all other files; pulseIndex counts from 0 and over all devices,
-/// and directions have more decimals. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9; time: departure [ns], 4, all exact;
+/// pulseIndex: slot, the fullwaveIndex of points; deviceIndex: emitter, from 0; fate: number of its `Fate`:
+/// 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1) were
+/// never sent, and have no line. HELIOS++ has the first nine, also in nanoseconds; but pulseIndex counts
+/// from 0 and over all devices, and directions have more decimals. Only `close()` completes the file: see
+/// `OutputFile`. @throws FileError @throws SettingError
 class PulseTextWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PulseTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
   explicit PulseTextWriter(OutputFile file, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 
@@ -115,9 +111,8 @@ class PulseTextWriter {
     const Tick start = Tick::of_seconds(settings_.start_time);
     for (const Shot& shot : batch.shots) {
       text_.vector("the origin of a pulse", shot.origin, 4).vector("the direction of a pulse", shot.direction, 9);
-      text_.nanoseconds(start + shot.tick)
-          .wholes(shot.index, shot.channel, static_cast<std::uint8_t>(shot.fate))
-          .end_row();
+      text_.nanoseconds(start + shot.tick).wholes(shot.index, shot.channel, static_cast<std::uint8_t>(shot.fate));
+      text_.end_row();
     }
   }
 
@@ -129,19 +124,17 @@ class PulseTextWriter {
 };
 static_assert(EchoSink<PulseTextWriter>);
 
-/// Writes the hits of subrays of a `WithSubrayRecord` footprint as text, one a line, in these blank-separated columns:
+/// Writes the hits of subrays of a `WithSubrayRecord` as text, one a line, in these columns:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
-/// fullwaveIndex: slot of the pulse, as in point files; subray: number in the footprint, from 0; x, y, z: hit point
-/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and
-/// backscatter as in `Hit`, 6 each; object and class. Subrays without a hit have no line. There is no header line. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point
+/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9;
+/// cosIncidence and backscatter as in `Hit`, 6; object and class. Subrays without a hit have no
+/// line. There is no header. Only `close()` completes the file: see `OutputFile`. @throws FileError
 class SubrayTextWriter {
  public:
-  /// Opens the file. @throws FileError
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
   explicit SubrayTextWriter(OutputFile file) : text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -154,39 +147,34 @@ class SubrayTextWriter {
     }
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
   void close() { text_.close(); }
 
  private:
   void write(const Shot& shot, std::size_t subray, const SubrayRecord& hit) {
     constexpr double nano = 1e9;  // per unit
-    text_.wholes(shot.index, subray)
-        .vector("the position of a hit", hit.point, 4)
-        .reals(4, hit.range)
-        .reals(9, hit.power * nano);
-    text_.reals(6, hit.cos_incidence, hit.backscatter).wholes(hit.object, hit.classification).end_row();
+    text_.wholes(shot.index, subray).vector("the position of a hit", hit.point, 4).reals(4, hit.range);
+    text_.reals(9, hit.power * nano).reals(6, hit.cos_incidence, hit.backscatter);
+    text_.wholes(hit.object, hit.classification).end_row();
   }
 
   TextOutput text_;
 };
 static_assert(EchoSink<SubrayTextWriter>);
 
-/// Writes waveforms as text, one a line, with or without echoes, in these blank-separated columns, without a header:
+/// Writes waveforms as text, with or without echoes, one a line, in these columns, no header:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///
-/// fullwaveIndex: slot of the pulse, as in point files; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction,
-/// 9 decimals; tmin, tmax: times of the first and last sample [ns], 6 decimals; gpsTime: departure [s], 9 decimals; w:
-/// samples of received power [nW], as the points' intensity, 9 decimals, to the end of the line. These are the columns
-/// of HELIOS++ waveform files, so that their readers work. As there, tmin and tmax are one-way times, range by speed of
-/// light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`, half of its two-way travel time. Only
-/// `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// fullwaveIndex: slot of the pulse; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9;
+/// tmin, tmax: times of the first and last sample [ns], 6; gpsTime: departure [s], 9; w: samples of received
+/// power [nW], 9. HELIOS++ has these columns. As there, tmin and tmax are one-way times, range by speed of
+/// light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`. Only `close()` completes the
+/// file: see `OutputFile`. @throws FileError @throws SettingError
 class WaveformTextWriter {
  public:
-  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit WaveformTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
-  /// Writes to an open file.
   explicit WaveformTextWriter(OutputFile file, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 
@@ -195,18 +183,17 @@ class WaveformTextWriter {
       if (shot.samples != 0) write(shot, batch);
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
   void close() { text_.close(); }
 
  private:
   void write(const Shot& shot, const EchoBatch& batch) {
     constexpr double nano = 1e9, one_way = 0.5;
     const double last = shot.waveform_start + (shot.samples - 1) * batch.sample_interval;
-    text_.wholes(shot.index)
-        .vector("the origin of a pulse", shot.origin, 4)
-        .vector("the direction of a pulse", shot.direction, 9);
-    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano)
-        .reals(9, settings_.start_time + shot.tick.seconds());
+    text_.wholes(shot.index).vector("the origin of a pulse", shot.origin, 4);
+    text_.vector("the direction of a pulse", shot.direction, 9);
+    text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano);
+    text_.reals(9, settings_.start_time + shot.tick.seconds());
     for (const float sample : batch.waveform_of(shot)) text_.reals(9, double{sample} * nano);
     text_.end_row();
   }
