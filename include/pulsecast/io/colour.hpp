@@ -76,12 +76,10 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
 
 /// Colour of a point class, about as on maps. Source: ASPRS LAS 1.4 R15, table 17; own from 64 on.
 [[nodiscard]] inline Srgb of_class(std::uint16_t classification) noexcept {
-  constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62},
-      high_vegetation{58, 136, 66}, building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132},
-      other{176, 176, 176};
-  constexpr std::array<Srgb, 12> standard{other,           other,    ground, low_vegetation, medium_vegetation,
-                                          high_vegetation, building, other,  other,          water,
-                                          other,           road};
+  constexpr Srgb other{176, 176, 176}, ground{158, 124, 88}, low{160, 196, 72}, medium{104, 168, 62}, high{58, 136, 66};
+  constexpr Srgb building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132};
+  constexpr std::array standard{other,    other, ground, low,   medium, high,  // vegetation
+                                building, other, other,  water, other,  road};
   constexpr std::array<Srgb, 6> own{
       {{158, 108, 72}, {216, 196, 156}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}, {0, 158, 115}}};
   if (classification >= 64) return own[(classification - 64u) % own.size()];

@@ -61,9 +61,6 @@ struct GeoTiff {
 #include <tiffio.h>
 
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
-#include <pulsecast/io/detail/geotiff/raster_layout.hpp>
-#include <pulsecast/io/detail/geotiff/tiff_file.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -114,7 +114,6 @@ class InputFile {
   [[noreturn]] void fail_at_column(std::size_t column, const auto&... problem) const {
     throw FileError(path_, text::message("line ", line_, ", column ", column + 1), text::message(problem...));
   }
-  /// Throws a `FileError` about a byte, from 0.
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const auto&... problem) const {
     throw FileError(path_, text::message("byte ", byte), text::message(problem...));
   }

@@ -44,8 +44,6 @@ namespace PULSECAST_NAMESPACE::io {
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 

@@ -50,8 +50,6 @@ struct MaterialLibrary {
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
-#include <pulsecast/io/detail/obj/statements.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -43,7 +43,6 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -237,7 +237,7 @@ class ImageWriter {
     };
     if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(),
                                3 * settings_.width) == 0)
-      detail::fail(file_.path(), "the picture cannot be compressed: expected enough memory");
+      throw FileError(file_.path().string(), "", "the picture cannot be compressed: expected enough memory");
     file_.write(png);
     file_.commit();
   }

@@ -12,7 +12,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/digest.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>

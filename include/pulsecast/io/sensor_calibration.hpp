@@ -74,18 +74,6 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   return sheet;
 }
 
-namespace detail {
-
-/// JSON list of numbers, rounded to 9 decimals.
-[[nodiscard]] inline std::string json_list(const std::vector<double>& values) {
-  std::string list;
-  for (const double value : values)
-    list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
-  return list + "]";
-}
-
-}  // namespace detail
-
 /// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without
 /// sections, which Ouster's software reads of all firmware. Azimuths are positive to the right, as
 /// in the manual's formula. @throws SettingError for another sensor @throws FileError
@@ -102,19 +90,24 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   }
   const double least = *std::min_element(shifts.begin(), shifts.end());
   for (double& shift : shifts) shift -= least;
+  const auto list_of = [](const std::vector<double>& values) {  // rounded to 9 decimals
+    std::string list;
+    for (const double value : values)
+      list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
+    return list + "]";
+  };
   using Format = detail::OusterFormat;
   const double lens_radius = std::nearbyint(1e12 * sensor.exit_radius) / 1e9, height = sensor.lasers.front().height;
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
   file.write(text::message(
       "{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", columns, "x", sensor.rotation_rate,
-      "\",\n  \"udp_port_lidar\": ", Format::port, ",\n  \"beam_altitude_angles\": ", detail::json_list(altitudes),
-      ",\n  \"beam_azimuth_angles\": ", detail::json_list(azimuths),
-      ",\n  \"lidar_origin_to_beam_origin_mm\": ", lens_radius, ",\n  \"lidar_to_sensor_transform\": ",
-      detail::json_list({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * height, 0, 0, 0, 1}),
+      "\",\n  \"udp_port_lidar\": ", Format::port, ",\n  \"beam_altitude_angles\": ", list_of(altitudes),
+      ",\n  \"beam_azimuth_angles\": ", list_of(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ", lens_radius,
+      ",\n  \"lidar_to_sensor_transform\": ", list_of({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * height, 0, 0, 0, 1}),
       ",\n  \"data_format\": {\n    \"columns_per_frame\": ", columns,
       ",\n    \"columns_per_packet\": ", Format::packet_columns, ",\n    \"pixels_per_column\": ", Format::lasers,
-      ",\n    \"column_window\": [0, ", columns - 1, "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts),
+      ",\n    \"column_window\": [0, ", columns - 1, "],\n    \"pixel_shift_by_row\": ", list_of(shifts),
       ",\n    \"udp_profile_lidar\": \"", is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"));
   file.commit();
 }

@@ -46,7 +46,6 @@ struct SpectrumFile {
 #include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -8,8 +8,6 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/detail/trajectory/attitude.hpp>
-#include <pulsecast/io/detail/trajectory/format.hpp>
 #include <pulsecast/io/detail/trajectory/table.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>

@@ -35,7 +35,6 @@
 #include <sys/syscall.h>
 #endif
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/input_file.hpp>
 

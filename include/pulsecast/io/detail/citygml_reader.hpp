@@ -20,9 +20,7 @@
 
 #include <pulsecast/io/citygml.hpp>
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/plain_xml.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

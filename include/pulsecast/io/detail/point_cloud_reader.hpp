@@ -12,13 +12,10 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/las/points.hpp>
 #include <pulsecast/io/detail/text/points.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 

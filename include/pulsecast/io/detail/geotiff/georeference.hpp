@@ -12,9 +12,7 @@
 
 #include <tiffio.h>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
-#include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
 #include <pulsecast/io/world_file.hpp>
 #include <pulsecast/shape/raster.hpp>

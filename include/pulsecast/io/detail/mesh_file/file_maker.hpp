@@ -13,11 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
-#include <pulsecast/io/detail/mesh_file/model.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/scene/part.hpp>
 
@@ -90,9 +87,18 @@ class MeshFileMaker {
       warn(reshaped_, " nodes shear, mirror or stretch their meshes, which become ", shapes_, " meshes of their own");
     if (flattened_ > 0) warn(flattened_, " nodes whose transforms flatten their meshes are left out");
     if (empty_ > 0) warn(empty_, " meshes have triangles, and none with an area: all their vertices may coincide");
-    note_precision();
+    const double rounding = farthest_ * 0x1p-24;  // of 24 bits. Source: IEEE 754-2019, binary32
+    if (rounding > 1e-3)
+      warn("has coordinates up to ", std::llround(farthest_), " m, which are read in single precision, to ",
+           std::ceil(rounding * 1e3) / 1e3,
+           " m; OBJ files are read in double precision, and small coordinates with a "
+           "translation of the part keep all digits");
     if (file_.placements.empty()) warn("holds no triangle with an area");
-    describe();
+    const PictureFinder find{path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files};
+    for (const std::uint32_t number : used_) {
+      file_.materials.push_back(material_of(scene_.materials[number], settings_.reflectance_of_colour));
+      file_.pictures.push_back(find(scene_.materials[number]));
+    }
     return std::move(file_);
   }
 
@@ -132,16 +138,6 @@ class MeshFileMaker {
     }
   }
 
-  /// Notes coordinates that 24 bits round by more than 1 mm. Source: IEEE 754-2019, binary32.
-  void note_precision() {
-    const double rounding = farthest_ * 0x1p-24;
-    if (rounding > 1e-3)
-      warn("has coordinates up to ", std::llround(farthest_), " m, which are read in single precision, to ",
-           std::ceil(rounding * 1e3) / 1e3,
-           " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all "
-           "digits");
-  }
-
   /// Mesh of a shape, one for all shapes that are equal within 1e-6.
   [[nodiscard]] std::optional<std::size_t> mesh_of(const Numbers& meshes, const SplitTransform& split) {
     std::array<std::int64_t, 9> key;
@@ -173,14 +169,6 @@ class MeshFileMaker {
     }
     file_.meshes.push_back(std::move(one));
     return file_.meshes.size() - 1;
-  }
-
-  void describe() {
-    const PictureFinder find{path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files};
-    for (const std::uint32_t number : used_) {
-      file_.materials.push_back(material_of(scene_.materials[number], settings_.reflectance_of_colour));
-      file_.pictures.push_back(find(scene_.materials[number]));
-    }
   }
 
   const std::filesystem::path& path_;

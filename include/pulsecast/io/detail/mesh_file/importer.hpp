@@ -22,12 +22,8 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
-#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -201,28 +197,25 @@ class MeshImport {
         ++left_out_;
         continue;
       }
-      check(face, from.mNumVertices);
+      check({face.mIndices, face.mNumIndices}, from.mNumVertices);
       crossings_ += cut(face, from.mVertices, to) ? 0 : 1;
       to += face.mNumIndices - 2;
     }
     return triangles;
   }
 
-  void check(const aiFace& face, std::uint32_t vertices) const {
-    if (face.mNumIndices > max_polygon_corners)
-      fail("a polygon has ", face.mNumIndices, " corners, expected at most ", max_polygon_corners);
-    for (unsigned k = 0; k < face.mNumIndices; ++k)
-      if (face.mIndices[k] >= vertices)
-        fail("a face has the vertex ", face.mIndices[k], ", expected less than the number of vertices, ", vertices);
+  void check(std::span<const unsigned> corners, unsigned vertices) const {
+    if (corners.size() > max_polygon_corners)
+      fail("a polygon has ", corners.size(), " corners, expected at most ", max_polygon_corners);
+    for (const unsigned one : corners)
+      if (one >= vertices)
+        fail("a face has the vertex ", one, ", expected less than the number of vertices, ", vertices);
   }
 
   /// Writes the n - 2 triangles of a face, some without area. False if its outline crosses itself.
   [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
     const unsigned* const c = face.mIndices;
-    const auto fan = [&] {
-      for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
-    };
-    fan();
+    for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
     if (face.mNumIndices == 3) return true;
     std::vector<Vec3> corners;
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
@@ -243,14 +236,6 @@ class MeshImport {
     return !cuts.empty();
   }
 
-  /// Name of a node with those above it. The root is often made by assimp, or has no meaning.
-  [[nodiscard]] std::string name_of(const aiNode& node, const std::string& above, bool is_root) const {
-    const std::string name = node.mName.C_Str();
-    const bool means_nothing = node.mNumMeshes == 0 && !(gltf_ && name != "ROOT");
-    if (is_root && (name.starts_with('<') || means_nothing)) return {};
-    return above.empty() ? name : above + "/" + name;
-  }
-
   /// Nodes with meshes, each before those below it.
   void nodes(const aiNode& root) {
     struct Step {
@@ -267,7 +252,10 @@ class MeshImport {
       if (step.depth > 1000) fail("its nodes are nested more than 1000 deep");
       const aiMatrix4x4& m = node.mTransformation;
       const Matrix3 linear(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3));
-      RawNode made{.name = name_of(node, step.name, step.depth == 0),
+      std::string name = node.mName.C_Str();  // that of a root is often made by assimp, or has no meaning
+      const bool means_nothing = name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT"));
+      if (step.depth == 0 && means_nothing) name.clear();
+      RawNode made{.name = step.name.empty() ? name : step.name + "/" + name,
                    .place = step.above * Affine{linear, Vec3(m.a4, m.b4, m.c4)}};
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <vector>
 
-#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/material.hpp>

@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/shape/mesh_data.hpp>

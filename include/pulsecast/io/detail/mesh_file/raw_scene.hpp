@@ -11,8 +11,6 @@
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 
@@ -24,7 +22,6 @@ struct Float3 {
 };
 using Corners3 = std::array<std::uint32_t, 3>;  ///< vertex indices of a triangle
 
-/// Linear map and shift.
 struct Affine {
   Matrix3 linear{1};  ///< columns are the images of the axes
   Vec3 shift{};       ///< image of the origin

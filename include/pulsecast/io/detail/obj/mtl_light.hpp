@@ -9,7 +9,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/material.hpp>

@@ -19,7 +19,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 
@@ -38,7 +37,6 @@ class ObjPiece : private StatementBuffer {
   struct Libraries {
     std::size_t line;
     std::string quoted, rest;
-    std::vector<std::string> names;
   };
 
   static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max();
@@ -145,7 +143,7 @@ class ObjPiece : private StatementBuffer {
       return place(given);
     } else if (keyword() != "usemtl") {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first of several
-        libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
+        libraries.push_back({line(), quoted(), std::string(rest())});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
         unknown.add({1, line(), quoted()});
       }

@@ -11,13 +11,9 @@
 #include <system_error>
 #include <vector>
 
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/piece.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
-#include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -116,7 +112,7 @@ class ObjReader {
     std::error_code ignored;
     if (std::filesystem::exists(library_path(statement.rest), ignored)) return library(statement.rest, statement);
     model_.files.push_back(library_path(statement.rest));
-    for (const std::string& name : statement.names) library(name, statement);
+    for (std::string_view left = statement.rest; !left.empty();) library(std::string(text::take_word(left)), statement);
   }
 
   [[nodiscard]] std::filesystem::path library_path(std::string path) const {

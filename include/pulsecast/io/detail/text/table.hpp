@@ -117,7 +117,6 @@ class TextTable {
   [[noreturn]] void refuse(std::string_view text, const auto&... expected) const {
     fail_here(text::quoted(text), ": expected ", expected...);
   }
-  /// Throws one about a cell.
   [[noreturn]] void refuse(std::size_t column, const auto&... expected) const {
     fail_here(column, text::quoted(unquoted_[column]), ": expected ", expected...);
   }

@@ -7,9 +7,7 @@
 #include <cmath>
 
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
