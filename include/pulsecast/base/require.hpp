@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <concepts>
+#include <type_traits>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/optional_member.hpp>

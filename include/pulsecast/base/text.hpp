@@ -97,6 +97,15 @@ template <class Number>
   return value;
 }
 
+/// Part of a message: a text as it is, a character, or a number in its shortest form.
+[[nodiscard]] inline std::string_view part(std::string_view text) noexcept { return text; }
+[[nodiscard]] inline std::string part(char c) { return {c}; }
+[[nodiscard]] inline std::string part(double number) { return to_text(number); }
+[[nodiscard]] std::string part(std::integral auto number) { return std::to_string(number); }
+
+/// Message of texts and numbers.
+[[nodiscard]] std::string message(const auto&... parts) { return joined({part(parts)...}); }
+
 /// Finite number that makes up a whole text; empty for anything else.
 [[nodiscard]] inline std::optional<double> finite_number_in(std::string_view text) noexcept {
   const std::optional<double> value = number_in<double>(text);

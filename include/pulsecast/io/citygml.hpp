@@ -16,13 +16,12 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for CityGML files.
 struct CityGmlSettings {
-  unsigned max_lod = 4;   ///< highest level of detail; of each object, its highest up to this one is read
-  bool interior = false;  ///< true: rooms, their surfaces and furniture, too
-  /// MTL file whose materials replace those of the same names, as `RoofSurface`, with spectra and classes; empty: none
-  std::filesystem::path materials{};
-  SpectralLibrary spectra{};  ///< spectra for `helios_spectra` in that file
-  bool isolated = false;      ///< true: libcitygml runs in a child process, whose death is a `FileError`
-  ImportLimits limits{};      ///< of that process
+  unsigned max_lod = 4;               ///< highest level of detail, of which each object's highest is read
+  bool interior = false;              ///< true: rooms, their surfaces and furniture, too
+  std::filesystem::path materials{};  ///< MTL file that replaces materials, as `RoofSurface`; or none
+  SpectralLibrary spectra{};          ///< spectra for `helios_spectra` in that file
+  bool isolated = false;              ///< true: libcitygml runs in a child process; for untrusted files
+  ImportLimits limits{};              ///< of that process
 
   void validate() const {
     require_within("CityGmlSettings::max_lod", max_lod, 0, 4, "");
@@ -32,17 +31,17 @@ struct CityGmlSettings {
 
 /// Content of a CityGML file.
 struct CityGml {
-  /// A placement for each city object with surfaces, named by its gml:id, with the origin of its mesh near it.
-  /// Materials are named by the classes of CityGML, and have ASPRS classes: 2 for relief, land use and ground surfaces,
-  /// 5 for vegetation, 6 for buildings and their surfaces, 9 for water, 10 for railways, 11 for roads, tracks and
-  /// squares, 17 for bridges, 0 for others. Implicit geometries that several objects show are shared.
+  /// A placement for each city object with surfaces, named by its gml:id, with its origin near it.
+  /// Materials are named by classes of CityGML, and have ASPRS classes: 2 for relief, land use and
+  /// ground, 5 for vegetation, 6 for buildings, 9 for water, 10 for railways, 11 for roads, tracks
+  /// and squares, 17 for bridges, 0 for others. Implicit geometries are shared.
   MeshFile file;
-  std::optional<std::uint16_t> epsg{};  ///< code of the reference system, if any; coordinates are those of the file
+  std::optional<std::uint16_t> epsg{};  ///< code of the reference system of coordinates, if any
 };
 
-/// Reads the surfaces of a CityGML file, in metres. Polygons are triangulated. Closure surfaces and textures are left
-/// out. Throws a `FileError` for a missing or damaged file, coordinates in degrees or a document type; a `SettingError`
-/// for settings out of range. Source: OGC City Geography Markup Language 2.0 (12-019); LAS 1.4 R15, table 17.
+/// Reads the surfaces of a CityGML file, in metres, without closure surfaces and textures. Source:
+/// OGC City Geography Markup Language 2.0 (12-019); LAS 1.4 R15, table 17. @throws SettingError
+/// @throws FileError for a missing or damaged file, coordinates in degrees or a document type
 [[nodiscard]] CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings = {},
                                    const Workers& workers = {});
 

@@ -20,10 +20,10 @@ using Colour = Vec3;
 /// Red, green and blue as in files and screens, gamma-encoded.
 using Srgb = std::array<std::uint8_t, 3>;
 
-/// Decodes sRGB to linear light. As `srgb_decoded`.
+/// Decodes sRGB to linear light, as `srgb_decoded`.
 [[nodiscard]] inline Colour from_srgb(const Srgb& bytes) noexcept {
-  return {pulsecast::detail::linear_share(bytes[0]), pulsecast::detail::linear_share(bytes[1]),
-          pulsecast::detail::linear_share(bytes[2])};
+  using pulsecast::detail::linear_share;
+  return {linear_share(bytes[0]), linear_share(bytes[1]), linear_share(bytes[2])};
 }
 
 /// Nearest colour of a screen. Source: IEC 61966-2-1, sRGB.
@@ -44,7 +44,7 @@ using Srgb = std::array<std::uint8_t, 3>;
   return from_srgb(scale[i]) * (1 - part) + from_srgb(scale[i + 1]) * part;
 }
 
-/// Uniform scale from dark violet to yellow. Source: viridis, Smith & van der Walt 2015 (CC0), every 32nd entry.
+/// Scale from violet to yellow. Source: viridis, Smith & van der Walt 2015 (CC0), every 32nd entry.
 inline constexpr std::array<Srgb, 9> viridis{{{68, 1, 84},
                                               {71, 44, 122},
                                               {59, 81, 139},
@@ -74,21 +74,19 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// Colour of a point class, about as on maps. Source: ASPRS LAS 1.4 R15, table 17; from 64 on, user-defined.
+/// Colour of a point class, about as on maps. Source: ASPRS LAS 1.4 R15, table 17; own from 64 on.
 [[nodiscard]] inline Srgb of_class(std::uint16_t classification) noexcept {
-  constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62},
-      high_vegetation{58, 136, 66}, building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132},
-      other{176, 176, 176};
-  constexpr std::array<Srgb, 12> standard{other,           other,    ground, low_vegetation, medium_vegetation,
-                                          high_vegetation, building, other,  other,          water,
-                                          other,           road};
+  constexpr Srgb other{176, 176, 176}, ground{158, 124, 88}, low{160, 196, 72}, medium{104, 168, 62}, high{58, 136, 66};
+  constexpr Srgb building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132};
+  constexpr std::array standard{other,    other, ground, low,   medium, high,  // vegetation
+                                building, other, other,  water, other,  road};
   constexpr std::array<Srgb, 6> own{
       {{158, 108, 72}, {216, 196, 156}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}, {0, 158, 115}}};
   if (classification >= 64) return own[(classification - 64u) % own.size()];
   return classification < standard.size() ? standard[classification] : other;
 }
 
-/// Colours of the ways of light, by `ReflectionKind`; distinct for every colour vision. Source: Okabe & Ito 2008.
+/// Colours by `ReflectionKind`, distinct for every colour vision. Source: Okabe & Ito 2008.
 inline constexpr std::array<Srgb, reflection_kind_count> kind_colours{
     {{184, 184, 184}, {86, 180, 233}, {0, 114, 178}, {213, 94, 0}, {204, 121, 167}, {240, 228, 66}}};
 

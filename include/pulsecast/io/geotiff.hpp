@@ -16,11 +16,10 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for GeoTIFF files.
 struct GeoTiffSettings {
-  std::uint16_t band = 1;  ///< band of the heights, from 1
-  /// Metres per unit of the numbers; by default those of the file's keys, vertical system and GDAL metadata.
-  std::optional<double> vertical_scale = std::nullopt;
-  std::optional<double> missing = std::nullopt;  ///< value of missing heights; by default from the file (GDAL_NODATA)
-  bool packed = false;  ///< whole numbers of 8 and 16 bits as `Raster::packed`, if it can hold them
+  std::uint16_t band = 1;                  ///< band of the heights, from 1
+  std::optional<double> vertical_scale{};  ///< metres per unit of the numbers; by default by the file's tags
+  std::optional<double> missing{};         ///< value of missing heights; by default from the file (GDAL_NODATA)
+  bool packed = false;                     ///< whole numbers of 8 and 16 bits as `Raster::packed`, if it can hold them
 
   void validate() const {
     require_within("GeoTiffSettings::band", band, 1, 65535, "");
@@ -32,23 +31,21 @@ struct GeoTiffSettings {
 struct GeoTiff {
   Raster raster;                        ///< heights [m]
   std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if any
-  std::vector<Vec3> colours{};  ///< colour table (sRGB, channels from 0 to 1) by the value of a pixel; empty without
+  std::vector<Vec3> colours{};          ///< colour table (sRGB, from 0 to 1) by value of a pixel; or empty
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
-/// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, classic or
-/// BigTIFF, of either byte order, in strips or tiles, of integers of 8 to 64 bits or floating-point numbers of 16 to
-/// 64, with any compression of libtiff. Heights become `float`. NaN, values not within 1e15 m, and the value for
-/// missing ones become NaN. If `packed` is set, whole numbers of 8 and 16 bits stay so, and give the same heights; but
-/// not where tiles are left out of 16 bits without a value for missing heights. Throws a `FileError`, with the byte if
-/// known, for a raster that is incomplete, rotated, sheared, in degrees, in feet but for its heights, of depths, or
-/// without a place by tags or a world file. Masks and alpha bands are not applied, with a warning. Memory is the raster
-/// and one strip or row of tiles, as far as read, not as claimed by the header. A picture with a colour table, such as
-/// a map of land cover, is a raster of the numbers in the table. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for
-/// GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.
+/// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, of
+/// integers of 8 to 64 bits or floating-point numbers of 16 to 64, with any compression of libtiff. Heights
+/// become `float`; missing ones, NaN and values not within 1e15 m become NaN. With `packed`, whole numbers
+/// of 8 and 16 bits stay so, with the same heights; not if tiles are left out of 16 bits without a value
+/// for missing heights. A picture with a colour table, such as a map of land cover, is a raster of numbers.
+/// Masks and alpha bands are not applied, with a warning. Throws a `FileError`, with the byte if known, for
+/// a raster that is incomplete, rotated, sheared, in degrees, in feet but for its heights, of depths, or
+/// without a place. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 
-/// EPSG code of the projected reference system of a file, if any; reads no heights. Throws as `read_geotiff`.
+/// EPSG code of the projected reference system, if any. @throws FileError as `read_geotiff`
 [[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
@@ -63,12 +60,7 @@ struct GeoTiff {
 
 #include <tiffio.h>
 
-#include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
-#include <pulsecast/io/detail/geotiff/height_scale.hpp>
-#include <pulsecast/io/detail/geotiff/raster_layout.hpp>
-#include <pulsecast/io/detail/geotiff/tiff_file.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -79,7 +71,8 @@ class GeoTiffReader {
  public:
   GeoTiffReader(const std::filesystem::path& path, const GeoTiffSettings& settings)
       : settings_(validated(settings)), file_(path), layout_(file_, settings_.band), epsg_(projected_epsg(file_)) {
-    scale_ = settings_.vertical_scale ? HeightScale{*settings_.vertical_scale} : height_scale(file_, settings_.band);
+    const auto& scale = settings_.vertical_scale;
+    scale_ = scale ? HeightScale{*scale} : height_scale(file_, settings_.band);
     const RasterCorner corner = raster_corner(file_, layout_);
     westward_ = corner.step_x < 0;
     northward_ = corner.step_y > 0;
@@ -109,23 +102,22 @@ class GeoTiffReader {
     return std::nullopt;
   }
 
-  /// Notes tags of pixels that have no effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
+  /// Notes tags without effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
   void note_picture() {
     const auto meaning = file_.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_PALETTE)
-      file_.warn("is a picture of colours (photometric interpretation " + std::to_string(meaning) +
-                 "); the numbers of band " + std::to_string(settings_.band) + " are taken as heights");
+      file_.warn("is a picture of colours (photometric interpretation ", meaning, "); the numbers of band ",
+                 settings_.band, " are taken as heights");
     std::uint16_t count = 0;
     const std::uint16_t* kinds = nullptr;
-    const bool has_extra = TIFFGetField(file_.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) == 1 && kinds != nullptr;
-    const bool has_alpha = has_extra && std::any_of(kinds, kinds + count, [](auto k) {
-                             return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA;
-                           });
+    if (TIFFGetField(file_.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) != 1 || kinds == nullptr) count = 0;
+    const bool has_alpha = std::any_of(
+        kinds, kinds + count, [](auto k) { return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA; });
     std::error_code ignored;
     if (has_alpha || file_.has_mask() || std::filesystem::exists(file_.path() + ".msk", ignored))
-      file_.warn(std::string("has ") + (has_alpha ? "an alpha band" : "a mask") +
-                 ", which is not applied: pixels without a height keep " +
-                 "their numbers, unless these are those of missing heights");
+      file_.warn("has ", has_alpha ? "an alpha band" : "a mask",
+                 ", which is not applied: pixels without a height keep their numbers, unless these are those of "
+                 "missing heights");
   }
 
   template <class One, class Two, class Four, class Eight>
@@ -155,15 +147,15 @@ class GeoTiffReader {
       packed.missing = static_cast<std::uint16_t>(*missing_ + packed.zero);
     else if (sizeof(Sample) == 1)
       packed.missing = std::numeric_limits<std::uint16_t>::max();
-    return scale_.scale > 0 && std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15 &&
-           (packed.missing || is_complete());
+    const bool is_small = std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15;
+    return scale_.scale > 0 && is_small && (packed.missing || is_complete());
   }
 
   /// True if no strip or tile of the band is left out.
   [[nodiscard]] bool is_complete() {
-    for (std::uint32_t north = 0; north < layout_.rows; north += std::min(layout_.chunk_rows, layout_.rows - north))
-      for (std::uint32_t west = 0; west < layout_.columns;
-           west += std::min(layout_.chunk_columns, layout_.columns - west))
+    const RasterLayout& l = layout_;
+    for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north))
+      for (std::uint32_t west = 0; west < l.columns; west += std::min(l.chunk_columns, l.columns - west))
         if (TIFFGetStrileByteCount(file_.handle(), chunk_at(west, north)) == 0) return false;
     return true;
   }
@@ -180,15 +172,14 @@ class GeoTiffReader {
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
     if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
     if (unmarked_ > 0)
-      file_.warn(std::to_string(unmarked_) +
-                 " heights are a number that often marks missing ones, as -9999 or -32768, and the file names no " +
-                 "number for these; a number of missing heights is a setting");
-    if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
-    return {
-        .raster = std::move(raster_), .epsg = epsg_, .colours = colour_table(file_), .warnings = file_.take_warnings()};
+      file_.warn(unmarked_,
+                 " heights are a number that often marks missing ones, as -9999 or -32768, and the file "
+                 "names no number for these; a number of missing heights is a setting");
+    if (strange_ > 0) file_.warn(strange_, " values beyond 1e15 m, or infinite, count as missing");
+    return {std::move(raster_), epsg_, colour_table(file_), file_.take_warnings()};
   }
 
-  /// Reads strip by strip, or rows of tiles; the raster grows meanwhile.
+  /// Reads by strips, or rows of tiles; the raster grows meanwhile.
   template <class Sample, class Pixel>
   void read_pixels(std::vector<Pixel>& pixels, Pixel absent) {
     const RasterLayout& l = layout_;
@@ -199,8 +190,7 @@ class GeoTiffReader {
       pixels.reserve(std::size_t{l.columns} * l.rows);
       if (!in_place) buffer.resize(l.chunk_bytes);
     } catch (const std::bad_alloc&) {
-      file_.fail("does not fit into memory: its raster has " + std::to_string(l.columns) + " x " +
-                 std::to_string(l.rows) + " pixels");
+      file_.fail("does not fit into memory: its raster has ", l.columns, " x ", l.rows, " pixels");
     }
     for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north)) {
       const std::uint32_t rows = std::min(l.chunk_rows, l.rows - north);
@@ -209,11 +199,12 @@ class GeoTiffReader {
         const std::uint32_t columns = std::min(l.chunk_columns, l.columns - west);
         Pixel* to = pixels.data() + std::size_t{north} * l.columns + west;
         auto* from = in_place ? reinterpret_cast<unsigned char*>(to) : buffer.data();
-        if (!read_chunk(west, north, from, l.tiled ? l.chunk_bytes : l.chunk_bytes / l.chunk_rows * rows)) continue;
-        for (std::uint32_t row = 0; row < rows; ++row) {
-          const unsigned char* samples = from + (std::size_t{row} * l.chunk_columns * stride + first) * sizeof(Sample);
+        const std::uint64_t bytes = l.tiled ? l.chunk_bytes : l.chunk_bytes / l.chunk_rows * rows;
+        if (!read_chunk(west, north, from, bytes)) continue;
+        for (std::size_t row = 0; row < rows; ++row) {
+          const unsigned char* samples = from + (row * l.chunk_columns * stride + first) * sizeof(Sample);
           for (std::uint32_t i = 0; i < columns; ++i, samples += stride * sizeof(Sample))
-            to[std::size_t{row} * l.columns + i] = pixel<Sample, Pixel>(samples);
+            to[row * l.columns + i] = pixel<Sample, Pixel>(samples);
         }
       }
     }
@@ -232,15 +223,14 @@ class GeoTiffReader {
     const std::uint32_t chunk = chunk_at(west, north);
     const std::uint64_t begin = TIFFGetStrileOffset(tiff, chunk), length = TIFFGetStrileByteCount(tiff, chunk);
     if (length == 0) return false;
-    const std::string what = layout_.chunk() + std::to_string(chunk);
+    const auto fail = [&](const auto&... problem) {
+      file_.fail_at_byte(begin, layout_.chunk(), chunk, problem..., ": expected a complete file");
+    };
     if (begin > file_.size() || length > file_.size() - begin)
-      file_.fail_at_byte(begin, what + " should end at byte " + std::to_string(begin + length) + ", but the file has " +
-                                    std::to_string(file_.size()) + ": expected a complete file");
+      fail(" should end at byte ", begin + length, ", but the file has ", file_.size());
     const auto size = static_cast<tmsize_t>(bytes);
-    const tmsize_t read =
-        layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
-    if (read != size)
-      file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a complete file");
+    const auto read = layout_.tiled ? TIFFReadEncodedTile : TIFFReadEncodedStrip;
+    if (read(tiff, chunk, to, size) != size) fail(" cannot be read", file_.complaint());
     return true;
   }
 
@@ -281,7 +271,7 @@ class GeoTiffReader {
   std::optional<double> missing_;              ///< value of missing heights
   bool westward_ = false, northward_ = false;  ///< direction of columns and rows in the file
   std::uint64_t there_ = 0, strange_ = 0;      ///< number of heights, and of values out of bounds
-  std::uint64_t unmarked_ = 0;  ///< number of heights that may be missing ones, without a word of the file
+  std::uint64_t unmarked_ = 0;                 ///< number of heights that may be missing ones
 };
 
 }  // namespace detail

@@ -23,34 +23,51 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// File read from beginning to end in blocks, as bytes or as lines; memory is independent of its size.
+namespace detail {
+[[nodiscard]] inline std::string system_error() { return std::generic_category().message(errno); }
+
+/// Throws a `FileError` about a whole file, of texts and numbers.
+[[noreturn]] void fail(const std::filesystem::path& path, const auto&... problem) {
+  throw FileError(path.string(), "", text::message(problem...));
+}
+
+/// Throws a `FileError` about a line.
+[[noreturn]] void fail_at(const std::string& path, std::size_t line, const auto&... problem) {
+  throw FileError(path, text::message("line ", line), text::message(problem...));
+}
+
+/// Warning about a line of a file, or all of it for line 0.
+[[nodiscard]] std::string warning(std::string_view path, std::size_t line, const auto&... oddity) {
+  return line > 0 ? text::message(path, ", line ", line, ": ", oddity...) : text::message(path, ": ", oddity...);
+}
+}  // namespace detail
+
+/// File read from beginning to end in blocks, as bytes or lines; memory is independent of its size.
 class InputFile {
  public:
   static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< limit of a line, and of one `take` [byte]
 
-  /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it
-  /// is empty.
+  /// `expected` content for messages, as in "a point cloud". @throws FileError if missing or empty
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected " + std::string(expected));
-    if (!std::filesystem::is_regular_file(path, ignored))
-      fail("is a directory or device: expected " + std::string(expected));
+    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected ", expected);
+    if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected ", expected);
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");
     file_.seekg(0, std::ios::end);
     const std::streamoff end = file_.tellg();
     if (end < 0) fail("cannot be read");
     size_ = static_cast<std::uint64_t>(end);
-    if (size_ == 0) fail("is empty: expected " + std::string(expected));
+    if (size_ == 0) fail("is empty: expected ", expected);
     block_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, block_size)));
     seek(0);
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }     ///< path, for messages
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< of the file [byte]
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
-  [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< number of the line taken last, from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }  ///< true for a last line without end
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }            ///< line taken last, from 1
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< true for a last line without end
 
   /// Moves to any byte, and restarts the count of lines there.
   void seek(std::uint64_t byte) {
@@ -66,8 +83,8 @@ class InputFile {
     return advance(std::min(bytes, end_ - begin_));
   }
 
-  /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is taken. Throws a
-  /// `FileError` for a line longer than `block_size`.
+  /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is
+  /// taken. @throws FileError for a line longer than `block_size`
   [[nodiscard]] std::optional<std::string_view> take_line() {
     std::string_view rest = unread(), line = text::take_line(rest);
     if (rest.empty() && !unread().ends_with('\n')) {
@@ -79,8 +96,7 @@ class InputFile {
     if (taken.empty()) return std::nullopt;
     ++line_;
     line_is_open_ = taken.back() != '\n';
-    if (line_is_open_ && taken.size() == block_size)
-      fail_at_line(text::joined({"is longer than ", std::to_string(block_size), " bytes"}));
+    if (line_is_open_ && taken.size() == block_size) fail_at_line("is longer than ", block_size, " bytes");
     return line_ == 1 ? text::without_byte_order_mark(line) : line;
   }
 
@@ -92,20 +108,14 @@ class InputFile {
     return rest;
   }
 
-  /// Throws a `FileError` about the whole file.
-  [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
-  /// Throws a `FileError` about the line taken last.
-  [[noreturn]] void fail_at_line(const std::string& problem) const {
-    throw FileError(path_, "line " + std::to_string(line_), problem);
-  }
+  [[noreturn]] void fail(const auto&... problem) const { detail::fail(path_, problem...); }
+  [[noreturn]] void fail_at_line(const auto&... problem) const { detail::fail_at(path_, line_, problem...); }
   /// `column` is counted from 0 here, from 1 in the message.
-  [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {
-    throw FileError(path_, text::joined({"line ", std::to_string(line_), ", column ", std::to_string(column + 1)}),
-                    problem);
+  [[noreturn]] void fail_at_column(std::size_t column, const auto&... problem) const {
+    throw FileError(path_, text::message("line ", line_, ", column ", column + 1), text::message(problem...));
   }
-  /// Throws a `FileError` about a byte, from 0.
-  [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
-    throw FileError(path_, "byte " + std::to_string(byte), problem);
+  [[noreturn]] void fail_at_byte(std::uint64_t byte, const auto&... problem) const {
+    throw FileError(path_, text::message("byte ", byte), text::message(problem...));
   }
 
  private:
@@ -138,57 +148,53 @@ class InputFile {
   bool line_is_open_ = false;
 };
 
-/// Memory-mapped file, read-only, aligned to a page. Its name may be reused for another file meanwhile; the file itself
-/// must not be written to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
+/// Memory-mapped file, read-only, aligned to a page; pipes are refused. Its name may be reused for
+/// another file meanwhile; the file itself must not be written to.
 class MappedFile {
  public:
-  /// Maps a file; `expected` content for error messages, as in "an XML file", if any. @throws FileError
+  /// `expected` content for messages, as in "an XML file", if any. @throws FileError
   explicit MappedFile(const std::filesystem::path& path, std::string_view expected = {}) {
-    const auto fail = [&](std::string_view problem) {
-      throw FileError(path.string(), "", text::joined({problem, expected.empty() ? "" : ": expected ", expected}));
+    const auto require = [&](bool fulfilled, std::string_view problem, bool is_of_system = false) {
+      if (fulfilled) return;
+      const std::string reason = is_of_system ? ": " + detail::system_error() : "";
+      detail::fail(path, problem, reason, expected.empty() ? "" : ": expected ", expected);
     };
-    const auto system_error = [] { return std::generic_category().message(errno); };
-    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (file.number < 0) fail(errno == ENOENT ? "does not exist" : "cannot be read: " + system_error());
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    require(file >= 0 || errno != ENOENT, "does not exist");
+    require(file >= 0, "cannot be read", true);
     struct stat status {};
-    if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode)) fail("is a directory or device");
-    const auto size = static_cast<std::size_t>(status.st_size);
-    if (size == 0) fail("is empty");
-    void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
-    if (memory == MAP_FAILED) fail("cannot be mapped into memory: " + system_error());
+    const bool is_file = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+    const std::size_t size = is_file ? static_cast<std::size_t>(status.st_size) : 0;
+    void* const memory = size > 0 ? ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
+    ::close(file);
+    require(is_file, "is a directory or device");
+    require(size > 0, "is empty");
+    require(memory != MAP_FAILED, "cannot be mapped into memory", true);
     bytes_ = {static_cast<const std::byte*>(memory), size};
   }
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }  ///< content of the file
-  /// Content of the file, as text.
-  [[nodiscard]] std::string_view text() const noexcept {
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }  ///< content
+  [[nodiscard]] std::string_view text() const noexcept {                              ///< content, as text
     return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
   }
 
  private:
-  struct Descriptor {
-    int number;
-    ~Descriptor() {
-      if (number >= 0) ::close(number);
-    }
-  };
-
   std::span<const std::byte> bytes_;
 };
 
 namespace detail {
-/// Regular files of a folder, sorted; by a `recursive_directory_iterator`, those of the folders below it, too.
-/// @throws FileError if it cannot be read
+/// Regular files of a folder, sorted; by a `recursive_directory_iterator`, those of the folders
+/// below it, too. @throws FileError if it cannot be read
 template <class Iterator = std::filesystem::directory_iterator>
 [[nodiscard]] std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error, ignored;
   for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (entry->is_regular_file(ignored)) files.push_back(entry->path());
-  if (error) throw FileError(folder.string(), "", "cannot be read: " + error.message());
+  if (error) fail(folder, "cannot be read: ", error.message());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -200,7 +206,7 @@ decltype(auto) reading(const std::filesystem::path& path, const Function& read) 
   try {
     return read();
   } catch (const std::bad_alloc&) {
-    throw FileError(path.string(), "", "takes more memory than there is: expected a smaller file, or more free memory");
+    detail::fail(path, "takes more memory than there is: expected a smaller file, or more free memory");
   }
 }
 

@@ -12,28 +12,27 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
-/// Meshes of PLY, glTF, GLB, STL, DAE and FBX files, by assimp. `read_obj` reads OBJ files. Other formats are untested.
+/// Meshes of PLY, glTF, GLB, STL, DAE, FBX files, by assimp (others: untested), and of OBJ files.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reads a mesh file. Nodes that show the same mesh share it, where their transforms differ by rotation, uniform scale
-/// and translation, within 1e-6; others share one with their shear or reflection applied, with a warning. Polygons are
-/// triangulated; points, lines and triangles without area are left out, with a warning. Animations are not played.
-/// Materials: colour and opacity by the base colour; a reflectance of 0.5; opacity and transmission those of glass with
-/// the index of the file; specular colour as `read_mtl`; metals of a roughness up to 0.1 are mirrors, other surfaces of
-/// glTF have facets of that roughness. Throws a `FileError` for a file that is missing or damaged, or has a coordinate
-/// beyond 1e12; a `SettingError` for settings out of range. Limits: nodes are nested at most 1000 deep. A file is
-/// refused that has strips (PLY), or requires an extension of glTF other than those for materials, lights, transforms
-/// of texture coordinates and Draco. Warnings report other extensions that move meshes, bones and morph targets, and
-/// coordinates that single precision rounds by more than a millimetre.
+/// Reads a mesh file. Nodes whose transforms differ by a similarity, within 1e-6, share a mesh; others
+/// share one with their shear or reflection applied. Polygons are triangulated; points, lines and triangles
+/// without area are left out; animations are not played. Materials: a reflectance of 0.5; opacity and
+/// transmission as glass with the index of the file; specular colour as `read_mtl`; metals of a roughness
+/// up to 0.1 are mirrors, other surfaces of glTF have facets of that roughness. Limits: nodes are nested at
+/// most 1000 deep; strips (PLY) are refused, and required extensions of glTF but those for materials,
+/// lights, transforms of texture coordinates and Draco. Warnings report what is left out or changed, and
+/// rounding by more than a millimetre. @throws SettingError @throws FileError for a file that is missing or
+/// damaged, or has a coordinate beyond 1e12
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 
-/// Parts of a scene: one a placement, named as it, with object ids from `first_object` on. Those of one mesh share
-/// geometry and materials. @throws SettingError as `TriangleMesh`
+/// Parts of a scene: one a placement, named as it, with object ids from `first_object` on. Those of
+/// one mesh share geometry and materials. @throws SettingError as `TriangleMesh`
 [[nodiscard]] std::vector<Part<MaskedMesh<>>> parts_of(MeshFile file, ObjectId first_object = 0,
-                                                         const Workers& workers = {});
+                                                       const Workers& workers = {});
 
-/// True for a name that `read_mesh_file` is for: OBJ, PLY, glTF, GLB, STL, DAE and FBX, by the ending.
+/// True for a name that `read_mesh_file` is for, by its ending: OBJ, PLY, glTF, GLB, STL, DAE, FBX.
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
@@ -45,9 +44,6 @@ namespace PULSECAST_NAMESPACE::io {
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/detail/mesh_file/transfer.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 
@@ -55,11 +51,10 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Content of an OBJ file: one mesh.
 [[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings,
                                       const Workers& workers) {
-  ObjModel model = read_obj(
-      path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
+  const UpAxis up = settings.up.value_or(UpAxis::z);
+  ObjModel model = read_obj(path, {.up = up, .spectra = settings.spectra, .texture = settings.texture}, workers);
   MeshFile file{.materials = std::move(model.materials),
                 .pictures = std::move(model.pictures),
                 .warnings = std::move(model.warnings),
@@ -89,8 +84,8 @@ inline void read_pictures(MeshFile& file, bool isolated) {
   }
 }
 
-/// Refuses a PLY file whose header has no end, with which assimp takes minutes, or that has strips, of which it reads
-/// half. Explains a file that is missing or empty. Source: Turk 1994, The PLY polygon file format (header of elements).
+/// Refuses PLY files whose header has no end, with which assimp takes minutes, or with strips, of
+/// which it reads half, and missing or empty files. Source: Turk 1994, The PLY polygon file format.
 inline void check_ply(const std::filesystem::path& path) {
   constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
   InputFile file(path, "a mesh file");
@@ -99,8 +94,7 @@ inline void check_ply(const std::filesystem::path& path) {
   const std::size_t end = begin.find("end_header");
   if (end == begin.npos) file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
   if (begin.substr(0, end).find("element tristrips") != begin.npos)
-    throw FileError(path.string(), "",
-                    "has triangle strips: expected faces, as most programs write them (element face)");
+    file.fail("has triangle strips: expected faces, as most programs write them (element face)");
 }
 
 }  // namespace detail
@@ -121,8 +115,7 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
     } else {
       detail::check_ply(path);
       const auto import = [&](const auto& opened) { return detail::MeshImport(path, settings, opened).read(); };
-      const detail::RawScene scene =
-          settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(nullptr);
+      const auto scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(nullptr);
       file = detail::MeshFileMaker(path, scene, settings, workers).make();
     }
     detail::replace_materials(file, settings);
@@ -132,7 +125,7 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
 }
 
 PULSECAST_INLINE std::vector<Part<MaskedMesh<>>> parts_of(MeshFile file, ObjectId first_object,
-                                                            const Workers& workers) {
+                                                          const Workers& workers) {
   struct Shared {
     std::shared_ptr<const MaskedMesh<>> geometry;
     MaterialTable materials;
@@ -141,8 +134,8 @@ PULSECAST_INLINE std::vector<Part<MaskedMesh<>>> parts_of(MeshFile file, ObjectI
   for (FileMesh& one : file.meshes) {
     std::vector<Material> table;
     for (const std::uint32_t number : one.materials) table.push_back(file.materials[number]);
-    shared.push_back({std::make_shared<const MaskedMesh<>>(std::exchange(one.mesh, {}), workers),
-                      material_table(std::move(table))});
+    auto mesh = std::make_shared<const MaskedMesh<>>(std::exchange(one.mesh, {}), workers);
+    shared.push_back({std::move(mesh), material_table(std::move(table))});
   }
   std::vector<Part<MaskedMesh<>>> parts;
   parts.reserve(file.placements.size());

@@ -21,19 +21,19 @@ namespace PULSECAST_NAMESPACE::io {
 /// Content of MTL files.
 struct MaterialLibrary {
   std::map<std::string, Material, std::less<>> materials;           ///< materials by name
-  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< of those that have some: see `add_pictures`
+  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< of materials, for `add_pictures`
   std::vector<std::string> warnings;                                ///< oddities that could still be read
 };
 
-/// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is
-/// `helios_reflectance`, a fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and
-/// `helios_classification` count, too. Multi-bounce light is set by `illum`, `Ni`, `Tf`, `Pm` and keys of this library,
-/// see docs/surveys.md; pictures by `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`,
-/// without their options. Other keys are ignored. The first of equal names counts. Keys before the first name describe
-/// the material "default". Throws a `FileError` with path and line at the first error.
+/// Reads an MTL file. Colours select the law: `Ks` Phong's, with `Ns`, `Kd` alone Lambert's. Reflectance is
+/// `helios_reflectance`, a fraction, or the spectrum named by `helios_spectra`. Further keys in use are
+/// `helios_isGround`, `helios_classification`, `illum`, `Ni`, `Tf`, `Pm` and those of this library, see
+/// docs/surveys.md; pictures are `map_Kd` (colour of points), `map_d` (outline) and
+/// `pulsecast_reflectanceMap`, without options. Of equal names, the first counts; keys before any are of
+/// "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
-/// Surface without a description. It scatters equally in all directions, as in HELIOS++, which defined the extra keys.
+/// Surface without a description: it scatters equally in all directions, as in HELIOS++.
 [[nodiscard]] inline Material undescribed(std::string name) {
   return {.name = std::move(name), .law = DirectionIndependent{}};
 }
@@ -42,6 +42,7 @@ struct MaterialLibrary {
 
 #if PULSECAST_DEFINES(IO_MTL)
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <istream>
@@ -49,8 +50,6 @@ struct MaterialLibrary {
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
-#include <pulsecast/io/detail/obj/statements.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -58,8 +57,8 @@ namespace detail {
 
 class MtlReader : private StatementBuffer {
  public:
-  MtlReader(StatementFile file, const SpectralLibrary& spectra)
-      : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
+  MtlReader(InputFile file, const SpectralLibrary& spectra)
+      : StatementBuffer(file.path(), file.take_rest(), 0), spectra_(spectra) {}
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
@@ -80,11 +79,12 @@ class MtlReader : private StatementBuffer {
     // tinyobjloader drops keys before the first name, and its default exponent is 1
     static const std::string exponent = "\nNs " + text::to_text(Phong{}.exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
-    if (keyword() == "newmtl") current_ = rest();
-    if (keyword() == "newmtl") repeated_ = lines_.contains({current_, "newmtl"});
+    const bool is_name = keyword() == "newmtl";
+    if (is_name) current_ = rest();
+    if (is_name) repeated_ = lines_.contains({current_, "newmtl"});
     note_picture();
     lines_.try_emplace({current_, std::string(keyword())}, line());
-    if (keyword() == "newmtl") {
+    if (is_name) {
       require(!rest().empty(), "the name of a material");
       ready = statement() + exponent;
       return;
@@ -102,20 +102,19 @@ class MtlReader : private StatementBuffer {
       ready += statement();
   }
 
-  /// Statement of a standard key with `count` numbers, limited to those from 0 to 1e12; empty if its words are others.
-  /// A single number is the value of red, green and blue. What differs from the format is noted. Source: MTL
-  /// specification, Wavefront 1995.
+  /// Statement of a standard key with `count` numbers, limited to 0 to 1e12, or one for all; empty
+  /// for other words. Source: MTL specification, Wavefront 1995.
   [[nodiscard]] std::string standard_numbers(const std::vector<std::string_view>& given, std::size_t count) {
     std::vector<double> numbers;
     for (std::size_t i = 0; i < std::min(given.size(), count); ++i) {
       const auto number = number_in<double>(given[i]);
       if (!number) break;
       numbers.push_back(std::clamp(*number, 0.0, max_number));
-      if (numbers.back() != *number) note("takes " + text::to_text(numbers.back()) + " for " + std::string(given[i]));
+      if (numbers.back() != *number) note("takes ", numbers.back(), " for ", given[i]);
     }
     const bool is_comment = given.size() > 1 && given[1].starts_with('/');
     if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
-      note("is ignored: expected " + std::string(count == 1 ? "a number" : "one or three numbers"));
+      note("is ignored: expected ", count == 1 ? "a number" : "one or three numbers");
       return {};
     }
     if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
@@ -124,17 +123,16 @@ class MtlReader : private StatementBuffer {
     return made;
   }
 
-  /// Notes an oddity of the current statement.
-  void note(const std::string& oddity) {
-    warnings_.push_back(path() + ", line " + std::to_string(line()) + ": material '" + current_ +
-                        "': " + text::quoted(statement()) + " " + oddity);
+  void note(const auto&... oddity) {
+    warnings_.push_back(warning(path(), line(), "material '", current_, "': ", quoted(), " ", oddity...));
   }
 
   /// Notes the picture that a statement names, for the first material of a name.
   void note_picture() {
-    const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d",
-               reflectance = keyword() == "pulsecast_reflectanceMap";
-    if ((!colour && !opacity && !reflectance) || repeated_) return;
+    static constexpr std::array<std::string_view, 3> keys{"map_Kd", "map_d", "pulsecast_reflectanceMap"};
+    const auto key = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), keyword()) - keys.begin());
+    if (key == keys.size() || repeated_) return;
+    const bool reflectance = key == 2;
     std::string_view named = rest();
     const bool is_pattern = reflectance && named.starts_with("pattern ");
     if (is_pattern) named = text::trimmed(named.substr(8));
@@ -145,18 +143,16 @@ class MtlReader : private StatementBuffer {
     if (name.empty()) return note("names no picture");
     std::replace(name.begin(), name.end(), '\\', '/');
     MaterialPictures& all = pictures_[current_];
-    all.reflectance_pattern = all.reflectance_pattern || is_pattern;
-    (colour    ? all.colour
-     : opacity ? all.opacity
-               : all.reflectance)
-        .file = std::filesystem::path(path()).parent_path() / name;
+    all.reflectance_pattern |= is_pattern;
+    PictureSource* const sources[] = {&all.colour, &all.opacity, &all.reflectance};
+    sources[key]->file = std::filesystem::path(path()).parent_path() / name;
   }
 
   [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
-    const auto warn = [&](const char* key, const std::string& text) {
+    const auto warn = [&](const char* key, const auto&... oddity) {
       const auto known = lines_.find({m.name, key});
-      const std::string place = known == lines_.end() ? "" : ", line " + std::to_string(known->second);
-      warnings.push_back(path() + place + ": material '" + m.name + "' " + text);
+      const std::size_t place = known == lines_.end() ? 0 : known->second;
+      warnings.push_back(warning(path(), place, "material '", m.name, "' ", oddity...));
     };
     const auto extra = [&](const char* key) {
       const auto found = m.unknown_parameter.find(key);
@@ -177,7 +173,7 @@ class MtlReader : private StatementBuffer {
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);
       if (made.reflectance > 1) {
-        warn("helios_reflectance", "has the reflectance " + reflectance + ", which is taken as percent");
+        warn("helios_reflectance", "has the reflectance ", reflectance, ", which is taken as percent");
         made.reflectance /= 100;
       }
     } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
@@ -185,24 +181,22 @@ class MtlReader : private StatementBuffer {
       const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
       for (const double wavelength : spectra_.wavelengths)
         if (!(wavelength >= shortest && wavelength <= longest))
-          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " +
-                                     nanometres(longest) + " nm: for the laser of " + nanometres(wavelength) +
-                                     " nm the nearest sample is used");
+          warn("helios_spectra", "has the spectrum '", spectrum, "', which spans ", nanometres(shortest), " to ",
+               nanometres(longest), " nm: for the laser of ", nanometres(wavelength), " nm the nearest sample is used");
     } else if (!spectrum.empty()) {
-      warn("helios_spectra",
-           "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
+      warn("helios_spectra", "refers to the spectrum '", spectrum,
+           "', which is in no library: a reflectance of 0.5 is assumed");
     }
     set_light(made, m, extra, warn);
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     const std::string ground = text::lower(extra("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
-      warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
+      warn("helios_isGround", "has helios_isGround '", ground, "', expected true or false: false is assumed");
     return made;
   }
 
-  template <class Extra, class Warn>
-  void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra, const Warn& warn) const {
+  void set_light(Material& made, const tinyobj::material_t& m, const auto& extra, const auto& warn) const {
     if (!set_standard_light(made, m))
       warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
     std::deque<std::string> texts;
@@ -218,25 +212,22 @@ class MtlReader : private StatementBuffer {
   }
 
   /// Water for the wavelength of all lasers; clear, with a warning, if there is none.
-  template <class Warn>
-  [[nodiscard]] SmoothInterface water_for_lasers(const std::string& name, const std::vector<std::string_view>& words,
-                                                 const Warn& warn) const {
+  [[nodiscard]] SmoothInterface water_for_lasers(const std::string& name, const auto& words, const auto& warn) const {
+    constexpr const char* key = "pulsecast_water";
     const std::vector<double>& all = spectra_.wavelengths;
-    const auto wrong = [&](const std::string& what) {
-      return FileError(path(), "line " + std::to_string(lines_.at({name, "pulsecast_water"})), what);
-    };
     if (all.empty()) {
-      warn("pulsecast_water", "has water by a type, and no wavelength of a laser is known: it is taken as clear");
+      warn(key, "has water by a type, and no wavelength of a laser is known: it is taken as clear");
       return SmoothInterface::water();
     }
-    for (const double wavelength : all)
-      if (wavelength != all.front())
-        throw wrong(
-            "water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the coefficients");
+    if (std::ranges::any_of(all, [&](double wavelength) { return wavelength != all.front(); }))
+      fail_at(path(), lines_.at({name, key}),
+              "water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the "
+              "coefficients");
     try {
-      return water_of(words, all.front());
+      if (const auto type = jerlov_type(words[0])) return SmoothInterface::water(water(*type, all.front()));
+      return SmoothInterface::water(secchi_water(*number_in<double>(words[1]), all.front()));
     } catch (const SettingError& refused) {
-      throw wrong(refused.what());
+      fail_at(path(), lines_.at({name, key}), refused.what());
     }
   }
 
@@ -244,7 +235,7 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;
-  bool begun_ = false, repeated_ = false;  // `repeated_`: the current material is not the first of its name
+  bool begun_ = false, repeated_ = false;  // true after a statement; for a name that is not the first such
   std::string current_ = "default";        // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
   std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
@@ -253,7 +244,7 @@ class MtlReader : private StatementBuffer {
 }  // namespace detail
 
 PULSECAST_INLINE MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
-  return reading(path, [&] { return detail::MtlReader(detail::StatementFile(path), spectra).read(); });
+  return reading(path, [&] { return detail::MtlReader({path, "an OBJ or MTL file"}, spectra).read(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -10,7 +10,6 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/io/detail/up_axis.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
@@ -20,22 +19,22 @@ namespace PULSECAST_NAMESPACE::io {
 struct ObjSettings {
   UpAxis up = UpAxis::z;      ///< vertical axis of the file
   SpectralLibrary spectra{};  ///< spectra for `helios_spectra` in MTL files
-  bool texture = false;       ///< true to read texture coordinates also if no material has a picture
+  bool texture = false;       ///< true: texture coordinates also if no material has a picture
 };
 
 /// Content of an OBJ file, all objects and groups together.
 struct ObjModel {
-  MeshData mesh;                    ///< in units of the file, which should be metres; without triangles of zero area
-  std::vector<Material> materials;  ///< materials of triangles, in order of first use
-  std::vector<MaterialPictures> pictures{};    ///< of each material, not read: see `add_pictures`; or empty
+  MeshData mesh;                               ///< in units of the file, which should be metres
+  std::vector<Material> materials;             ///< materials of triangles, in order of first use
+  std::vector<MaterialPictures> pictures{};    ///< of each material, for `add_pictures`; or empty
   std::vector<std::string> warnings;           ///< oddities that could still be read
-  std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, those that are missing, too
+  std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, also missing ones
 };
 
-/// Reads an OBJ file and its MTL files. Polygons, also concave ones, are triangulated. Warns if no face has an area, or
-/// an MTL file is missing; its materials become `undescribed`. Holds some megabytes at most. Throws a `FileError` with
-/// path and line at the first error. Limits: faces refer to vertices above them and have at most 4096 corners;
-/// coordinates stay within 1e12, where a double resolves 0.1 mm, and are accurate to some units in the last place.
+/// Reads an OBJ file and its MTL files. Polygons, also concave ones, are triangulated; triangles of
+/// zero area are left out. Warns if none is left, or an MTL file is missing: its materials become
+/// `undescribed`. Throws a `FileError` with path and line at the first error. Limits: faces refer
+/// to vertices above them and have at most 4096 corners; coordinates are within 1e12.
 [[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {},
                                 const Workers& workers = {});
 

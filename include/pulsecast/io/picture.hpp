@@ -20,16 +20,15 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of `read_picture`.
 struct PictureSettings {
   std::size_t max_pixels = std::size_t{1} << 26;  ///< maximum number of pixels
-  /// True: stb_image runs in a child process, with 1.5 GB and 30 s, whose death is a `FileError`. For untrusted files.
-  bool isolated = false;
+  bool isolated = false;  ///< true: in a child process with 1.5 GB and 30 s; for untrusted files
 };
 
-/// Reads a picture, of 16 bits a channel the upper eight. Throws a `FileError` if it is missing, damaged, or too large.
+/// Picture, of 16 bits a channel the upper 8. @throws FileError if missing, damaged or too large
 [[nodiscard]] Image read_picture(const PictureSource& source, const PictureSettings& settings = {});
 
-/// Reads the pictures of the materials of a mesh, each once: colours and reflectances into the materials, outlines into
-/// the masks of the mesh. A picture that cannot be read, or a mesh without texture coordinates, is a warning, and the
-/// picture is left out. Without an outline the surface is solid.
+/// Reads the pictures of the materials of a mesh, each once: colours and reflectances into the
+/// materials, outlines into the masks of the mesh. What cannot be read, or is of a mesh without
+/// texture coordinates, is left out with a warning. Without an outline the surface is solid.
 void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<const MaterialPictures> pictures,
                   std::vector<std::string>& warnings, const PictureSettings& settings = {});
 
@@ -37,7 +36,6 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #if PULSECAST_DEFINES(IO_PICTURE)
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <memory>
 
@@ -45,7 +43,6 @@ void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<co
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -82,31 +79,28 @@ struct PictureShelf {
 
 /// Picture by stb_image, in this process.
 [[nodiscard]] inline Image decoded(const PictureSource& source, std::size_t max_pixels) {
-  const std::string path = source.file.string();
+  const std::filesystem::path& path = source.file;
   std::optional<MappedFile> file;
   if (!source.embedded) file.emplace(source.file);
   const std::span<const std::byte> bytes = file ? file->bytes() : std::span<const std::byte>(*source.embedded);
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw FileError(path, "", "is a picture of more than 2^31 bytes");
+  if (bytes.size() > 0x7FFFFFFF) detail::fail(path, "is a picture of more than 2^31 bytes");
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  const auto fail = [&]() -> FileError {
-    return {path, "",
-            std::string("is no picture that can be read: ") + stbi_failure_reason() +
-                "; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM"};
+  const auto require = [&](bool read) {
+    if (!read)
+      detail::fail(path, "is no picture that can be read: ", stbi_failure_reason(),
+                   "; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
   };
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw fail();
+  require(stbi_info_from_memory(data, size, &width, &height, &channels) != 0);
   if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
       static_cast<double>(width) * height > static_cast<double>(max_pixels))
-    throw FileError(path, "",
-                    text::joined({"has ", std::to_string(width), " x ", std::to_string(height),
-                                  " pixels, expected at most ", std::to_string(max_pixels), ", and 65536 a side"}));
+    detail::fail(path, "has ", width, " x ", height, " pixels, expected at most ", max_pixels, ", and 65536 a side");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
-  if (!pixels) throw fail();
-  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
-              static_cast<std::uint32_t>(channels)};
+  require(pixels != nullptr);
+  const auto whole = [](int number) { return static_cast<std::uint32_t>(number); };
+  Image image{whole(width), whole(height), whole(channels)};
   const SharedBuffer<std::uint8_t> samples(std::size_t{image.width} * image.height * image.channels);
   std::copy_n(pixels.get(), samples.size(), samples.data());
   image.samples = samples;
@@ -116,10 +110,9 @@ struct PictureShelf {
 }  // namespace detail
 
 PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
-  if (!settings.isolated) return reading(source.file, [&] { return detail::decoded(source, settings.max_pixels); });
-  const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
-  return detail::ChildProcess::result(source.file.string(), limits,
-                                      [&] { return detail::decoded(source, settings.max_pixels); });
+  const auto decode = [&] { return detail::decoded(source, settings.max_pixels); };
+  if (!settings.isolated) return reading(source.file, decode);
+  return detail::ChildProcess::result(source.file.string(), {.memory = 1.5e9, .time = 30}, decode);
 }
 
 PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials,
@@ -130,8 +123,8 @@ PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materi
     const MaterialPictures& of = pictures[i];
     if (of.empty()) continue;
     if (mesh.texture.empty()) {
-      warnings.push_back("material '" + materials[i].name +
-                         "' has pictures, which are left out, as the mesh has no texture coordinates");
+      warnings.push_back(text::message("material '", materials[i].name,
+                                       "' has pictures, which are left out, as the mesh has no texture coordinates"));
       continue;
     }
     if (!of.colour.empty()) materials[i].picture = shelf.get(of.colour);

@@ -23,8 +23,8 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution,
-/// for smooth edges. `ground` is seen where there is no point; its values are shades of grey.
+/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; of twice
+/// the picture's resolution. `ground`, in shades of grey, is seen where there is no point.
 class Canvas {
  public:
   Canvas(const ImageSettings& s, std::span<const ImagePoint> points, std::span<const ImagePoint> ground)
@@ -72,9 +72,9 @@ class Canvas {
     return shade == 0 ? background : from_srgb({shade, shade, shade});
   }
 
-  /// Diameter at which discs in the middle of the scene just touch: square root of the covered area per point [px].
+  /// Diameter of discs that just touch in mid-scene: root of the covered area per point [px].
   [[nodiscard]] double closing_diameter(std::span<const ImagePoint> all) const {
-    constexpr int cell = 4;  // small enough to follow an outline, large enough for a closed appearance [px]
+    constexpr int cell = 4;  // follows an outline, and appears closed [px]
     const int columns = settings_.width / cell + 1, rows = settings_.height / cell + 1;
     std::vector<bool> taken(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     std::size_t cells = 0, points = 0;
@@ -87,8 +87,8 @@ class Canvas {
       taken[i] = true;
       ++points;
     }
-    const double spacing =
-        cell * std::sqrt(static_cast<double>(cells) / static_cast<double>(std::max<std::size_t>(points, 1)));
+    const auto share = static_cast<double>(cells) / static_cast<double>(std::max<std::size_t>(points, 1));
+    const double spacing = cell * std::sqrt(share);
     return std::clamp(2.2 * spacing, 1.2, 8.0);  // by eye
   }
 
@@ -122,8 +122,8 @@ class Canvas {
     return depth_[index(x, y)];
   }
 
-  /// Brightness of a pixel: shading by a light from the upper left, darker where it lies behind its surroundings.
-  /// Source: the idea of Luft, Colditz & Deussen 2006, unsharp masking of the depth buffer; amounts by eye.
+  /// Brightness of a pixel: light from the upper left, darker behind the surroundings. Source: the
+  /// idea of Luft, Colditz & Deussen 2006, unsharp masking of the depth buffer; amounts by eye.
   [[nodiscard]] double light(int x, int y) const {
     const double here = depth_[index(x, y)];
     const double pixel = 0.5 / camera_.scale(here);  // size of a canvas pixel at this depth [m]
@@ -151,27 +151,26 @@ class Canvas {
     const double range = std::max(high - low, 1e-9);
     std::vector<Colour> colours;
     colours.reserve(points_.size());
-    for (const ImagePoint& p : points_) switch (settings_.colour_by) {
-        case ColourBy::height:
-          colours.push_back(along(viridis, (p.z - low) / range));
-          break;
-        case ColourBy::intensity:
-          colours.push_back(along(greys, (p.value - low) / range));
-          break;
-        case ColourBy::object:
-          colours.push_back(of_hue(p.value));
-          break;
-        case ColourBy::classification:
-          colours.push_back(from_srgb(of_class(static_cast<std::uint16_t>(p.value))));
-          break;
-        case ColourBy::return_number:
-          colours.push_back(
-              from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
-          break;
-        case ColourBy::kind:
-          colours.push_back(from_srgb(kind_colours[static_cast<std::size_t>(p.value)]));
-      }
+    for (const ImagePoint& p : points_) colours.push_back(colour(p, low, range));
     return colours;
+  }
+
+  [[nodiscard]] Colour colour(const ImagePoint& p, double low, double range) const {
+    switch (settings_.colour_by) {
+      case ColourBy::height:
+        return along(viridis, (p.z - low) / range);
+      case ColourBy::intensity:
+        return along(greys, (p.value - low) / range);
+      case ColourBy::object:
+        return of_hue(p.value);
+      case ColourBy::classification:
+        return from_srgb(of_class(static_cast<std::uint16_t>(p.value)));
+      case ColourBy::return_number:
+        return from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]);
+      case ColourBy::kind:
+        break;
+    }
+    return from_srgb(kind_colours[static_cast<std::size_t>(p.value)]);
   }
 
   ImageSettings settings_;
@@ -185,8 +184,8 @@ class Canvas {
 
 }  // namespace detail
 
-/// Sink that draws a preview of the cloud as a PNG, with automatic framing and a bounded number of points. The picture
-/// depends on the echoes and the settings only. Points that are not finite are skipped; without points it is empty.
+/// Sink that draws a preview of the cloud as a PNG, framed automatically, of a bounded number of
+/// points. It depends on echoes and settings only. Points that are not finite are skipped.
 class ImageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -203,21 +202,19 @@ class ImageWriter {
       }
   }
 
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
-  /// Draws a raster behind the points, in shades of grey from 1 to 255, see `hillshade`: some million places, between
-  /// pixels too; none beside a pixel of shade 0. Without points it frames the picture. @throws SettingError as
-  /// `Raster::validate` and `Placement::validate`, or for another number of shades
+  /// Draws a raster behind the points, in shades of grey from 1 to 255, see `hillshade`, at some
+  /// million places; none beside a pixel of shade 0. Without points it frames the picture. @throws
+  /// SettingError for another number of shades, or an invalid raster or placement
   void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Placement& placement = {}) {
     raster.validate();
     placement.validate();
     const auto pixels = static_cast<double>(raster.pixels());
-    require_within("ImageWriter::add_ground (number of shades)", static_cast<double>(shades.size()), pixels, pixels,
-                   "");
+    const auto count = static_cast<double>(shades.size());
+    require_within("ImageWriter::add_ground (number of shades)", count, pixels, pixels, "");
     const double density = std::sqrt(1e6 / pixels);  // places by pixel, along a row or column
-    const auto places = [&](std::uint32_t count) {
-      return static_cast<std::uint32_t>(std::ceil((count - 1) * density)) + 1;
-    };
+    const auto places = [&](std::uint32_t of) { return static_cast<std::uint32_t>(std::ceil((of - 1) * density)) + 1; };
     const std::uint32_t columns = places(raster.columns), rows = places(raster.rows);
     raster.read([&](const auto& heights) {
       for (std::uint32_t row = 0; row < rows; ++row)
@@ -227,7 +224,7 @@ class ImageWriter {
     });
   }
 
-  /// Draws and writes the picture; the file does not exist before. Throws a `FileError`.
+  /// Draws and writes the picture; the file does not exist before. @throws FileError
   void close() {
     ImageSettings settings = settings_;
     if (settings.eye) *settings.eye -= origin_.value_or(Vec3{});
@@ -235,8 +232,8 @@ class ImageWriter {
     std::vector<std::byte> png;
     const auto append = [](void* to, void* data, int size) {
       const auto* bytes = static_cast<const std::byte*>(data);
-      static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), bytes,
-                                                       bytes + size);
+      auto& all = *static_cast<std::vector<std::byte>*>(to);
+      all.insert(all.end(), bytes, bytes + size);
     };
     if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(),
                                3 * settings_.width) == 0)
@@ -262,13 +259,14 @@ class ImageWriter {
     for (const std::uint32_t south : {0U, 1U})
       for (const std::uint32_t east : {0U, 1U}) {
         const std::size_t i = grid.index(c + east, r + south);
-        const double weight = (east == 1 ? column - c : 1 - (column - c)) * (south == 1 ? row - r : 1 - (row - r));
+        const double by_column = east == 1 ? column - c : 1 - (column - c);
+        const double weight = by_column * (south == 1 ? row - r : 1 - (row - r));
         if (shades[i] == 0) return;
         height += weight * static_cast<double>(heights[i]);
         shade += weight * shades[i];
       }
-    const Vec3 point =
-        placement.point({grid.first.x + column * grid.pixel.x, grid.first.y - row * grid.pixel.y, height});
+    const Vec3 in_raster{grid.first.x + column * grid.pixel.x, grid.first.y - row * grid.pixel.y, height};
+    const Vec3 point = placement.point(in_raster);
     if (!finite(point)) return;
     ground_.push_back(image_point(point, static_cast<float>(std::lround(shade))));
     if (ground_.size() >= settings_.points_max) drop_every_other(ground_);
@@ -284,7 +282,7 @@ class ImageWriter {
         return echo.number;
       case ColourBy::kind:
         return static_cast<float>(echo.kind);
-      // the golden ratio spreads the hues of consecutive numbers; 0 is olive, as it often is the ground
+      // the golden ratio spreads the hues of consecutive numbers; 0, often the ground, is olive
       case ColourBy::object:
         return static_cast<float>(std::fmod(0.3 + echo.object * (std::numbers::phi - 1), 1.0));
       case ColourBy::height:

@@ -15,11 +15,11 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for heights in PNG files.
 struct PngHeightSettings {
-  double vertical_scale = 1;               ///< metres per unit of grey [m]
-  double vertical_offset = 0;              ///< height of grey 0, black [m]
-  std::optional<std::uint16_t> missing{};  ///< grey of missing heights
-  std::optional<Vec2> pixel{};  ///< spacing of the pixels, east and south [m]; by default from the world file
-  std::optional<Vec2> first{};  ///< centre of the north-west pixel [m]; default: world file's; (0, 0) beside `pixel`
+  double vertical_scale = 1;                      ///< metres per unit of grey [m]
+  double vertical_offset = 0;                     ///< height of grey 0, black [m]
+  std::optional<std::uint16_t> missing{};         ///< grey of missing heights
+  std::optional<Vec2> pixel{};                    ///< spacing, east and south; default: by the world file [m]
+  std::optional<Vec2> first{};                    ///< centre of the north-west pixel; default: as `pixel`, or 0 [m]
   std::size_t max_pixels = std::size_t{1} << 28;  ///< pixels at most
 
   void validate() const {
@@ -32,11 +32,10 @@ struct PngHeightSettings {
   }
 };
 
-/// Reads a raster of heights from a PNG file of grey, 8 or 16 bits, north up. Its heights are packed: two bytes a
-/// pixel. Coordinates are in metres; the place of pixels is that of the settings, or of a world file beside the picture
-/// (`world_file_of`). Memory is twice the raster, as far as the size of the file allows. Checksums of the file are not
-/// compared. @throws SettingError for settings out of range @throws FileError for a file that is damaged, coloured,
-/// transparent, of fewer bits, or too large, without a place, or without a height
+/// Reads a raster of packed heights from a PNG file of grey, 8 or 16 bits, north up, in metres. The
+/// place of pixels is that of the settings, or of a world file (`world_file_of`). Checksums are not
+/// compared. @throws SettingError @throws FileError for a file that is damaged, coloured,
+/// transparent, of fewer bits, too large, without a place, or without a height
 [[nodiscard]] Raster read_png_heights(const std::filesystem::path& path, const PngHeightSettings& settings = {});
 
 /// True for the extension `.png`, in any case.
@@ -50,12 +49,10 @@ struct PngHeightSettings {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include <stb/stb_image.h>
 
-#include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/world_file.hpp>
 
@@ -70,20 +67,18 @@ class PngHeightReader {
 
   [[nodiscard]] Raster read() && {
     read_size();
-    raster_.packed = {
-        .scale = settings_.vertical_scale, .offset = settings_.vertical_offset, .missing = settings_.missing};
+    raster_.packed.scale = settings_.vertical_scale;
+    raster_.packed.offset = settings_.vertical_offset;
+    raster_.packed.missing = settings_.missing;
     const bool is_northward = place();
-    if (bits_ == 16)
-      take(std::unique_ptr<stbi_us, Free>(stbi_load_16_from_memory(data(), size(), &width_, &height_, &channels_, 1)));
-    else
-      take(std::unique_ptr<stbi_uc, Free>(stbi_load_from_memory(data(), size(), &width_, &height_, &channels_, 1)));
+    bits_ == 16 ? take(stbi_load_16_from_memory) : take(stbi_load_from_memory);
     auto& numbers = raster_.packed.numbers;
     const auto row = [&](std::uint32_t r) {
       return numbers.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * raster_.columns);
     };
     for (std::uint32_t r = 0; is_northward && r < raster_.rows / 2; ++r)
       std::swap_ranges(row(r), row(r + 1), row(raster_.rows - 1 - r));
-    if (std::all_of(numbers.begin(), numbers.end(), [&](std::uint16_t n) { return settings_.missing == n; }))
+    if (std::ranges::all_of(numbers, [&](std::uint16_t n) { return settings_.missing == n; }))
       fail("has no height: expected at least one pixel of another grey than that of missing heights");
     try {
       raster_.validate();
@@ -94,40 +89,35 @@ class PngHeightReader {
   }
 
  private:
-  struct Free {
-    void operator()(void* pixels) const noexcept { stbi_image_free(pixels); }
-  };
-
-  [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_.string(), "", problem); }
+  [[noreturn]] void fail(const auto&... problem) const { detail::fail(path_, problem...); }
   [[noreturn]] void fail_to_read() const {
-    fail(std::string("cannot be read (stb_image: ") + stbi_failure_reason() + "): expected a PNG file of heights");
+    fail("cannot be read (stb_image: ", stbi_failure_reason(), "): expected a PNG file of heights");
   }
 
   [[nodiscard]] const stbi_uc* data() const noexcept { return reinterpret_cast<const stbi_uc*>(file_.bytes().data()); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(file_.bytes().size()); }
 
-  /// Reads and checks the size and the kind of pixels. Source: PNG, second edition (ISO/IEC 15948), 5.2 and 11.2.2.
+  /// Checks size and kind of pixels. Source: PNG, second edition (ISO/IEC 15948), 5.2, 11.2.2.
   void read_size() {
     constexpr std::array<stbi_uc, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     constexpr std::size_t depth = 24, colour = 25;  // bytes of the header
     const std::size_t bytes = file_.bytes().size();
-    if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      fail("has more than 2^31 bytes: expected fewer");
+    if (bytes > 0x7FFFFFFF) fail("has more than 2^31 bytes: expected fewer");
     if (bytes <= colour || !std::equal(signature.begin(), signature.end(), data()))
       fail("is no PNG file: expected one of heights");
     if (stbi_info_from_memory(data(), size(), &width_, &height_, &channels_) == 0) fail_to_read();
     bits_ = data()[depth];
     if (data()[colour] != 0 || channels_ != 1 || (bits_ != 8 && bits_ != 16))
-      fail("has " + std::to_string(channels_) + " channels of " + std::to_string(bits_) + " bits, colour type " +
-           std::to_string(data()[colour]) + ": expected grey of 8 or 16 bits, without transparency");
-    const std::string pixels = std::to_string(width_) + " x " + std::to_string(height_) + " pixels";
-    if (width_ < 2 || height_ < 2) fail("is of " + pixels + ": expected 2 x 2 or more");
+      fail("has ", channels_, " channels of ", bits_, " bits, colour type ", data()[colour],
+           ": expected grey of 8 or 16 bits, without transparency");
+    const std::string pixels = text::message(width_, " x ", height_, " pixels");
+    if (width_ < 2 || height_ < 2) fail("is of ", pixels, ": expected 2 x 2 or more");
     const double count = static_cast<double>(width_) * height_;
     if (count > static_cast<double>(settings_.max_pixels))
-      fail("is of " + pixels + ": expected at most " + std::to_string(settings_.max_pixels) + " in all");
+      fail("is of ", pixels, ": expected at most ", settings_.max_pixels, " in all");
     constexpr double deflate = 1032;  // largest ratio; source: zlib, "Maximum Compression Factor"
     if (count * bits_ / 8 > deflate * static_cast<double>(bytes))
-      fail("claims " + pixels + ", more than its " + std::to_string(bytes) + " bytes can hold");
+      fail("claims ", pixels, ", more than its ", bytes, " bytes can hold");
     raster_.columns = static_cast<std::uint32_t>(width_);
     raster_.rows = static_cast<std::uint32_t>(height_);
   }
@@ -139,22 +129,24 @@ class PngHeightReader {
     if (settings_.pixel) return false;
     const std::filesystem::path beside = world_file_of(path_);
     if (beside.empty())
-      fail("has no place: expected a world file beside it, as in " +
-           std::filesystem::path(path_).replace_extension(".pgw").string() + ", or the size of pixels as a setting");
+      fail("has no place: expected a world file beside it, as in ",
+           std::filesystem::path(path_).replace_extension(".pgw").string(), ", or the size of pixels as a setting");
     const WorldFile world = read_world_file(beside);
     const bool is_northward = world.step.y > 0;
     raster_.pixel = {world.step.x, std::fabs(world.step.y)};
     if (!settings_.first)
       raster_.first = {world.first.x, world.first.y + (is_northward ? (raster_.rows - 1) * world.step.y : 0)};
     if (const std::string question = degrees_question(raster_); !question.empty())
-      fail("by its world file " + question + ", or the size of pixels as a setting");
+      fail("by its world file ", question, ", or the size of pixels as a setting");
     return is_northward;
   }
 
-  template <class Pixels>
-  void take(const Pixels& pixels) {
+  /// Takes the numbers that a function of stb_image loads.
+  void take(const auto& load) {
+    auto* const pixels = load(data(), size(), &width_, &height_, &channels_, 1);
+    const std::unique_ptr<void, void (*)(void*)> owner(pixels, stbi_image_free);
     if (!pixels) fail_to_read();
-    raster_.packed.numbers.assign(pixels.get(), pixels.get() + raster_.pixels());
+    raster_.packed.numbers.assign(pixels, pixels + raster_.pixels());
   }
 
   PngHeightSettings settings_;

@@ -26,26 +26,26 @@ enum class VoxelNormals : std::uint8_t {
 
 /// Position of the lattice of voxels.
 enum class VoxelLattice : std::uint8_t {
-  at_cloud,      ///< begins at the minimum coordinates; along an axis without extent, voxels are centred on the cloud
-  at_multiples,  ///< faces at integer multiples of the voxel size, so that adjacent clouds share a lattice
+  at_cloud,      ///< begins at the minimum coordinates; centred along an axis without extent
+  at_multiples,  ///< faces at integer multiples of the voxel size, the same for adjacent clouds
 };
 
 /// Settings for voxels of a point cloud.
 struct PointCloudSettings {
-  double voxel_size = 1;                              ///< edge of a voxel [m]
-  VoxelLattice lattice = VoxelLattice::at_cloud;      ///< position of the lattice
-  VoxelNormals normals = VoxelNormals::none;          ///< source of the normals
-  std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels without a normal, of any length but 0
-  bool colours = false;                               ///< true to give voxels colours
-  std::optional<double> colour_max = std::nullopt;    ///< maximum of a channel; by default 65535 in LAS, 255 in text
-  TextPointColumns columns = {};                      ///< columns of text files
+  double voxel_size = 1;                          ///< edge of a voxel [m]
+  VoxelLattice lattice = VoxelLattice::at_cloud;  ///< position of the lattice
+  VoxelNormals normals = VoxelNormals::none;      ///< source of the normals
+  std::optional<Vec3> default_normal{};           ///< for voxels without a normal, of any length but 0
+  bool colours = false;                           ///< true to give voxels colours
+  std::optional<double> colour_max{};             ///< of a channel; default: 65535 in LAS, 255 in text
+  TextPointColumns columns = {};                  ///< columns of text files
 
   void validate() const {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
     require_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
-    if (default_normal && !(max_norm(*default_normal) >= 1e-100 && max_norm(*default_normal) <= 1e100))
-      throw SettingError("PointCloudSettings::default_normal length", length(*default_normal), "",
-                         "from 1e-100 to 1e100");
+    const Vec3 normal = default_normal.value_or(Vec3{1, 0, 0});
+    if (!(max_norm(normal) >= 1e-100 && max_norm(normal) <= 1e100))
+      throw SettingError("PointCloudSettings::default_normal length", length(normal), "", "from 1e-100 to 1e100");
     if (colour_max) require_positive("PointCloudSettings::colour_max", *colour_max, "");
     columns.validate();
   }
@@ -54,18 +54,18 @@ struct PointCloudSettings {
 /// Voxels occupied by the points of a cloud.
 struct PointCloud {
   VoxelData voxels;                             ///< with normals, if requested and available
-  std::vector<std::array<float, 3>> colours{};  ///< red, green, blue from 0 to 1 of voxels, root mean square; or none
+  std::vector<std::array<float, 3>> colours{};  ///< of voxels, from 0 to 1, root mean square
   std::uint64_t points = 0;                     ///< number of points read
   std::vector<std::string> warnings{};          ///< oddities that could still be read
 };
 
-/// Reads point clouds, text (see `TextPoints`) or LAS (see `LasPoints`) as detected, into one grid of voxels. Every
-/// file is read twice, first for the extent, then for the voxels: memory depends on the voxels, not on the points.
+/// Reads point clouds, text (`TextPoints`) or LAS (`LasPoints`) as detected, into one grid of
+/// voxels. Files are read twice, for the extent and for the voxels: memory is that of the voxels.
 ///
-/// A voxel includes its lower faces and excludes its upper ones; with `at_cloud`, the last voxel includes its upper
-/// faces, too. Plane fits need at least three points not on one line. A voxel without a normal gets the default, or
-/// zero with a warning. Colours above the maximum are an error. Throws a `FileError` with path and line or byte at the
-/// first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
+/// A voxel includes its lower faces and excludes its upper ones, but for the last ones of
+/// `at_cloud`. Plane fits need three points not on one line. A voxel without a normal gets the
+/// default, or zero with a warning. Colours above the maximum are an error. Throws a `FileError`
+/// with path and line or byte at the first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
 [[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths,
                                           const PointCloudSettings& settings = {});
 

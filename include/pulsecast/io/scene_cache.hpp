@@ -12,7 +12,6 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/digest.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>
@@ -27,22 +26,21 @@
 
 /// Cache of a built scene: one memory-mapped file.
 ///
-/// A cache belongs to one build of the program on one machine: it holds arrays in their memory layout, and records
-/// version, shapes and element types. It is accepted only if complete, by a checksum over all bytes, and made from the
-/// present bytes of its sources. The checksum guards against accidents; forgery is detected as far as a shape has
-/// `is_consistent`. Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped
-/// ones intact; but programs that start at the same time should not make the same cache.
+/// A cache belongs to one build of the program on one machine: arrays keep their memory layout. It is used
+/// only if complete, by a checksum over all bytes, and made by this version, for these shapes and element
+/// types, from the present bytes of its sources. Forgery is detected as far as a shape has `is_consistent`.
+/// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones
+/// intact; but programs that start together should not make the same cache.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading.
-/// All its arrays are `SharedArray`, so that they can stay in the file:
+/// Geometry that can be kept in a cache. A function names all members, for writing and reading:
 ///
 ///     explicit G(DeserializeTag) {}
 ///     template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }
 ///
-/// Members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects with an `archive`
-/// of their own. Not required: `bool is_consistent() const`, called after the filling: true if all indices in the
-/// arrays are in bounds.
+/// Members may be `SharedArray` arrays, which stay in the file, plain values without pointers,
+/// strings, vectors, and objects with an `archive`. Not required: `bool is_consistent() const`,
+/// called after the filling: true if all indices in the arrays are in bounds.
 template <class G>
 concept Archived = Geometry<G> && detail::Restorable<G>;
 
@@ -72,7 +70,7 @@ concept CacheableScene = requires(const S& scene) {
 
 /// Inputs of a scene.
 struct SceneSources {
-  std::vector<std::filesystem::path> files{};  ///< all files that the build reads; a folder counts with all below it
+  std::vector<std::filesystem::path> files{};  ///< files that the build reads; of a folder, all below it
   std::string settings{};                      ///< all else that the scene depends on, as text
 };
 
@@ -92,11 +90,7 @@ struct CachedScene {
   std::string warning;      ///< reason for not saving it; empty if saved or from the cache
 };
 
-/// Lists the rows of a measured law.
-template <class Archive>
-void list_members(Archive& a, Tabulated& law) {
-  a(law.rows);
-}
+void list_members(auto& a, Tabulated& law) { a(law.rows); }
 /// Lists a law, one of the library's own.
 template <class Archive>
 void list_members(Archive& a, SurfaceLaw& law) {
@@ -107,8 +101,7 @@ void list_members(Archive& a, SurfaceLaw& law) {
     law = std::visit([](const auto& is) -> SurfaceLaw { return is; }, known);
 }
 /// Lists the members of a material. A new member of a material or part is a compile error here.
-template <class Archive>
-void list_members(Archive& a, Material& m) {
+void list_members(auto& a, Material& m) {
   auto& [name, reflectance, law, classification, ground, spectrum, smooth, colour, picture, reflectance_map] = m;
   auto map = std::dynamic_pointer_cast<const ReflectanceMap>(reflectance_map);
   a(name, reflectance, law, classification, ground, spectrum, colour, picture, map);
@@ -117,20 +110,13 @@ void list_members(Archive& a, Material& m) {
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
 }
-/// Lists the members of a map of reflectances.
-template <class Archive>
-void list_members(Archive& a, ReflectanceMap& map) {
-  a(map.image, map.wavelengths, map.mean);
-}
-/// Lists the members of a named number.
-template <class Archive>
-void list_members(Archive& a, Attribute& attribute) {
+void list_members(auto& a, ReflectanceMap& map) { a(map.image, map.wavelengths, map.mean); }
+void list_members(auto& a, Attribute& attribute) {
   auto& [name, value] = attribute;
   a(name, value);
 }
-/// Lists the members of a part.
-template <class Archive, class... Shapes>
-void list_members(Archive& a, Part<Shapes...>& part) {
+template <class... Shapes>
+void list_members(auto& a, Part<Shapes...>& part) {
   auto& [geometry, materials, placement, object, name, motion, attributes] = part;
   a(geometry, materials, placement, object, name, attributes);
   if constexpr (detail::Restorable<PartMotion>) a(motion);
@@ -140,15 +126,12 @@ namespace detail {
 
 /// Header of a cache.
 struct CacheHeader {
-  static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
-  static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 10;         ///< version of the layout of the file
-
-  std::array<char, 8> mark = own_mark;
-  std::uint32_t order = own_order, format = own_format;
-  Fingerprint program;     ///< hash of the library's version and the types in the file
-  Fingerprint key;         ///< key of the sources
-  std::uint64_t size = 0;  ///< size of the file [byte]
+  std::array<char, 8> mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
+  std::uint32_t order = 0x01020304;  ///< reads differently in another byte order
+  std::uint32_t format = 10;         ///< version of the layout of the file
+  Fingerprint program;               ///< hash of the library's version and the types in the file
+  Fingerprint key;                   ///< key of the sources
+  std::uint64_t size = 0;            ///< size of the file [byte]
   std::uint64_t unused[7] = {};
   Fingerprint checksum;  ///< over all other bytes of the file
 };
@@ -173,28 +156,24 @@ template <class P>
   return digest.value();
 }
 
-/// Reason for rejecting a cache.
-struct Unusable {
-  std::string reason;
-};
-
-/// Throws `Unusable` unless the bytes are a complete cache of this program from these sources.
-inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& program, const Fingerprint& key) {
+/// Defect of bytes as a cache of this program from these sources; null if they are complete.
+[[nodiscard]] inline const char* defect_of(std::span<const std::byte> bytes, const Fingerprint& program,
+                                           const Fingerprint& key) {
+  const CacheHeader own;
   CacheHeader header;
-  if (bytes.size() < sizeof header) throw Unusable{"is truncated"};
+  if (bytes.size() < sizeof header) return "is truncated";
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.mark != CacheHeader::own_mark) throw Unusable{"is not a scene cache"};
-  if (header.order != CacheHeader::own_order || header.format != CacheHeader::own_format || header.program != program)
-    throw Unusable{"was written by another version of the program, or for other shapes"};
-  if (header.size != bytes.size()) throw Unusable{"is truncated, or has grown"};
-  if (header.key != key) throw Unusable{"is out of date: a source or a setting has changed"};
+  if (header.mark != own.mark) return "is not a scene cache";
+  if (header.order != own.order || header.format != own.format || header.program != program)
+    return "was written by another version of the program, or for other shapes";
+  if (header.size != bytes.size()) return "is truncated, or has grown";
+  if (header.key != key) return "is out of date: a source or a setting has changed";
   Digest rest;
   rest.add(bytes.subspan(sizeof header));
-  if (header.checksum != checksum_of(header, rest)) throw Unusable{"is damaged: its checksum is wrong"};
+  return header.checksum != checksum_of(header, rest) ? "is damaged: its checksum is wrong" : nullptr;
 }
 
-/// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's
-/// `SettingError`.
+/// Parts in a checked cache, which `owner` keeps alive. @throws ArchiveError @throws SettingError
 template <class P>
 [[nodiscard]] std::vector<P> parts_in(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) {
   ArchiveReader reader(bytes.subspan(sizeof(CacheHeader)), std::move(owner));
@@ -206,8 +185,8 @@ template <class P>
 
 }  // namespace detail
 
-/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of
-/// each, so that files already read are not read again. Throws a `FileError` if one cannot be read.
+/// Key of the present sources. The order of the files matters, their paths do not. `content` gives
+/// the fingerprint of each, as of a file already read. @throws FileError if one cannot be read
 [[nodiscard]] inline Fingerprint scene_key(
     const SceneSources& sources,
     const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint) {
@@ -217,7 +196,7 @@ template <class P>
   return digest.value();
 }
 
-/// Writes a cache. Throws a `FileError`.
+/// Writes a cache. @throws FileError
 template <CacheableScene S>
 void save_scene(const std::filesystem::path& path, const S& scene, const Fingerprint& key) {
   const std::span<const typename S::Part> parts = scene.parts();
@@ -231,15 +210,14 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
     file.write(bytes);
   });
   writer(std::uint64_t{parts.size()});
-  for (const typename S::Part& part : parts) {
+  for (const auto& part : parts) {
     if (part.motion && !detail::Restorable<PartMotion>)
-      throw FileError(path.string(), "", "cannot be written: motions of parts are not supported");
+      detail::fail(path, "cannot be written: motions of parts are not supported");
     for (const Material& material : *part.materials)
-      if (!detail::known_law(material.law) ||
-          (material.reflectance_map && !dynamic_cast<const ReflectanceMap*>(material.reflectance_map.get())))
-        throw FileError(path.string(), "",
-                        "cannot be written: the material '" + material.name +
-                            "' has a user-defined law of scattering or map of reflectances");
+      if (const auto* const map = material.reflectance_map.get();
+          !detail::known_law(material.law) || (map && !dynamic_cast<const ReflectanceMap*>(map)))
+        detail::fail(path, "cannot be written: the material '", material.name,
+                     "' has a user-defined law of scattering or map of reflectances");
     writer(part);
   }
   header.program = detail::program_of<typename S::Part>();
@@ -250,16 +228,15 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   file.commit();
 }
 
-/// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
+/// Opens a cache; a defect is the reason of none. The scene is made of its parts and `further`.
 template <CacheableScene S, class... Further>
 [[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key,
                                         const Further&... further) {
   try {
     const auto file = std::make_shared<const MappedFile>(path);
-    detail::require_cache(file->bytes(), detail::program_of<typename S::Part>(), key);
+    const char* const defect = detail::defect_of(file->bytes(), detail::program_of<typename S::Part>(), key);
+    if (defect) return {std::nullopt, defect};
     return {S(detail::parts_in<typename S::Part>(file->bytes(), file), further...), {}};
-  } catch (const detail::Unusable& unusable) {
-    return {std::nullopt, unusable.reason};
   } catch (const FileError& error) {
     return {std::nullopt, error.problem()};
   } catch (const ArchiveError& error) {
@@ -269,9 +246,8 @@ template <CacheableScene S, class... Further>
   }
 }
 
-/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build`
-/// returns the parts; its exceptions pass through. The scene is made from its parts and `further`, as needed by a
-/// `MovingScene`.
+/// Scene from a cache; without one of these sources, of the parts that `build` returns, saved for
+/// the next time. The scene is made of its parts and `further`, as needed by a `MovingScene`.
 template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further) {

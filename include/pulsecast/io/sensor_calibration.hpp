@@ -18,10 +18,10 @@
 /// Writers and readers of the files that describe a sensor's lasers to decoders.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in radians, heights in
-/// metres. As in the files of that driver, `rot_correction` is subtracted from the azimuth, and
-/// `vert_offset_correction` is the manual's height. Source: ros-drivers/velodyne, velodyne_pointcloud, params/. @throws
-/// SettingError for another sensor @throws FileError
+/// Writes the lasers of a VLP-16 or VLP-32C as a calibration of the ROS driver, in YAML: angles in
+/// radians, heights in metres. As in the files of that driver, `rot_correction` is subtracted from
+/// the azimuth, and `vert_offset_correction` is the manual's height. Source: ros-drivers/velodyne,
+/// velodyne_pointcloud, params/. @throws SettingError for another sensor @throws FileError
 inline void write_velodyne_calibration(const std::filesystem::path& path, const SpinningSensor& sensor) {
   sensor.validate();
   detail::VelodyneFormat::validate(sensor);
@@ -29,38 +29,38 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   file.write("lasers:\n");
   for (std::size_t k = 0; k < sensor.lasers.size(); ++k) {
     const SensorLaser& laser = sensor.lasers[k];
-    file.write(text::joined(
-        {"- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, focal_distance: 0.0, focal_slope: "
-         "0.0, horiz_offset_correction: 0.0, laser_id: ",
-         std::to_string(k), ", rot_correction: ", text::to_text(0 - laser.azimuth), ", vert_correction: ",
-         text::to_text(laser.elevation), ", vert_offset_correction: ", text::to_text(laser.height), "}\n"}));
+    file.write(
+        text::message("- {dist_correction: 0.0, dist_correction_x: 0.0, dist_correction_y: 0.0, "
+                      "focal_distance: 0.0, focal_slope: 0.0, horiz_offset_correction: 0.0, laser_id: ",
+                      k, ", rot_correction: ", 0 - laser.azimuth, ", vert_correction: ", laser.elevation,
+                      ", vert_offset_correction: ", laser.height, "}\n"));
   }
-  file.write(text::joined({"num_lasers: ", std::to_string(sensor.lasers.size()), "\ndistance_resolution: ",
-                           text::to_text(detail::VelodyneFormat::distance_resolution(sensor)), "\n"}));
+  file.write(text::message("num_lasers: ", sensor.lasers.size(),
+                           "\ndistance_resolution: ", detail::VelodyneFormat::distance_resolution(sensor), "\n"));
   file.commit();
 }
 
-/// Sensor of a data sheet with the angles and heights of a unit's calibration, as `write_velodyne_calibration`
-/// describes it. Corrections of distances and to the side must be 0, as packets do not contain them.
-/// @throws SettingError for the sheet of another sensor @throws FileError with the line of the first error
+/// Sensor of a data sheet with the angles and heights of a file as of `write_velodyne_calibration`,
+/// whose corrections of distances and to the side must be 0, as packets have none. @throws
+/// SettingError for the sheet of another sensor @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_velodyne_calibration(const std::filesystem::path& path, SpinningSensor sheet) {
   detail::VelodyneFormat::validate(sheet);
   const detail::CalibrationFile file(path, "a Velodyne calibration");
   const std::size_t count = sheet.lasers.size();
-  file.number(file.at(file.root(), "num_lasers"), "num_lasers", static_cast<double>(count), static_cast<double>(count));
+  const auto all = static_cast<double>(count);
+  file.number(file.at(file.root(), "num_lasers"), "num_lasers", all, all);
   if (const auto resolution = file.find(file.root(), "distance_resolution")) {
     const double own = detail::VelodyneFormat::distance_resolution(sheet);
     file.number(*resolution, "distance_resolution", own, own);
   }
   const YAML::Node lasers = file.at(file.root(), "lasers");
-  if (!lasers.IsSequence() || lasers.size() != count)
-    file.fail(lasers, "lasers is no list of " + std::to_string(count));
+  if (!lasers.IsSequence() || lasers.size() != count) file.fail(lasers, "lasers is no list of ", count);
   std::vector<bool> is_known(count);
   for (const YAML::Node& laser : lasers) {
     const auto number = [&](const char* name, double most) {
       return file.number(file.at(laser, name), name, -most, most);
     };
-    const double id = file.number(file.at(laser, "laser_id"), "laser_id", 0, static_cast<double>(count) - 1);
+    const double id = file.number(file.at(laser, "laser_id"), "laser_id", 0, all - 1);
     const auto k = static_cast<std::size_t>(id);
     if (static_cast<double>(k) != id || is_known[k]) file.fail(laser, "expected each laser_id once");
     is_known[k] = true;
@@ -74,21 +74,9 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   return sheet;
 }
 
-namespace detail {
-
-/// JSON list of numbers, rounded to 9 decimals.
-[[nodiscard]] inline std::string json_list(const std::vector<double>& values) {
-  std::string list;
-  for (const double value : values)
-    list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
-  return list + "]";
-}
-
-}  // namespace detail
-
-/// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without sections, which Ouster's
-/// software reads of all firmware. Angles of the azimuth are positive to the right, as the manual's formula has them.
-/// @throws SettingError for another sensor @throws FileError
+/// Writes the metadata of an OS1-64 with packets of these settings, in JSON: the form without
+/// sections, which Ouster's software reads of all firmware. Azimuths are positive to the right, as
+/// in the manual's formula. @throws SettingError for another sensor @throws FileError
 inline void write_ouster_metadata(const std::filesystem::path& path, const SpinningSensor& sensor,
                                   const PacketSettings& settings = {}) {
   sensor.validate();
@@ -102,33 +90,35 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   }
   const double least = *std::min_element(shifts.begin(), shifts.end());
   for (double& shift : shifts) shift -= least;
-  const std::string width = std::to_string(columns);
+  const auto list_of = [](const std::vector<double>& values) {  // rounded to 9 decimals
+    std::string list;
+    for (const double value : values)
+      list += (list.empty() ? "[" : ", ") + text::to_text(std::nearbyint(value * 1e9) / 1e9);
+    return list + "]";
+  };
+  using Format = detail::OusterFormat;
+  const double lens_radius = std::nearbyint(1e12 * sensor.exit_radius) / 1e9, height = sensor.lasers.front().height;
   const bool is_dual = settings.returns == PacketReturns::dual;
   OutputFile file(path);
-  file.write(text::joined({"{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", width, "x",
-                           text::to_text(sensor.rotation_rate),
-                           "\",\n  \"udp_port_lidar\": ", std::to_string(detail::OusterFormat::port), ",\n"}));
-  file.write(text::joined(
-      {"  \"beam_altitude_angles\": ", detail::json_list(altitudes),
-       ",\n  \"beam_azimuth_angles\": ", detail::json_list(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ",
-       text::to_text(std::nearbyint(1e12 * sensor.exit_radius) / 1e9), ",\n  \"lidar_to_sensor_transform\": ",
-       detail::json_list({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * sensor.lasers.front().height, 0, 0, 0, 1}), ",\n"}));
-  file.write(text::joined(
-      {"  \"data_format\": {\n    \"columns_per_frame\": ", width,
-       ",\n    \"columns_per_packet\": ", std::to_string(detail::OusterFormat::packet_columns),
-       ",\n    \"pixels_per_column\": ", std::to_string(detail::OusterFormat::lasers), ",\n    \"column_window\": [0, ",
-       std::to_string(columns - 1), "],\n    \"pixel_shift_by_row\": ", detail::json_list(shifts),
-       ",\n    \"udp_profile_lidar\": \"", is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"}));
+  file.write(text::message(
+      "{\n  \"prod_line\": \"OS-1-64\",\n  \"lidar_mode\": \"", columns, "x", sensor.rotation_rate,
+      "\",\n  \"udp_port_lidar\": ", Format::port, ",\n  \"beam_altitude_angles\": ", list_of(altitudes),
+      ",\n  \"beam_azimuth_angles\": ", list_of(azimuths), ",\n  \"lidar_origin_to_beam_origin_mm\": ", lens_radius,
+      ",\n  \"lidar_to_sensor_transform\": ", list_of({-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1e3 * height, 0, 0, 0, 1}),
+      ",\n  \"data_format\": {\n    \"columns_per_frame\": ", columns,
+      ",\n    \"columns_per_packet\": ", Format::packet_columns, ",\n    \"pixels_per_column\": ", Format::lasers,
+      ",\n    \"column_window\": [0, ", columns - 1, "],\n    \"pixel_shift_by_row\": ", list_of(shifts),
+      ",\n    \"udp_profile_lidar\": \"", is_dual ? "RNG19_RFL8_SIG16_NIR16_DUAL" : "LEGACY", "\"\n  }\n}\n"));
   file.commit();
 }
 
-/// OS1-64 with the angles, lenses, columns and rate of a unit's metadata, of the form without sections or the later one
-/// with them; all else is of the data sheet. @throws FileError with the line of the first error
+/// OS1-64 with the angles, lenses, columns and rate of a unit's metadata, without or with sections;
+/// all else is of the data sheet. @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path) {
   const detail::CalibrationFile file(path, "the metadata of an Ouster sensor");
   const YAML::Node line = file.at(file.section("sensor_info"), "prod_line");
   const std::string model = file.word(line, "prod_line");
-  if (!model.starts_with("OS-1-64")) file.fail(line, "prod_line is " + text::quoted(model) + ": expected OS-1-64");
+  if (!model.starts_with("OS-1-64")) file.fail(line, "prod_line is ", text::quoted(model), ": expected OS-1-64");
 
   const YAML::Node mode = file.at(file.section("config_params"), "lidar_mode");
   const std::string word = file.word(mode, "lidar_mode");
@@ -136,15 +126,15 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const auto columns = text::number_in<unsigned>(text::take_word(rest, "x"));
   const auto rate = text::number_in<unsigned>(rest);
   if ((columns != 512 && columns != 1024 && columns != 2048) || !rate || *rate < 1 || *rate > 100)
-    file.fail(mode, "lidar_mode is " + text::quoted(word) + ": expected columns and rate, as 1024x10");
+    file.fail(mode, "lidar_mode is ", text::quoted(word), ": expected columns and rate, as 1024x10");
   SpinningSensor sensor = ouster_os1_64(*columns, *rate);
 
   const std::size_t count = sensor.lasers.size();
   const auto angles = [&](const char* name, double most) {
     return file.numbers(file.at(file.section("beam_intrinsics"), name), name, count, -most, most);
   };
-  const std::vector<double> altitudes = angles("beam_altitude_angles", 90),
-                            azimuths = angles("beam_azimuth_angles", 180);
+  const std::vector<double> altitudes = angles("beam_altitude_angles", 90);
+  const std::vector<double> azimuths = angles("beam_azimuth_angles", 180);
   for (std::size_t k = 0; k < count; ++k) {
     sensor.lasers[k].elevation = altitudes[k] * pi / 180;
     sensor.lasers[k].azimuth = azimuths[k] * pi / 180;
@@ -154,7 +144,9 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
     sensor.exit_radius = 1e-3 * file.number(*radius, lenses, 0, 1000);
   constexpr const char* place = "lidar_to_sensor_transform";
   if (const auto transform = file.find(file.section("lidar_intrinsics"), place))
-    for (SensorLaser& laser : sensor.lasers) laser.height = 1e-3 * file.numbers(*transform, place, 16, -1000, 1000)[11];
+    for (const double height = 1e-3 * file.numbers(*transform, place, 16, -1000, 1000)[11];
+         SensorLaser & laser : sensor.lasers)
+      laser.height = height;
   return sensor;
 }
 

@@ -20,20 +20,20 @@ enum class ReflectanceScale : std::uint8_t { fraction, percent };
 /// Content of a spectrum file.
 struct SpectrumFile {
   std::shared_ptr<const Spectrum> spectrum;             ///< reflectance by wavelength, as fractions
-  ReflectanceScale scale = ReflectanceScale::fraction;  ///< unit in the file; the spectrum itself has fractions
-  std::string report{};                                 ///< units assumed for the columns, and the reason
+  ReflectanceScale scale = ReflectanceScale::fraction;  ///< unit in the file
+  std::string report{};                                 ///< units assumed for the columns, and reasons
   std::vector<std::string> warnings{};                  ///< oddities that could still be read
 };
 
-/// Reads a text of two columns, wavelength and reflectance, with any header and further columns; rows in any order.
-/// Rows without a value, also -1.23e34 of the USGS, are left out. Units come from the header, as in the ECOSTRESS and
-/// ASTER libraries ("X Units:", "Y Units:"), or from column titles in the line above the numbers. Otherwise wavelengths
-/// that begin at 100 or more are nanometres, below 0.01 metres, and micrometres between; reflectances above 1.5 are
-/// percent. The report states units and reasons. Throws a `FileError` with path and line at the first error.
+/// Reads a text of wavelength and reflectance, with any header and further columns, in rows of any
+/// order. Those without a value, also -1.23e34 of the USGS, are left out. Units are those of the
+/// header, as of ECOSTRESS and ASTER ("X Units:", "Y Units:"), or of titles above the numbers. Else
+/// wavelengths from 100 on are nanometres, below 0.01 metres, and micrometres between; reflectances
+/// above 1.5 are percent. Throws a `FileError` with path and line at the first error.
 [[nodiscard]] SpectrumFile read_spectrum(const std::filesystem::path& path);
 
-/// Reads a file, or all files of a folder. A spectrum is named like its file without the extension; files without one
-/// are left out with a warning. Throws a `FileError` if there is no spectrum at all.
+/// Reads a file, or all files of a folder; those without a spectrum are left out with a warning. A
+/// spectrum is named as its file without the extension. @throws FileError without any spectrum
 [[nodiscard]] SpectralLibrary read_spectral_library(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
@@ -41,10 +41,11 @@ struct SpectrumFile {
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -55,28 +56,26 @@ enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenum
 
 /// True if a text contains a word that is not part of a longer one.
 [[nodiscard]] inline bool has_word(std::string_view text, std::string_view word) {
-  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
-  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end]))) return true;
-  }
+  const auto is_letter = [&](std::size_t i) { return i < text.size() && text[i] >= 'a' && text[i] <= 'z'; };
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1))
+    if (!is_letter(at - 1) && !is_letter(at + word.size())) return true;
   return false;
 }
 
 [[nodiscard]] inline std::optional<WavelengthUnit> wavelength_unit_in(std::string_view text) {
-  if (text.find("wavenumber") != text.npos || text.find("cm-1") != text.npos) return WavelengthUnit::wavenumber;
-  for (const std::string_view word : {"micromet", "micron"})
-    if (text.find(word) != text.npos) return WavelengthUnit::micrometre;
-  if (text.find("nanomet") != text.npos || has_word(text, "nm")) return WavelengthUnit::nanometre;
-  for (const std::string_view word : {"um", "\xC2\xB5m", "\xCE\xBCm", "\xB5m"})  // two micro signs, and that of Latin-1
+  const auto has = [&](std::string_view part) { return text.find(part) != text.npos; };
+  if (has("wavenumber") || has("cm-1")) return WavelengthUnit::wavenumber;
+  if (has("micromet") || has("micron")) return WavelengthUnit::micrometre;
+  if (has("nanomet") || has_word(text, "nm")) return WavelengthUnit::nanometre;
+  for (const std::string_view word : {"um", "\xC2\xB5m", "\xCE\xBCm", "\xB5m"})  // micro signs
     if (has_word(text, word)) return WavelengthUnit::micrometre;
   return std::nullopt;
 }
 
 [[nodiscard]] inline std::optional<ReflectanceScale> reflectance_scale_in(std::string_view text) {
-  if (text.find("percent") != text.npos || text.find('%') != text.npos) return ReflectanceScale::percent;
-  if (text.find("fraction") != text.npos || text.find("0-1") != text.npos) return ReflectanceScale::fraction;
-  return std::nullopt;
+  const auto has = [&](std::string_view part) { return text.find(part) != text.npos; };
+  if (has("percent") || has("%")) return ReflectanceScale::percent;
+  return has("fraction") || has("0-1") ? std::optional(ReflectanceScale::fraction) : std::nullopt;
 }
 
 class SpectrumReader {
@@ -88,10 +87,11 @@ class SpectrumReader {
     if (samples_.empty()) table_.fail("holds no row of two numbers: expected wavelength and reflectance, side by side");
     if (!unit_ || !scale_) titles();
     SpectrumFile file;
-    file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
+    const std::string wavelengths = take_wavelengths();
+    file.report = warning(table_.path(), 0, wavelengths, "; ", take_reflectances(file.scale));
     std::ranges::stable_sort(samples_, {}, &Row::wavelength);
     file.spectrum = std::make_shared<const Spectrum>(united());
-    file.warnings = std::move(warnings_);
+    file.warnings = std::move(table_.warnings);
     return file;
   }
 
@@ -101,34 +101,29 @@ class SpectrumReader {
     std::size_t line = 0;
   };
 
-  /// Number, or empty where marked as missing; `is_cell` is false for anything else.
-  struct Cell {
-    std::optional<double> number;
-    bool is_cell;
-  };
-
-  static Cell cell(std::string_view word) {
+  /// Number, NaN where marked as missing; empty for anything else.
+  static std::optional<double> cell(std::string_view word) {
     const std::optional<double> number = text::finite_number_in(word);
-    if (number && *number > -1e30) return {number, true};
-    return {std::nullopt, number || text::is_same_word(word, "nan") || text::is_same_word(word, "na")};
+    const bool is_missing =
+        number ? *number <= -1e30 : text::is_same_word(word, "nan") || text::is_same_word(word, "na");
+    return is_missing ? std::numeric_limits<double>::quiet_NaN() : number;
   }
 
   void row() {
     static constexpr std::string_view separators = " \t,;";
     const std::string_view text = table_.text();
     std::string_view rest = text;
-    const std::optional<double> wavelength = text::finite_number_in(text::take_word(rest, separators));
-    const Cell reflectance = cell(text::take_word(rest, separators));
-    if (!wavelength || !reflectance.is_cell) {
+    const auto wavelength = text::finite_number_in(text::take_word(rest, separators));
+    const std::optional<double> reflectance = cell(text::take_word(rest, separators));
+    if (!wavelength || !reflectance) {
       if (begun_ && !text.starts_with('#') && !text.starts_with("//"))
-        table_.fail_here(text::quoted(text) + ": expected wavelength and reflectance, two numbers");
+        table_.refuse(text, "wavelength and reflectance, two numbers");
       if (!begun_) header(text);
       return;
     }
     begun_ = true;
-    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12))
-      table_.fail_here(text::quoted(text) + ": expected a wavelength greater than 0");
-    if (reflectance.number) samples_.push_back({{*wavelength, *reflectance.number}, table_.line()});
+    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12)) table_.refuse(text, "a wavelength greater than 0");
+    if (!std::isnan(*reflectance)) samples_.push_back({{*wavelength, *reflectance}, table_.line()});
   }
 
   void header(std::string_view text) {
@@ -140,8 +135,7 @@ class SpectrumReader {
     if (!is_key("y units:")) return;
     scale_ = reflectance_scale_in(line);
     scale_line_ = table_.line();
-    if (line.find("reflect") == line.npos)
-      table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
+    if (line.find("reflect") == line.npos) table_.refuse(text, "a spectrum of reflectance");
   }
 
   /// Takes units from the line above the numbers if no key named them.
@@ -153,7 +147,6 @@ class SpectrumReader {
   }
 
   std::string take_wavelengths() {
-    static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
     const auto [low, high] = std::ranges::minmax_element(samples_, {}, &Row::wavelength);
     const double shortest = low->wavelength;
     const bool given = unit_.has_value();
@@ -161,39 +154,40 @@ class SpectrumReader {
       unit_ = shortest >= 100   ? WavelengthUnit::nanometre
               : shortest < 0.01 ? WavelengthUnit::metre
                                 : WavelengthUnit::micrometre;
-    const std::string range = text::to_text(shortest) + " to " + text::to_text(high->wavelength);
+    const std::string range = text::message(shortest, " to ", high->wavelength);
+    static constexpr std::array<const char*, 4> names{"metres", "micrometres", "nanometres", "waves per centimetre"};
+    static constexpr std::array<double, 4> metres{1, 1e-6, 1e-9, 0.01};
+    const auto unit = static_cast<std::size_t>(*unit_);
+    std::size_t odd = 0;  // line of the first odd wavelength
     for (Row& sample : samples_) {
       double& w = sample.wavelength;
-      w = *unit_ == WavelengthUnit::metre        ? w
-          : *unit_ == WavelengthUnit::micrometre ? w * 1e-6
-          : *unit_ == WavelengthUnit::nanometre  ? w * 1e-9
-                                                 : 0.01 / w;
-      if (odd_ == 0 && (w < 1e-7 || w > 1e-3)) odd_ = sample.line;
+      w = *unit_ == WavelengthUnit::wavenumber ? metres[unit] / w : w * metres[unit];
+      if (odd == 0 && (w < 1e-7 || w > 1e-3)) odd = sample.line;
     }
-    const std::string name = names[static_cast<std::size_t>(*unit_)];
-    if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all between 100 nm and 1 mm");
-    return "wavelengths in " + name + (given ? ", by the header" : ", by the values " + range);
+    const char* const name = names[unit];
+    if (odd > 0) table_.warn(odd, "its wavelengths, ", range, " ", name, ", are not all between 100 nm and 1 mm");
+    return text::message("wavelengths in ", name, given ? ", by the header" : ", by the values " + range);
   }
 
   std::string take_reflectances(ReflectanceScale& scale) {
     const double largest = std::ranges::max_element(samples_, {}, &Row::reflectance)->reflectance;
-    const std::string reach = "its values reach " + text::to_text(largest);
+    const std::string reach = text::message("its values reach ", largest);
     const bool many = largest > 1.5;
     const bool given = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
     scale = given ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;
     const bool percent = scale == ReflectanceScale::percent;
-    if (scale_ && !given) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
-    if (percent && largest <= 1) warn(scale_line_, "its header says percent, but " + reach + " only");
+    if (scale_ && !given)
+      table_.warn(scale_line_, "its header says fraction, but ", reach, ": they are taken as percent");
+    if (percent && largest <= 1) table_.warn(scale_line_, "its header says percent, but ", reach, " only");
     Oddity clipped;
     for (Row& sample : samples_) {
       const double fraction = percent ? sample.reflectance / 100 : sample.reflectance;
       sample.reflectance = std::clamp(fraction, 0.0, 1.0);
       if (sample.reflectance != fraction) clipped.at(sample.line);
     }
-    if (clipped.count > 0)
-      warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
-    return std::string("reflectance in ") + (percent ? "percent" : "fractions") +
-           (given ? ", by the header" : ", as " + reach);
+    table_.warn(clipped, "a reflectance below 0 or above 1 is clipped");
+    return text::message("reflectance in ", percent ? "percent" : "fractions",
+                         given ? ", by the header" : ", as " + reach);
   }
 
   /// Samples with those of equal wavelength averaged.
@@ -209,14 +203,8 @@ class SpectrumReader {
       if (end - i > 1) repeated.at(samples_[i + 1].line);
       i = end;
     }
-    if (repeated.count > 0)
-      warn(repeated.first,
-           "a wavelength is repeated, the first of " + std::to_string(repeated.count) + ": the mean is used");
+    table_.warn(repeated, "a wavelength is repeated", ": the mean is used");
     return all;
-  }
-
-  void warn(std::size_t line, const std::string& text) {
-    warnings_.push_back(table_.path() + ", line " + std::to_string(line) + ": " + text);
   }
 
   TextTable table_;
@@ -225,8 +213,7 @@ class SpectrumReader {
   std::optional<ReflectanceScale> scale_;
   std::string titles_;  // last line of the header, in small letters
   std::size_t titles_line_ = 0;
-  std::vector<std::string> warnings_;
-  std::size_t scale_line_ = 0, odd_ = 0;  // lines of the header's scale, and of the first odd wavelength
+  std::size_t scale_line_ = 0;  // line of the header's scale
   bool begun_ = false;
 };
 
@@ -258,8 +245,7 @@ PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::pa
       library.warnings.push_back(std::string(unreadable.what()) + "; it is left out");
     }
   }
-  if (library.spectra.empty())
-    throw FileError(path.string(), "", "holds no spectrum: expected files of wavelength and reflectance");
+  if (library.spectra.empty()) detail::fail(path, "holds no spectrum: expected files of wavelength and reflectance");
   return library;
 }
 

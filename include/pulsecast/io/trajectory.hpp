@@ -8,9 +8,6 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/detail/trajectory/attitude.hpp>
-#include <pulsecast/io/detail/trajectory/columns.hpp>
-#include <pulsecast/io/detail/trajectory/format.hpp>
 #include <pulsecast/io/detail/trajectory/table.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>
@@ -24,11 +21,10 @@ struct TrajectoryFileSettings {
   void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
-/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and `duration`.
-template <class Record>
-void for_each_record(const Tick& duration, double interval, const Record& record) {
+/// Calls `record` with record times of a leg: multiples of `interval` [s] from 0, and `duration`.
+void for_each_record(const Tick& duration, double interval, const auto& record) {
   const double end = duration.seconds();
-  constexpr double least = 0.5e-9;  // records this close would show the same time, and are one [s]
+  constexpr double least = 0.5e-9;  // records this close have the same time in the file [s]
   for (std::uint64_t i = 0; end - static_cast<double>(i) * interval > least; ++i)
     record(Tick::of_seconds(static_cast<double>(i) * interval));
   record(duration);
@@ -38,9 +34,9 @@ void for_each_record(const Tick& duration, double interval, const Record& record
 ///
 ///     x y z gpsTime roll pitch yaw
 ///
-/// x, y, z [m] and the angles [deg, as `helios_canonical`] have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360).
-/// There is no header line. These are the columns of HELIOS++ trajectory files, read by `helios_output_format`. Only
-/// `close()` completes the file: see `OutputFile`.
+/// x, y, z [m] and the angles [deg, as `helios_canonical`] have 4 decimals, gpsTime [s] has 9; yaw
+/// is in [0, 360). There is no header line. HELIOS++ writes these columns, too;
+/// `helios_output_format` reads them. Only `close()` completes the file: see `OutputFile`.
 class TrajectoryWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -56,19 +52,16 @@ class TrajectoryWriter {
     }
     const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, helios_canonical);
     const double yaw_deg = degrees(angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw);
-    row_.add(pose.position.x, 4)
-        .add(pose.position.y, 4)
-        .add(pose.position.z, 4)
-        .add(settings_.start_time + tick.seconds(), 9);
-    row_.add(degrees(angles.roll), 4)
-        .add(degrees(angles.pitch), 4)
-        .add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
+    const Vec3 p = pose.position;
+    row_.add(p.x, 4).add(p.y, 4).add(p.z, 4).add(settings_.start_time + tick.seconds(), 9);
+    row_.add(degrees(angles.roll), 4).add(degrees(angles.pitch), 4);
+    row_.add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
     file_.write(row_.end());
     ++records_;
   }
 
-  /// Adds a leg that begins at `start` in the survey's time. The trajectory is sampled in its own time: at multiples of
-  /// `interval` [s] from 0, and at the end, `duration`. Throws a `SettingError` unless `interval` is positive.
+  /// Adds a leg that begins at `start` in the survey's time, sampled at multiples of `interval` [s]
+  /// from its start, and at `duration`. @throws SettingError unless `interval` is positive
   void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
     require_positive("TrajectoryWriter::add interval", interval, "s");
     for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
@@ -94,7 +87,7 @@ namespace detail {
     const std::optional<TrajectoryColumn>& column = columns.all()[i];
     if (!column) continue;
     if (column->quantity == Quantity::time) time = std::to_string(place);
-    if (place++ > 0) names += in_comments ? std::string(", ") : std::string(1, format.separator);
+    if (place++ > 0) names += in_comments ? ", " : std::string(1, format.separator);
     names += in_comments ? '"' + format.columns[i] + '"' : format.columns[i];
   }
   return in_comments ? "#TIME_COLUMN: " + time + "\n#HEADER: " + names + '\n' : names + '\n';
@@ -114,15 +107,15 @@ namespace detail {
 
 }  // namespace detail
 
-/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of
-/// time, with a jump's time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for
-/// unordered, too large or non-unit poses.
+/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi).
+/// Poses are in order of time, with a jump's time twice; `start_time` [s] is added to times.
+/// @throws SettingError @throws FileError for unordered, too large or non-unit poses
 inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
                              const TrajectoryFormat& format = csv_format(), double start_time = 0) {
   format.validate();
   require_finite("write_trajectory start_time", start_time, "s");
   const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
-  if (poses.empty()) throw FileError(path.string(), "", "cannot be written: expected at least one pose");
+  if (poses.empty()) detail::fail(path, "cannot be written: expected at least one pose");
   OutputFile file(path);
   file.write(detail::head_of(format, columns));
   TextRow row(format.separator);
@@ -133,10 +126,9 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
     const bool in_order = i == 0 || time > start_time + poses[i - 1].time || pose.time == poses[i - 1].time;
     if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
         !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)
-      throw FileError(path.string(), "",
-                      "pose " + std::to_string(i) +
-                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not "
-                          "before the last one's");
+      detail::fail(path, "pose ", i,
+                   " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not "
+                   "before the last one's");
     const QuantityValues values = detail::values_of(pose, format, start_time);
     for (const std::optional<TrajectoryColumn>& column : columns.all())
       if (column) row.add(values[column->quantity] * column->per_si);

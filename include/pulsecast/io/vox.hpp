@@ -24,9 +24,9 @@ enum class VoxelUse : std::uint8_t {
 /// Settings for voxel files.
 struct VoxelFileSettings {
   VoxelUse use = VoxelUse::transmissive;  ///< use of the voxels
-  double exponent = 0.5;  ///< of scaled cubes: their edge is (PAD / PADmax)^exponent times that of the cell
-  std::optional<double> density_max = std::nullopt;   ///< PADmax; by default from the file, or its maximum [m^2/m^3]
-  std::optional<std::uint64_t> shift = std::nullopt;  ///< seed of random shifts of scaled cubes in their cells; or none
+  double exponent = 0.5;                  ///< edges of scaled cubes: (PAD / PADmax)^exponent of the cell's
+  std::optional<double> density_max{};    ///< PADmax; by default by the file, or its maximum [m^2/m^3]
+  std::optional<std::uint64_t> shift{};   ///< seed of random shifts of scaled cubes in cells; or none
 
   void validate() const {
     require_not_negative("VoxelFileSettings::exponent", exponent, "");
@@ -37,21 +37,21 @@ struct VoxelFileSettings {
 /// Content of a voxel file.
 struct VoxelFile {
   VoxelData voxels;                   ///< with densities, or with scales and shifts, by use
-  std::vector<float> transmittances;  ///< for each voxel, NaN where unknown; none without such a column
+  std::vector<float> transmittances;  ///< for each voxel, NaN where unknown; or empty
   double density_max = 0;             ///< PADmax: as set, from the file, or its maximum [m^2/m^3]
   std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`. Lines of `#key: value` follow in any order, then
-/// a row of column names, and a row for each voxel. Required keys are `min_corner` and `res` (one edge length, as
-/// voxels are cubes). Required columns are i, j, k and PadBVTotal; for opaque and scaled voxels also transmittance.
-/// Left out of the grid are
+/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`. Lines of `#key: value`
+/// follow in any order, then a row of column names, and a row for each voxel. Required keys are
+/// `min_corner` and `res` (one edge length, as voxels are cubes); required columns i, j, k and
+/// PadBVTotal, for opaque and scaled voxels also transmittance. Left out of the grid are
 /// - transmissive voxels of density 0, or, with a warning, NaN;
 /// - opaque and scaled voxels of transmittance 1 (fully transparent) or NaN (never observed);
 /// - scaled voxels of density 0, and so of size 0, or, with a warning, NaN.
-/// Shifts of scaled cubes are uniform within their cells, and depend on the seed and the cell alone. Throws a
-/// `FileError` with path and line at the first error, and if no voxel is left. Source of the format and of the three
-/// uses: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
+/// Shifts of scaled cubes are uniform within their cells, and depend on the seed and the cell
+/// alone. Throws a `FileError` with path and line at the first error, and if no voxel is left.
+/// Source: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
 [[nodiscard]] VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings = {});
 
 }  // namespace PULSECAST_NAMESPACE::io
@@ -65,7 +65,6 @@ struct VoxelFile {
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -78,7 +77,7 @@ class VoxelFileReader {
 
   [[nodiscard]] VoxelFile read() && {
     if (!table_.next() || table_.text() != "VOXEL SPACE")
-      table_.fail_here(text::quoted(table_.text()) + ": expected a voxel file, which begins with 'VOXEL SPACE'");
+      table_.refuse(table_.text(), "a voxel file, which begins with 'VOXEL SPACE'");
     for (;;) {
       if (!table_.next()) table_.fail("has no row of column names: expected 'i j k PadBVTotal ...'");
       if (!table_.text().starts_with('#')) break;
@@ -86,13 +85,9 @@ class VoxelFileReader {
     }
     name_columns();
     check_keys();
-    while (table_.next())
-      if (table_.text().starts_with('#')) {
-        keys();
-      } else {
-        row();
-      }
+    while (table_.next()) table_.text().starts_with('#') ? keys() : row();
     finish();
+    file_.warnings = std::move(table_.warnings);
     return std::move(file_);
   }
 
@@ -108,7 +103,7 @@ class VoxelFileReader {
       const std::size_t colon = entry.find_first_of(":=");
       if (colon == entry.npos) continue;
       std::string key = text::lower(entry.substr(0, colon));
-      key.erase(std::remove(key.begin(), key.end(), ' '), key.end());
+      std::erase(key, ' ');
       const std::string_view value = entry.substr(colon + 1);
       if (key == "min_corner") {
         min_corner_ = vector(key, value);
@@ -116,15 +111,15 @@ class VoxelFileReader {
         max_corner_ = vector(key, value);
       } else if (key == "split") {
         split_ = vector(key, value);
-        for (int axis = 0; axis < 3; ++axis)
-          if (!((*split_)[axis] >= 1 && (*split_)[axis] <= 0x1p32 && std::floor((*split_)[axis]) == (*split_)[axis]))
-            table_.fail_here("'split' is " + text::quoted(value) + ": expected three whole numbers from 1 to 2^32");
+        for (const double count : numbers(value))
+          if (!(count >= 1 && count <= 0x1p32 && std::floor(count) == count))
+            table_.fail_here("'split' is ", text::quoted(value), ": expected three whole numbers from 1 to 2^32");
       } else if (key == "res") {
         resolution(value);
       } else if (key == "max_pad") {
         const std::vector<double> given = numbers(value);
         if (given.size() != 1 || !(given[0] > 0))
-          table_.fail_here("'max_pad' is " + text::quoted(value) + ": expected a number above 0");
+          table_.fail_here("'max_pad' is ", text::quoted(value), ": expected a number above 0");
         max_pad_ = given[0];
       }
     }
@@ -132,10 +127,10 @@ class VoxelFileReader {
 
   void resolution(std::string_view value) {
     const std::vector<double> given = numbers(value);
-    if ((given.size() != 1 && given.size() != 3) || !(*std::min_element(given.begin(), given.end()) > 0))
-      table_.fail_here("'res' is " + text::quoted(value) + ": expected the edge of a voxel [m], above 0");
+    if ((given.size() != 1 && given.size() != 3) || !(std::ranges::min(given) > 0))
+      table_.fail_here("'res' is ", text::quoted(value), ": expected the edge of a voxel [m], above 0");
     if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
-      table_.fail_here("'res' is " + text::quoted(value) + ": expected voxels that are cubes");
+      table_.fail_here("'res' is ", text::quoted(value), ": expected voxels that are cubes");
     edge_ = given[0];
     edge_line_ = table_.line();
   }
@@ -143,7 +138,7 @@ class VoxelFileReader {
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
     const std::vector<double> given = numbers(value);
     if (given.size() != 3)
-      table_.fail_here("'" + key + "' is " + text::quoted(value) + ": expected three numbers within 1e12");
+      table_.fail_here("'", key, "' is ", text::quoted(value), ": expected three numbers within 1e12");
     return {given[0], given[1], given[2]};
   }
 
@@ -162,22 +157,17 @@ class VoxelFileReader {
 
   void name_columns() {
     const std::vector<std::string_view>& names = table_.cells();
-    const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
-      const auto found = std::find(names.begin(), names.end(), name);
-      return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
-    };
-    const auto need = [&](std::string_view name) {
-      const std::optional<std::size_t> column = find(name);
-      if (!column)
-        table_.fail_here("no column is named '" + std::string(name) +
-                         "': expected a row of names, as 'i j k PadBVTotal ...'");
-      return *column;
-    };
-    index_ = {need("i"), need("j"), need("k")};
-    density_ = need("PadBVTotal");
-    transmittance_ =
-        settings_.use == VoxelUse::transmissive ? find("transmittance") : std::optional(need("transmittance"));
     columns_ = names.size();
+    const auto find = [&](std::string_view name, bool needed = true) {
+      const auto column = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+      if (column == columns_ && needed)
+        table_.fail_here("no column is named '", name, "': expected a row of names, as 'i j k PadBVTotal ...'");
+      return column;
+    };
+    index_ = {find("i"), find("j"), find("k")};
+    density_ = find("PadBVTotal");
+    const std::size_t transmittance = find("transmittance", settings_.use != VoxelUse::transmissive);
+    if (transmittance < columns_) transmittance_ = transmittance;
   }
 
   void check_keys() {
@@ -186,36 +176,31 @@ class VoxelFileReader {
     file_.voxels.corner = *min_corner_;
     file_.voxels.edge = *edge_;
     if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
-      throw FileError(table_.path(), TextTable::place(edge_line_),
-                      "'res' is " + text::to_text(*edge_) + ": expected at least " + text::to_text(least) +
-                          " at the distance of 'min_corner' from the origin");
+      fail_at(table_.path(), edge_line_, "'res' is ", *edge_, ": expected at least ", least,
+              " at the distance of 'min_corner' from the origin");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
     if (max_norm(should - *max_corner_) > *edge_ / 2)
-      file_.warnings.push_back(table_.path() +
-                               ": 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
+      table_.warn(0, "'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
   }
 
   void row() {
     const std::vector<std::string_view>& cells = table_.cells();
-    if (cells.size() < columns_)
-      table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(columns_));
+    if (cells.size() < columns_) table_.fail_here("has ", cells.size(), " columns: expected ", columns_);
     const CellNumbers::Cell cell{index(0), index(1), index(2)};
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= max_number))
-        table_.fail_here("the voxel " + to_text(cell) + " is beyond 1e12 m: expected coordinates up to 1e12 m");
-    const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
-    if (density < 0 || density > max_number)
-      table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
-    if (table_.line_is_open())
-      file_.warnings.push_back(table_.path() + ": the last line has no line end: the file may be truncated");
+    if (!(max_norm(*min_corner_ + Vec3(cell[0], cell[1], cell[2]) * *edge_) <= max_number))
+      table_.fail_here("the voxel ", to_text(cell), " is beyond 1e12 m: expected coordinates up to 1e12 m");
+    const double density = number(density_);
+    const double transmittance = transmittance_ ? number(*transmittance_) : 0;
+    if (density < 0 || density > max_number) table_.refuse(density_, "a density from 0 to 1e12");
+    if (table_.line_is_open()) table_.warn(0, "the last line has no line end: the file may be truncated");
     if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
     if (cells_.number(cell) != before)
-      table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");
+      table_.fail_here("the voxel ", to_text(cell), " is repeated: expected each voxel once");
     density_max_ = std::fmax(density_max_, density);
-    if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance))
-      return;
+    const bool is_clear = transmittance == 1 || std::isnan(transmittance);
+    if (settings_.use == VoxelUse::transmissive ? density == 0 : is_clear) return;
     if (std::isnan(density) && settings_.use != VoxelUse::opaque) return no_density_.at(table_.line());
     kept_.push_back(cell);
     densities_.push_back(static_cast<float>(density));
@@ -224,12 +209,10 @@ class VoxelFileReader {
 
   [[nodiscard]] std::uint32_t index(int axis) {
     const std::size_t column = index_[static_cast<std::size_t>(axis)];
-    const std::string_view text = table_.cells()[column];
-    const auto value = text::number_in<std::uint32_t>(text);
-    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
+    const auto value = text::number_in<std::uint32_t>(table_.cells()[column]);
+    if (!value) table_.refuse(column, "a whole number from 0 to 2^32 - 1");
     if (split_ && !(*value < (*split_)[axis]))
-      table_.fail_here(column, text::quoted(text) + ": expected less than the " + text::to_text((*split_)[axis]) +
-                                   " voxels that 'split' gives");
+      table_.refuse(column, "less than the ", (*split_)[axis], " voxels that 'split' gives");
     return *value;
   }
 
@@ -238,20 +221,20 @@ class VoxelFileReader {
     if (text::is_same_word(text, "nan") || text::is_same_word(text, "-nan"))
       return std::numeric_limits<double>::quiet_NaN();
     const std::optional<double> value = text::finite_number_in(text);
-    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a number, with a decimal point, or NaN");
+    if (!value) table_.refuse(column, "a number, with a decimal point, or NaN");
     return *value;
   }
 
   void finish() {
     file_.density_max = settings_.density_max.value_or(max_pad_.value_or(density_max_));
     if (settings_.use == VoxelUse::scaled && !settings_.density_max && !max_pad_)
-      file_.warnings.push_back(table_.path() + ": has no key 'max_pad': the largest density of its rows, " +
-                               text::to_text(density_max_) + " m^2/m^3, is that of whole cubes");
+      table_.warn(0, "has no key 'max_pad': the largest density of its rows, ", density_max_,
+                  " m^2/m^3, is that of whole cubes");
     if (settings_.use == VoxelUse::scaled) scale();
     if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
     file_.voxels.cells = std::move(kept_);
     warn(no_density_, "has no density (NaN)", "they are left out");
-    warn(too_dense_, "is denser than the maximum, " + text::to_text(file_.density_max) + " m^2/m^3",
+    warn(too_dense_, text::message("is denser than the maximum, ", file_.density_max, " m^2/m^3"),
          "they fill their cells");
     if (file_.voxels.cells.empty())
       table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"
@@ -279,8 +262,8 @@ class VoxelFileReader {
 
   /// Uniform shift that keeps the cube inside its cell, in edges of the cell.
   [[nodiscard]] std::array<float, 3> shift(const CellNumbers::Cell& cell, float size) const {
-    const auto words =
-        random_words({*settings_.shift, std::uint64_t{cell[1]} << 32 | cell[0], cell[2], Purpose::scene});
+    const std::uint64_t first = std::uint64_t{cell[1]} << 32 | cell[0];
+    const auto words = random_words({*settings_.shift, first, cell[2], Purpose::scene});
     std::array<float, 3> result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double within = (words[axis] + 0.5) * 0x1p-31 - 1;  // (-1, 1)
@@ -289,15 +272,12 @@ class VoxelFileReader {
     return result;
   }
 
-  void warn(const Oddity& oddity, const std::string& what, const std::string& consequence) {
-    if (oddity.count == 0) return;
-    const std::string place = oddity.first > 0 ? ", " + TextTable::place(oddity.first) : "";
-    file_.warnings.push_back(table_.path() + place + ": a voxel " + what + ", one of " + std::to_string(oddity.count) +
-                             ": " + consequence);
+  void warn(const Oddity& of, std::string_view what, std::string_view consequence) {
+    if (of.count > 0) table_.warn(of.first, "a voxel ", what, ", one of ", of.count, ": ", consequence);
   }
 
   [[nodiscard]] static std::string to_text(const CellNumbers::Cell& cell) {
-    return std::to_string(cell[0]) + " " + std::to_string(cell[1]) + " " + std::to_string(cell[2]);
+    return text::message(cell[0], " ", cell[1], " ", cell[2]);
   }
 
   VoxelFileSettings settings_;

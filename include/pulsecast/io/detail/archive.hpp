@@ -18,7 +18,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/image.hpp>
 
-/// Serialization of objects, whose arrays are used in place. For one program on one machine: arrays keep their layout.
+/// Serialization of objects for one program on one machine: arrays keep their layout, used in place.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Archive of other types, or inconsistent.
@@ -31,8 +31,7 @@ namespace detail {
 
 /// Archetype of archives: callable with the members of an object.
 struct ArchiveArchetype {
-  template <class... Members>
-  void operator()(Members&...) {}
+  void operator()(auto&...) {}
 };
 
 /// Type that passes its members to an archive.
@@ -45,7 +44,7 @@ concept Archivable = requires(T& object, ArchiveArchetype& archive) {
 template <class T>
 concept Restorable = std::constructible_from<T, DeserializeTag> && Archivable<T>;
 
-/// Type with an external list of members: `list_members(archive, object)`, in the namespace of the archives.
+/// Type with an external list of members: `list_members(archive, object)`, in this namespace.
 template <class T, class Archive>
 concept ExternallyArchivable = requires(T& object, Archive& archive) {
   list_members(archive, object);
@@ -75,31 +74,25 @@ template <class Item, class Element>
   return (typeid(Item).hash_code() * 31 + typeid(Element).hash_code()) * 31 + layout;
 }
 
-inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};  ///< number of an empty shared pointer
+inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};  ///< for an empty shared pointer
 
 }  // namespace detail
 
-/// Lists the members of a picture.
-template <class Archive>
-void list_members(Archive& a, Image& image) {
+void list_members(auto& a, Image& image) {
   auto& [width, height, channels, samples] = image;
   a(width, height, channels, samples);
 }
 
-/// Writes objects in sequence by a function that takes bytes, for a position in memory or a file that is a multiple of
-/// 64 bytes. Objects are plain values, `SharedArray` arrays, strings, vectors, variants, shared pointers (shared
-/// objects are written once), and types that pass their members by `template <class Archive> void archive(Archive& a) {
-/// a(member1_, member2_, ...); }`.
+/// Writes objects in sequence by a function of bytes, to a position that is a multiple of 64 bytes:
+/// plain values, `SharedArray` arrays, strings, vectors, variants, shared pointers (shared objects
+/// are written once), and types with `void archive(auto& a) { a(member1_, member2_, ...); }`.
 class ArchiveWriter {
  public:
   using Write = std::function<void(std::span<const std::byte> bytes)>;
 
   explicit ArchiveWriter(Write write) : write_(std::move(write)) {}
 
-  template <class... Items>
-  void operator()(const Items&... items) {
-    (put(items), ...);
-  }
+  void operator()(const auto&... items) { (put(items), ...); }
 
  private:
   template <class Item, class Element>
@@ -149,7 +142,7 @@ class ArchiveWriter {
     put(known->second);
     if (is_new) put(*shared);
   }
-  // `archive` serves filling and reading, so it is not const: the writer casts a constant object to call it
+  // `archive` serves reading, too, so that it is not const
   template <detail::Archivable T>
   void put(const T& object) {
     const_cast<T&>(object).archive(*this);
@@ -161,22 +154,20 @@ class ArchiveWriter {
 
   Write write_;
   std::uint64_t position_ = 0;
-  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of shared objects, by address and type
+  /// Numbers of shared objects, by address and type.
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;
 };
 
-/// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is
-/// allocated only for data present. Filled objects may check themselves: by `bool is_consistent() const`, true if all
-/// indices in the arrays are in bounds, and by `void validate() const`.
+/// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an
+/// `ArchiveError`; memory is for data present only. Objects may check themselves by `void
+/// validate() const`, and by `bool is_consistent() const`: all indices in the arrays are in bounds.
 class ArchiveReader {
  public:
   /// `owner` keeps the bytes alive, at a multiple of 64.
   ArchiveReader(std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
       : bytes_(bytes), owner_(std::move(owner)) {}
 
-  template <class... Items>
-  void operator()(Items&... items) {
-    (take(items), ...);
-  }
+  void operator()(auto&... items) { (take(items), ...); }
 
   /// Throws an `ArchiveError` unless all bytes were read; to be called last.
   void require_end() const { require(position_ == bytes_.size()); }
@@ -191,7 +182,8 @@ class ArchiveReader {
     detail::ItemHead head;
     std::memcpy(&head, take_bytes(1, sizeof head, detail::item_alignment).data(), sizeof head);
     require(head.type == (detail::type_mark<Item, Element>()));
-    return head.count == 0 ? std::span<const std::byte>{} : take_bytes(head.count, sizeof(Element), alignment);
+    if (head.count == 0) return {};
+    return take_bytes(head.count, sizeof(Element), alignment);
   }
 
   [[nodiscard]] std::span<const std::byte> take_bytes(std::uint64_t count, std::size_t each, std::size_t alignment) {
@@ -226,7 +218,7 @@ class ArchiveReader {
     } else {
       std::uint64_t count = 0;
       take(count);
-      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, which bounds the count
+      for (items.clear(); count > 0; --count) take(items.emplace_back());  // bytes bound the count
     }
   }
   template <class... Options>
@@ -236,8 +228,8 @@ class ArchiveReader {
     require(index < sizeof...(Options));
     take_option(choice, index, std::index_sequence_for<Options...>{});
   }
-  template <class Choice, std::size_t... I>
-  void take_option(Choice& choice, std::uint64_t index, std::index_sequence<I...>) {
+  template <std::size_t... I>
+  void take_option(auto& choice, std::uint64_t index, std::index_sequence<I...>) {
     ((index == I ? take(choice.template emplace<I>()) : void()), ...);
   }
   template <class T>

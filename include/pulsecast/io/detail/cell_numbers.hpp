@@ -14,7 +14,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Numbering of the cells of a lattice in the order of first occurrence; 12 bytes a cell, and 8 to 16 more for look-up.
+/// Numbers of the cells of a lattice in order of first occurrence; 20 to 28 bytes a cell.
 class CellNumbers {
  public:
   using Cell = std::array<std::uint32_t, 3>;
@@ -48,8 +48,8 @@ class CellNumbers {
 
   /// Mixes the coordinates. Source: Steele, Lea & Flood 2014, SplitMix64 (variant 13 of Stafford).
   [[nodiscard]] static std::size_t hash(const Cell& cell) noexcept {
-    std::uint64_t h =
-        (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(cell[2] * std::uint64_t{0x9E3779B97F4A7C15}, 29);
+    const std::uint64_t third = cell[2] * std::uint64_t{0x9E3779B97F4A7C15};
+    std::uint64_t h = (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(third, 29);
     h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9;
     h = (h ^ (h >> 27)) * 0x94D049BB133111EB;
     return static_cast<std::size_t>(h ^ (h >> 31));
@@ -61,7 +61,7 @@ class CellNumbers {
   }
 
   std::vector<Cell> cells_;
-  std::vector<std::uint32_t> slots_;  // cell numbers; a power of two of slots, at most half of them taken
+  std::vector<std::uint32_t> slots_;  // cell numbers; a power of two, at most half of them taken
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

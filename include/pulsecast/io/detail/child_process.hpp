@@ -28,30 +28,63 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #if defined(__linux__)
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #endif
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/io/detail/archive.hpp>
-#include <pulsecast/io/detail/no_network.hpp>
+#include <pulsecast/io/input_file.hpp>
 
 /// Calls of foreign libraries in a child process, so that what kills or hangs them is an error.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Limits of a child.
+/// Takes the network from this process for good: calls that make a socket fail with EACCES. Has an
+/// effect only on Linux on x86-64 or 64-bit ARM with filters of system calls, and needs no
+/// privilege. Source: Linux kernel, Documentation/userspace-api/seccomp_filter.rst.
+inline void leave_network() noexcept {
+#if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
+#if defined(__x86_64__)
+  constexpr std::uint32_t machine = AUDIT_ARCH_X86_64, other_numbers = 0x40000000;  // those of x32
+#else
+  constexpr std::uint32_t machine = AUDIT_ARCH_AARCH64, other_numbers = 0x80000000;  // none
+#endif
+  constexpr std::uint32_t deny = SECCOMP_RET_ERRNO | EACCES;
+  const auto load = [](std::size_t offset) {
+    return sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset));
+  };
+  const auto skip_if_equal = [](std::uint32_t number, std::uint8_t steps) {
+    return sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, steps, 0);
+  };
+  std::array<sock_filter, 8> rules{
+      load(offsetof(seccomp_data, arch)),
+      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, machine, 0, 5),  // system calls of another machine
+      load(offsetof(seccomp_data, nr)),
+      sock_filter BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, other_numbers, 3, 0),
+      skip_if_equal(SYS_socket, 2),
+      skip_if_equal(SYS_io_uring_setup, 1),  // which makes sockets, too
+      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      sock_filter BPF_STMT(BPF_RET | BPF_K, deny)};
+  sock_fprog program{.len = static_cast<unsigned short>(rules.size()), .filter = rules.data()};
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) (void)::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0);
+#endif
+}
+
 struct ChildLimits {
   double memory = 1e9;  ///< beside that of the parent [byte]
   double time = 60;     ///< of computation, and by the clock [s]
 };
 
-/// Child process that does one piece of work: a fork, which starts no program, so that a library without a program of
-/// its own can have it. The child has one thread and no network. It must not use locks that other threads may hold,
-/// which those of memory and of streams are not.
+/// Child process that does one piece of work: a fork, as a library has no program to start. The
+/// child has one thread and no network. It must not use locks that other threads may hold; those of
+/// memory and of streams are none of these.
 class ChildProcess {
  public:
-  /// What `make` returns, called in a child: an object that an `ArchiveWriter` takes, whose arrays stay where they are
-  /// read. Throws the `FileError` of `make`, or one of `path` about the child's death or an inconsistent result, as the
-  /// child may have been damaged by what it read.
+  /// Result of `make`, called in a child: an object that an `ArchiveWriter` takes, whose arrays
+  /// stay where they are read. Throws the `FileError` of `make`, or one of `path` about the child's
+  /// death or an inconsistent result, as the child may be damaged by what it read.
   template <class Make>
   [[nodiscard]] static auto result(const std::string& path, const ChildLimits& limits, const Make& make) {
     decltype(make()) made{};
@@ -61,7 +94,7 @@ class ChildProcess {
     return made;
   }
 
-  /// In a child: raises the limit of memory by some bytes. Calls before the work grow what it may take.
+  /// In a child: raises the limit of memory by some bytes.
   static void allow(double bytes) {
     rlimit limit{};
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -84,8 +117,7 @@ class ChildProcess {
       number = ::mkstemp(name.data());
       ::unlink(name.c_str());
 #endif
-      if (number < 0)
-        throw FileError(path, "", "no file for the result of its import: " + std::generic_category().message(errno));
+      if (number < 0) detail::fail(path, "no file for the result of its import: ", system_error());
     }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
@@ -94,23 +126,19 @@ class ChildProcess {
 
   static constexpr Word done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'}, failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
 
-  /// Runs a child to its end, and returns its status.
   [[nodiscard]] static int run(const std::string& path, int file, const ChildLimits& limits, const Work& work) {
     std::fflush(nullptr);
     const pid_t child = ::fork();
-    if (child < 0)
-      throw FileError(path, "",
-                      "no child process can be started for its import: " + std::generic_category().message(errno));
+    if (child < 0) detail::fail(path, "no child process can be started for its import: ", system_error());
     if (child == 0) be_child(file, limits, work);
     return wait(child, limits.time);
   }
 
-  /// The child's part.
   [[noreturn]] static void be_child(int file, const ChildLimits& limits, const Work& work) noexcept {
 #if defined(__linux__)
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM}) std::signal(signal, SIG_DFL);
+    for (const int one : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM}) std::signal(one, SIG_DFL);
     if (const int quiet = ::open("/dev/null", O_RDWR); quiet >= 0) {  // for libraries that print
       ::dup2(quiet, STDOUT_FILENO);
       ::dup2(quiet, STDERR_FILENO);
@@ -155,7 +183,6 @@ class ChildProcess {
     if (std::fflush(out.get()) != 0) throw std::bad_alloc();  // the file is in memory
   }
 
-  /// Lowers the limit in force of a resource.
   static void limit(decltype(RLIMIT_AS) resource, double value) {
     rlimit now{};
     if (::getrlimit(resource, &now) != 0) return;
@@ -186,32 +213,29 @@ class ChildProcess {
     }
   }
 
-  /// Takes the result of a child by a function.
   static void take(const std::string& path, int file, int status, const ChildLimits& limits,
                    const std::function<void(ArchiveReader&)>& by) {
-    const auto fail = [&](const std::string& problem) { throw FileError(path, "", problem); };
-    const std::string consequence = ": the file is damaged, or too large for the limit";
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-      fail("its import took more than " + text::to_text(limits.time) + " s" + consequence);
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
-      fail("its import was killed, as the system does when memory runs out: expected more free memory, or another try");
-    if (WIFSIGNALED(status))
-      fail("its import ended by signal " + std::to_string(WTERMSIG(status)) + ": the file is damaged");
+    const auto fail = [&](const auto&... problem) { detail::fail(path, "its import ", problem...); };
+    constexpr const char* consequence = ": the file is damaged, or too large for the limit";
+    const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (signal == SIGXCPU) fail("took more than ", limits.time, " s", consequence);
+    if (signal == SIGKILL)
+      fail("was killed, as the system does when memory runs out: expected more free memory, or another try");
+    if (signal != 0) fail("ended by signal ", signal, ": the file is damaged");
     if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory)
-      fail("its import took more memory than is allowed" + consequence);
+      fail("took more memory than is allowed", consequence);
     struct stat size {};
     const std::size_t word = done.size();
     if (::fstat(file, &size) != 0 || size.st_size < static_cast<off_t>(word))
-      fail("its import ended without a result: the file is damaged");
+      fail("ended without a result: the file is damaged");
     const auto bytes = static_cast<std::size_t>(size.st_size);
     void* const memory = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    const std::shared_ptr<const void> owner(memory,
-                                            [bytes](const void* at) { ::munmap(const_cast<void*>(at), bytes); });
+    const std::shared_ptr<void> owner(memory, [bytes](void* at) { ::munmap(at, bytes); });
     const std::span<const std::byte> all(static_cast<const std::byte*>(memory), bytes);
     const auto ends_with = [&](const Word& end) { return std::memcmp(&all[bytes - word], end.data(), word) == 0; };
-    if (!ends_with(done) && !ends_with(failed)) fail("its import ended without a result: the file is damaged");
-    constexpr const char* inconsistent = "its import in a child process gave an inconsistent result";
+    if (!ends_with(done) && !ends_with(failed)) fail("ended without a result: the file is damaged");
+    constexpr const char* inconsistent = "in a child process gave an inconsistent result";
     std::string of, place, problem;
     try {
       ArchiveReader from(all.first(bytes - word), owner);

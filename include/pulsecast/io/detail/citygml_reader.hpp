@@ -20,12 +20,8 @@
 
 #include <pulsecast/io/citygml.hpp>
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/detail/mesh_file/transfer.hpp>
 #include <pulsecast/io/detail/plain_xml.hpp>
-#include <pulsecast/io/input_file.hpp>
 
-/// Reading of CityGML files.
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
@@ -59,7 +55,7 @@ struct CityClassRule {
   return {};
 }
 
-/// EPSG code of the horizontal system of a name, such as `urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783`.
+/// EPSG code of the horizontal system in a name, as in `crs:EPSG:6.12:25832,crs:EPSG::5783`.
 [[nodiscard]] inline std::optional<std::uint16_t> epsg_of(std::string_view name) {
   const std::size_t at = name.find("EPSG");
   if (at == name.npos) return std::nullopt;
@@ -68,7 +64,6 @@ struct CityClassRule {
   return last == name.npos ? std::nullopt : text::number_in<std::uint16_t>(name.substr(last + 1));
 }
 
-/// Keeps messages of libcitygml.
 class CityGmlLog final : public citygml::CityGMLLogger {
  public:
   CityGmlLog() : CityGMLLogger(LOGLEVEL::LL_WARNING) {}
@@ -85,7 +80,6 @@ class CityGmlImport {
   CityGmlImport(const std::filesystem::path& path, const CityGmlSettings& settings)
       : path_(path), settings_(settings) {}
 
-  /// @throws FileError
   [[nodiscard]] RawScene read() {
     require_plain_xml(path_);
     citygml::ParserParams params;
@@ -110,37 +104,32 @@ class CityGmlImport {
     }
     if (const auto code = epsg_of(name_);
         name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
-      fail("its coordinates are in degrees, by '" + name_ + "': expected a projected system in metres");
+      fail("its coordinates are in degrees, by '", name_, "': expected a projected system in metres");
     for (const std::string& message : log->messages)
-      scene_.warnings.push_back(path_.string() + ": libcitygml: " + printable(message));
+      scene_.warnings.push_back(warning(path_.string(), 0, "libcitygml: ", printable(message)));
     scene_.reference = name_;
     return std::move(scene_);
   }
 
  private:
-  /// Surfaces of one class.
   struct Surfaces {
     std::vector<Vec3> vertices{};
     std::vector<Corners3> triangles{};
   };
   using ByClass = std::map<CityClass, Surfaces>;
 
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + printable(problem));
+  [[noreturn]] void fail(const auto&... problem) const {
+    detail::fail(path_, "is no CityGML file that can be read: ", printable(text::message(problem...)));
   }
   void root(const citygml::CityObject& object) {
     std::optional<unsigned> lod;
     highest(object, lod, 0);
     if (!lod) return;
     ByClass all;
-    collect(object, *lod, all, object.getId(), 0);
+    collect(object, *lod, all, object.getId());
     if (all.empty()) return;
-    Vec3 origin{};
-    for (const auto& [type, surfaces] : all) {
-      if (surfaces.vertices.empty()) continue;
-      origin = surfaces.vertices.front();
-      break;
-    }
+    const auto first = std::ranges::find_if(all, [](const auto& one) { return !one.second.vertices.empty(); });
+    Vec3 origin = first == all.end() ? Vec3{} : first->second.vertices.front();
     for (int k = 0; k < 3; ++k) origin[k] = std::floor(origin[k]);
     RawNode node{.name = object.getId(), .place = {Matrix3(1), origin}};
     for (auto& [type, surfaces] : all) {
@@ -150,19 +139,18 @@ class CityGmlImport {
     if (!node.meshes.empty()) scene_.nodes.push_back(std::move(node));
   }
 
-  [[nodiscard]] bool is_left_out(const citygml::CityObject& object) const {
-    return object.getType() == CityClass::COT_ClosureSurface ||
-           (!settings_.interior && rule_of(object.getType()).interior);
+  [[nodiscard]] bool is_left_out(CityClass type) const {
+    return type == CityClass::COT_ClosureSurface || (!settings_.interior && rule_of(type).interior);
   }
 
   void check_depth(int depth) const {
     if (depth > 200) fail("its objects are nested more than 200 deep");
   }
 
-  /// Highest level of detail of an object and those in it, to the limit, which libcitygml exceeds in boundary surfaces.
+  /// Highest level of detail of an object and those in it, to the limit, which libcitygml may pass.
   void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) const {
     check_depth(depth);
-    if (is_left_out(object)) return;
+    if (is_left_out(object.getType())) return;
     const auto offer = [&](unsigned level) {
       if (level <= settings_.max_lod) lod = std::max(lod.value_or(0), level);
     };
@@ -174,14 +162,14 @@ class CityGmlImport {
       highest(object.getChildCityObject(i), lod, depth + 1);
   }
 
-  void collect(const citygml::CityObject& object, unsigned lod, ByClass& all, const std::string& id, int depth) {
-    if (is_left_out(object)) return;
+  void collect(const citygml::CityObject& object, unsigned lod, ByClass& all, const std::string& id) {
+    if (is_left_out(object.getType())) return;
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i)
       if (object.getGeometry(i).getLOD() == lod) add(object.getGeometry(i), all[object.getType()], 0);
     for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
       implicit(object.getImplicitGeometry(i), object.getType(), id, lod);
     for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
-      collect(object.getChildCityObject(i), lod, all, id, depth + 1);
+      collect(object.getChildCityObject(i), lod, all, id);
   }
 
   void add(const citygml::Geometry& geometry, Surfaces& to, int depth) const {
@@ -218,10 +206,9 @@ class CityGmlImport {
     if (!known->second) return;
     const double* const m = geometry.getTransformMatrix().getMatrix();  // row by row
     const TVec3d at = geometry.getReferencePoint();
-    scene_.nodes.push_back({.name = id,
-                            .place = {Matrix3(Vec3(m[0], m[4], m[8]), Vec3(m[1], m[5], m[9]), Vec3(m[2], m[6], m[10])),
-                                      Vec3(m[3] + at.x, m[7] + at.y, m[11] + at.z)},
-                            .meshes = {*known->second}});
+    const Matrix3 linear(Vec3(m[0], m[4], m[8]), Vec3(m[1], m[5], m[9]), Vec3(m[2], m[6], m[10]));
+    const Vec3 shift(m[3] + at.x, m[7] + at.y, m[11] + at.z);
+    scene_.nodes.push_back({.name = id, .place = {linear, shift}, .meshes = {*known->second}});
   }
 
   std::uint32_t mesh(CityClass type, Surfaces surfaces) {
@@ -259,8 +246,7 @@ inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSett
   settings.validate();
   return reading(path, [&] {
     const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
-    const detail::RawScene scene =
-        settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
+    const auto scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
     const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
     CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(),
                  .epsg = detail::epsg_of(scene.reference)};

@@ -37,18 +37,22 @@ class Digest {
     add(std::as_bytes(std::span(text)));
   }
 
-  /// Adds the content of a file; of a folder, the content and names of all files below it. The path itself does not
-  /// matter. Throws a `FileError` if it cannot be read.
+  /// Adds the content of a file; of a folder, the content and names of all files below it. The path
+  /// itself does not matter. @throws FileError if it cannot be read
   void add_content(const std::filesystem::path& path) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
     if (std::filesystem::is_directory(status)) {
-      add_folder(path);
+      const auto files = detail::files_in<std::filesystem::recursive_directory_iterator>(path);
+      for (const std::filesystem::path& file : files) {
+        add(std::string_view(file.lexically_relative(path).string()));
+        add_file(file);
+      }
+      add(std::uint64_t{files.size()});
     } else if (std::filesystem::is_regular_file(status)) {
       add_file(path);
     } else {
-      throw FileError(path.string(), "",
-                      std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
+      detail::fail(path, std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
     }
   }
 
@@ -58,19 +62,6 @@ class Digest {
   }
 
  private:
-  struct Free {
-    void operator()(XXH3_state_t* state) const noexcept { XXH3_freeState(state); }
-  };
-
-  void add_folder(const std::filesystem::path& path) {
-    const auto files = detail::files_in<std::filesystem::recursive_directory_iterator>(path);
-    for (const std::filesystem::path& file : files) {
-      add(std::string_view(file.lexically_relative(path).string()));
-      add_file(file);
-    }
-    add(std::uint64_t{files.size()});
-  }
-
   void add_file(const std::filesystem::path& path) {
     std::error_code ignored;
     std::optional<MappedFile> file;
@@ -79,7 +70,7 @@ class Digest {
     add(std::uint64_t{file ? file->bytes().size() : 0});
   }
 
-  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_{XXH3_createState(), XXH3_freeState};
 };
 
 /// Fingerprint of the content of a file or folder. Throws a `FileError` if it cannot be read.

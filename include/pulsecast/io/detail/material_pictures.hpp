@@ -14,18 +14,24 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
+/// Vertical axis of a file.
+enum class UpAxis : std::uint8_t {
+  z,  ///< coordinates unchanged
+  y,  ///< (x, y, z) becomes (x, -z, y)
+};
+
 /// Spectra by name.
 struct SpectralLibrary {
   std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
   std::vector<std::string> reports{};   ///< report of each file, as in `SpectrumFile`
   std::vector<std::string> warnings{};  ///< oddities that could still be read
-  std::vector<double> wavelengths{};    ///< of the lasers, if known: spectra that do not reach them cause a warning [m]
+  std::vector<double> wavelengths{};    ///< of the lasers, for warnings; empty if unknown [m]
 };
 
 /// Picture that a material names: a file, or bytes inside the file of the mesh.
 struct PictureSource {
-  std::filesystem::path file{};  ///< path of the file; of embedded bytes, a name for messages; empty: none
-  std::shared_ptr<const std::vector<std::byte>> embedded{};  ///< content of the file if it is embedded
+  std::filesystem::path file{};  ///< path; of embedded bytes, a name for messages; empty: none
+  std::shared_ptr<const std::vector<std::byte>> embedded{};  ///< content of an embedded file
 
   [[nodiscard]] bool empty() const noexcept { return file.empty() && !embedded; }
 };

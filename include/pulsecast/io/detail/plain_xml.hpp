@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Refuses encodings of an XML declaration but UTF-8, US-ASCII and ISO-8859-1. Source: XML 1.0, 2.8 and 4.3.3.
-inline void require_plain_encoding(std::string_view text, const std::function<void(const std::string&)>& fail) {
+/// Refuses declared encodings but UTF-8, US-ASCII and ISO-8859-1. Source: XML 1.0, 2.8 and 4.3.3.
+inline void require_plain_encoding(std::string_view text, const std::filesystem::path& path) {
   constexpr std::string_view blanks = " \t\r\n";
   if (!text.starts_with("<?xml") || text.find_first_of(blanks) != 5) return;
   text = text.substr(5, text.find("?>") - 5);
@@ -21,27 +20,26 @@ inline void require_plain_encoding(std::string_view text, const std::function<vo
     const std::string_view name = text::take_word(text, " \t\r\n=");
     const char quote = text.empty() ? ' ' : text.front();
     const std::size_t end = text.find(quote, 1);
-    if (end == text.npos || (quote != '"' && quote != '\'')) fail("has a malformed XML declaration");
+    if (end == text.npos || (quote != '"' && quote != '\'')) fail(path, "has a malformed XML declaration");
     const std::string_view value = text.substr(1, end - 1);
     text.remove_prefix(end + 1);
     if (name == "encoding" && std::ranges::none_of(std::array{"UTF-8", "US-ASCII", "ISO-8859-1"},
                                                    [&](const char* one) { return text::is_same_word(value, one); }))
-      fail("has the encoding " + text::quoted(value) + ": expected UTF-8, US-ASCII or ISO-8859-1");
+      fail(path, "has the encoding ", text::quoted(value), ": expected UTF-8, US-ASCII or ISO-8859-1");
   }
 }
 
-/// Refuses XML files with a document type, by which they open others and grow without end, and with encodings that
-/// could hide one: its letters must have the bytes of ASCII.
+/// Refuses XML files with a document type, by which they open others and grow without end, and with
+/// encodings that could hide one: its letters must have the bytes of ASCII.
 inline void require_plain_xml(const std::filesystem::path& path) {
   const MappedFile file(path, "an XML file");
-  const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
   const std::string_view text = text::without_byte_order_mark(file.text());
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == text.npos || text[start] != '<' || text.substr(0, 64).find('\0') != text.npos)
-    fail("does not begin as XML in UTF-8");
-  require_plain_encoding(text.substr(start), fail);
+    fail(path, "does not begin as XML in UTF-8");
+  require_plain_encoding(text.substr(start), path);
   if (text.find("<!DOCTYPE") != text.npos || text.find("<!ENTITY") != text.npos)
-    fail("has a document type: expected none");
+    fail(path, "has a document type: expected none");
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -12,17 +12,13 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/las/points.hpp>
 #include <pulsecast/io/detail/text/points.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 
-/// Reading of point clouds.
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
@@ -41,14 +37,13 @@ inline void refuse_other_kinds(InputFile& file) {
   const std::string_view head = file.take(16);
   for (const Kind& kind : kinds)
     if (head.starts_with(kind.begin) && (kind.begin != "ply" || head.size() < 4 || head[3] == '\n' || head[3] == '\r'))
-      file.fail("is " + std::string(kind.name) +
+      file.fail("is ", kind.name,
                 ": expected a point cloud as text or LAS; CloudCompare and pdal translate convert to LAS");
   file.seek(0);
 }
 
 /// Calls a function with the reader for the format of a file.
-template <class Function>
-void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, Function function) {
+void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, const auto& function) {
   InputFile file(path, "a point cloud");
   if (LasPoints::is_las(file)) {
     LasPoints points(std::move(file));
@@ -63,9 +58,9 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   }
 }
 
-/// Normal of the least-squares plane through points, pointing up; empty for fewer than three points, or points on one
-/// line. Arguments are their number, the sum of their offsets from a nearby origin, and the sums of the products xx,
-/// xy, xz, yy, yz, zz. Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
+/// Normal, pointing up, of the least-squares plane through points; empty for fewer than three, or
+/// on one line. Given are their number, and sums of their offsets from a nearby origin and of the
+/// products xx, xy, xz, yy, yz, zz. Source: Pearson 1901: least eigenvector of the covariance.
 [[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum,
                                                       const std::array<double, 6>& products) {
   if (count < 3) return std::nullopt;
@@ -76,7 +71,7 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   const double size = about.trace();
   if (!(size > 0)) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
-  constexpr double rounding = 1e-13;  // some hundred times the spacing of doubles at 1: smaller eigenvalues are noise
+  constexpr double rounding = 1e-13;  // smaller eigenvalues are noise of doubles
   if (solver.info() != Eigen::Success || !(solver.eigenvalues()[1] > rounding)) return std::nullopt;
   const Eigen::Vector3d least = solver.eigenvectors().col(0);
   const Vec3 normal = normalize(Vec3{least.x(), least.y(), least.z()});
@@ -111,56 +106,51 @@ class PointCloudReader {
 
   /// First pass: finds the extent, and the normals and colours available.
   void measure(const std::vector<std::filesystem::path>& paths) {
-    const bool from_file = settings_.normals == VoxelNormals::mean || settings_.normals == VoxelNormals::nearest;
-    normals_ = settings_.normals != VoxelNormals::none;
+    const VoxelNormals source = settings_.normals;
+    const bool from_file = source == VoxelNormals::mean || source == VoxelNormals::nearest;
+    normals_ = source != VoxelNormals::none;
     colours_ = settings_.colours;
     for (const std::filesystem::path& path : paths)
       with_points(path, settings_, [&](auto& points) {
         const std::uint64_t before = cloud_.points;
         for (; points.next(); ++cloud_.points) bounds_.extend(points.position());
-        if (cloud_.points == before) throw FileError(points.path(), "", "holds no point: expected at least one");
-        if (from_file && !points.has_normals()) {
-          normals_ = false;
-          cloud_.warnings.push_back(points.path() + ": has no normals: no voxel gets one from a file");
-        }
-        if (settings_.colours && !points.has_colours()) {
-          colours_ = false;
-          cloud_.warnings.push_back(points.path() + ": has no colours: no voxel gets one");
-        }
+        if (cloud_.points == before) detail::fail(points.path(), "holds no point: expected at least one");
+        const auto lack = [&](bool& gathered, const char* what) {
+          gathered = false;
+          cloud_.warnings.push_back(warning(points.path(), 0, what));
+        };
+        if (from_file && !points.has_normals()) lack(normals_, "has no normals: no voxel gets one from a file");
+        if (settings_.colours && !points.has_colours()) lack(colours_, "has no colours: no voxel gets one");
         for (std::string& warning : points.warnings()) cloud_.warnings.push_back(std::move(warning));
       });
   }
 
   /// Sets up the lattice along an axis.
   void lay(int axis, const std::filesystem::path& path) {
-    const double edge = settings_.voxel_size, extent = bounds_.max[axis] - bounds_.min[axis];
+    const double edge = settings_.voxel_size, low = bounds_.min[axis], extent = bounds_.max[axis] - low;
     double cells = std::max(std::ceil(extent / edge), 1.0);
     if (settings_.lattice == VoxelLattice::at_multiples) {
       origin_[axis] = 0;
-      first_[axis] = std::floor(bounds_.min[axis] / edge);
+      first_[axis] = std::floor(low / edge);
       cells = std::floor(bounds_.max[axis] / edge) - first_[axis] + 1;
     } else {
-      origin_[axis] = extent > 0 ? bounds_.min[axis] : bounds_.min[axis] - edge / 2;
+      origin_[axis] = extent > 0 ? low : low - edge / 2;
       first_[axis] = 0;
     }
     if (!(cells <= 0x1p32))
-      throw FileError(path.string(), "",
-                      std::string("the cloud extends over ") + text::to_text(extent) + " m along " + "xyz"[axis] +
-                          ", which is " + text::to_text(cells) + " voxels: expected no more than 2^32; voxels are " +
-                          text::to_text(edge) + " m large");
+      detail::fail(path, "the cloud extends over ", extent, " m along ", "xyz"[axis], ", which is ", cells,
+                   " voxels: expected no more than 2^32; voxels are ", edge, " m large");
     last_[axis] = cells - 1;
   }
 
   [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
 
-  /// Throws a `FileError` for voxels that are small against the rounding of coordinates at their position.
+  /// @throws FileError for voxels that are small against the rounding of coordinates
   void require_room(const std::filesystem::path& path) const {
     const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
     if (edge >= least) return;
-    throw FileError(path.string(), "",
-                    "the cloud begins " + text::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
-                        text::to_text(edge) + " m are below the resolution of coordinates: expected at least " +
-                        text::to_text(least) + " m");
+    detail::fail(path, "the cloud begins ", max_norm(corner()), " m from the origin, where voxels of ", edge,
+                 " m are below the resolution of coordinates: expected at least ", least, " m");
   }
 
   /// Second pass: adds a point to its voxel.
@@ -170,8 +160,8 @@ class PointCloudReader {
     Cell cell{};
     Vec3 centre{};
     for (int axis = 0; axis < 3; ++axis) {
-      const double place =
-          std::min(std::floor((p[axis] - origin_[axis]) / settings_.voxel_size) - first_[axis], last_[axis]);
+      const double offset = std::floor((p[axis] - origin_[axis]) / settings_.voxel_size);
+      const double place = std::min(offset - first_[axis], last_[axis]);
       if (!(p[axis] >= bounds_.min[axis] && p[axis] <= bounds_.max[axis]))
         points.fail_here("the file has changed while it was read");
       cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
@@ -188,8 +178,8 @@ class PointCloudReader {
   void append() {
     counts_.push_back(0);
     if (normals_) sums_.emplace_back(0, 0, 0);
-    if (normals_ && settings_.normals == VoxelNormals::nearest)
-      nearest_.push_back(std::numeric_limits<double>::infinity());
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (normals_ && settings_.normals == VoxelNormals::nearest) nearest_.push_back(infinity);
     if (normals_ && settings_.normals == VoxelNormals::fitted) products_.push_back({});
     if (colours_) squares_.emplace_back(0, 0, 0);
   }
@@ -198,13 +188,9 @@ class PointCloudReader {
   void add_normal(const Points& points, std::size_t voxel, const Vec3& d) {
     if (settings_.normals == VoxelNormals::fitted) {
       sums_[voxel] += d;
-      std::array<double, 6>& products = products_[voxel];
-      products[0] += d.x * d.x;
-      products[1] += d.x * d.y;
-      products[2] += d.x * d.z;
-      products[3] += d.y * d.y;
-      products[4] += d.y * d.z;
-      products[5] += d.z * d.z;
+      auto product = products_[voxel].begin();
+      for (int i = 0; i < 3; ++i)
+        for (int k = i; k < 3; ++k) *product++ += d[i] * d[k];
       return;
     }
     const Vec3 given = points.normal();
@@ -224,8 +210,7 @@ class PointCloudReader {
     const double largest = settings_.colour_max.value_or(Points::max_colour);
     for (int k = 0; k < 3; ++k)
       if (!(colour[k] >= 0 && colour[k] <= largest))
-        points.fail_here("has the colour " + text::to_text(colour[k]) + ": expected one from 0 to " +
-                         text::to_text(largest));
+        points.fail_here(text::message("has the colour ", colour[k], ": expected one from 0 to ", largest));
     const Vec3 share = colour / largest;
     if (!settings_.colour_max && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
     squares_[voxel] += share * share;
@@ -242,10 +227,8 @@ class PointCloudReader {
 
   void finish_normals() {
     if (settings_.normals == VoxelNormals::none || (!normals_ && !settings_.default_normal)) return;
-    const std::optional<Vec3> otherwise =
-        settings_.default_normal
-            ? std::optional(normalize(*settings_.default_normal / max_norm(*settings_.default_normal)))
-            : std::nullopt;
+    std::optional<Vec3> otherwise = settings_.default_normal;
+    if (otherwise) otherwise = normalize(*otherwise / max_norm(*otherwise));
     std::uint64_t without = 0;
     cloud_.voxels.normals.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
@@ -255,11 +238,11 @@ class PointCloudReader {
       const Vec3 n = normal.value_or(Vec3{});
       cloud_.voxels.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
     }
+    const char* const reason = settings_.normals == VoxelNormals::fitted
+                                   ? "their points are fewer than three, or on one line"
+                                   : "the normals of their points are zero, or cancel";
     if (without > 0)
-      cloud_.warnings.push_back(
-          std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
-          (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
-                                                     : "the normals of their points are zero, or cancel"));
+      cloud_.warnings.push_back(text::message(without, " of ", counts_.size(), " voxels have no normal: ", reason));
   }
 
   void finish_colours() {
@@ -269,9 +252,8 @@ class PointCloudReader {
           "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
     cloud_.colours.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
-      const auto channel = [&](int k) {
-        return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel])));
-      };
+      const Vec3 mean = squares_[voxel] / static_cast<double>(counts_[voxel]);
+      const auto channel = [&](int k) { return static_cast<float>(std::sqrt(mean[k])); };
       cloud_.colours.push_back({channel(0), channel(1), channel(2)});
     }
   }
@@ -280,13 +262,13 @@ class PointCloudReader {
   PointCloud cloud_;
   bool normals_ = false, colours_ = false;  // true if gathered in the second pass
   Box bounds_;                              // extent of the points
-  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m]; its first and last cells relative to that
+  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m]; its first and last cells
   double brightest_ = 0;                    // largest channel in LAS files
   CellNumbers cells_;
   // for each voxel:
   std::vector<std::uint64_t> counts_;            // number of points
-  std::vector<Vec3> sums_;                       // sum of normals, or of the points' offsets from the centre
-  std::vector<double> nearest_;                  // squared distance from the centre to the point with the normal in use
+  std::vector<Vec3> sums_;                       // sum of normals, or of offsets from the centre
+  std::vector<double> nearest_;                  // squared distance of the nearest to the centre
   std::vector<std::array<double, 6>> products_;  // sums of products of the offsets
   std::vector<Vec3> squares_;                    // sums of squared colours
 };

@@ -46,7 +46,7 @@ template <class Sample>
   }
 }
 
-/// True for the value of missing heights, which may be written with more digits than a single-precision sample has.
+/// True for the value of missing heights, which may have more digits than a sample.
 template <class Sample>
 [[nodiscard]] bool is_missing(double value, double missing) noexcept {
   if constexpr (std::is_same_v<Sample, float>)
@@ -54,8 +54,8 @@ template <class Sample>
   return value == missing;
 }
 
-/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez et al. 2005, An
-/// assessment of the SRTM topographic products, JPL D-31639 (-32768); GDAL manual, DTED driver (-32767).
+/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez
+/// et al. 2005, JPL D-31639, on SRTM (-32768); GDAL manual, DTED driver (-32767).
 [[nodiscard]] inline bool may_be_missing(double value) noexcept {
   return value == -9999 || value == -32768 || value == -32767 || value == -99999 || value == -999999;
 }
@@ -69,7 +69,7 @@ struct RasterLayout {
   std::uint16_t format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG;
   bool tiled = false;
 
-  /// Reads and checks the layout of a file with heights in `band`, from 1. Throws a `FileError` if it cannot be read.
+  /// Reads and checks the layout of a file with heights in `band`, from 1. @throws FileError
   RasterLayout(const TiffFile& file, std::uint16_t band) {
     columns = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
     rows = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
@@ -77,11 +77,9 @@ struct RasterLayout {
     bits = file.tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1);
     format = file.tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
     planes = file.tag<std::uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-    const std::string size = std::to_string(columns) + " x " + std::to_string(rows) + " pixels";
-    if (columns < 2 || rows < 2) file.fail("is of " + size + ": expected 2 x 2 or more");
-    if (band > samples)
-      file.fail("has " + std::to_string(samples) + " bands: expected " + std::to_string(band) +
-                ", or another setting of the band");
+    const std::string size = text::message(columns, " x ", rows, " pixels");
+    if (columns < 2 || rows < 2) file.fail("is of ", size, ": expected 2 x 2 or more");
+    if (band > samples) file.fail("has ", samples, " bands: expected ", band, ", or another setting of the band");
     check_samples(file);
 
     tiled = TIFFIsTiled(file.handle()) != 0;
@@ -97,13 +95,13 @@ struct RasterLayout {
     const std::uint64_t pixels = std::uint64_t{columns} * rows;
     const std::uint64_t needed = std::uint64_t{chunk_columns} * chunk_rows;  // pixels of a strip or tile
     if (needed == 0 || chunk_bytes / (bits / 8U) / stride() != needed || chunk_bytes % (bits / 8U) != 0)
-      file.fail(std::string("has a ") + chunk() + "with a size of zero or too large" + file.complaint());
+      file.fail("has a ", chunk(), "with a size of zero or too large", file.complaint());
     const std::uint64_t chunks = tiled ? TIFFNumberOfTiles(file.handle()) : TIFFNumberOfStrips(file.handle());
     if (pixels > file.max_bytes() / sizeof(float) || chunk_bytes > file.max_bytes() || chunks > file.size())
-      file.fail("claims " + size + ", more than its " + std::to_string(file.size()) + " bytes can hold");
+      file.fail("claims ", size, ", more than its ", file.size(), " bytes can hold");
     constexpr std::uint32_t most = pulsecast::detail::max_pixels;
     if (columns > most || rows > most || !((columns - 1.0) * (rows - 1.0) <= 2147483647))
-      file.fail("is of " + size + ": expected at most 2^27 in a row or column, and 2^31 cells between them");
+      file.fail("is of ", size, ": expected at most 2^27 in a row or column, and 2^31 cells between them");
   }
 
   /// Distance between samples of one band [samples].
@@ -114,16 +112,16 @@ struct RasterLayout {
  private:
   void check_samples(const TiffFile& file) const {
     const bool real = format == SAMPLEFORMAT_IEEEFP;
-    const bool known = real || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
-    if (!known || !(bits == 8 || bits == 16 || bits == 32 || bits == 64) || (real && bits == 8))
-      file.fail("has samples of " + std::to_string(bits) + " bits, format " + std::to_string(format) +
+    const bool whole = format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
+    if ((!real && !whole) || !(bits == 8 || bits == 16 || bits == 32 || bits == 64) || (real && bits == 8))
+      file.fail("has samples of ", bits, " bits, format ", format,
                 ": expected whole numbers of 8, 16, 32 or 64 bits, or floating-point numbers of 16, 32 or 64");
     const auto compression = file.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE);
     if (TIFFIsCODECConfigured(compression) == 0)
-      file.fail("is compressed by scheme " + std::to_string(compression) + ": expected one that this libtiff can read");
+      file.fail("is compressed by scheme ", compression, ": expected one that this libtiff can read");
     const auto meaning = file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (meaning == PHOTOMETRIC_YCBCR || meaning == PHOTOMETRIC_LOGL || meaning == PHOTOMETRIC_LOGLUV)
-      file.fail("holds a picture (photometric interpretation " + std::to_string(meaning) + "): expected heights");
+      file.fail("holds a picture (photometric interpretation ", meaning, "): expected heights");
   }
 };
 

@@ -20,24 +20,18 @@
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// First image of a TIFF file, opened by libtiff, with the file's errors and warnings.
-class TiffFile {
+class TiffFile : public InputFile {
  public:
-  explicit TiffFile(const std::filesystem::path& path) : file_(path, "a GeoTIFF"), tiff_(open()) {}
+  explicit TiffFile(const std::filesystem::path& path) : InputFile(path, "a GeoTIFF"), tiff_(open()) {}
   TiffFile(const TiffFile&) = delete;
   TiffFile& operator=(const TiffFile&) = delete;
 
   [[nodiscard]] TIFF* handle() const noexcept { return tiff_.get(); }
-  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
-  [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }  ///< size of the file [byte]
 
-  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver.
+  /// True if another image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual.
   [[nodiscard]] bool has_mask() const noexcept { return has_mask_; }
 
-  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
-  [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
-    file_.fail_at_byte(byte, problem);
-  }
-  void warn(const std::string& oddity) { warnings_.push_back(file_.path() + ": " + oddity); }
+  void warn(const auto&... oddity) { warnings_.push_back(warning(path(), 0, oddity...)); }
   [[nodiscard]] std::vector<std::string> take_warnings() noexcept { return std::exchange(warnings_, {}); }
 
   /// Error of libtiff, to end a sentence.
@@ -45,9 +39,9 @@ class TiffFile {
     return complaint_[0] == '\0' ? "" : std::string(" (libtiff: ") + complaint_.data() + ')';
   }
 
-  /// Upper limit of the decoded size of any strip or tile: deflate reaches 1,032 to 1, LZW and others somewhat more. A
-  /// tile of 256 by 256 that is left out or uniform is 16,384 times its entry in the lists of tiles.
-  [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
+  /// Upper limit of the decoded size of a strip or tile: deflate reaches 1,032 to 1, others more; a
+  /// tile of 256 by 256 that is left out or uniform is 16,384 times its entry in the lists.
+  [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * size(); }
 
   template <class Number>
   [[nodiscard]] Number tag(ttag_t number, Number otherwise) const {
@@ -55,8 +49,8 @@ class TiffFile {
     return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : otherwise;
   }
 
-  /// Values of an array tag; empty if missing or of another type. libtiff defines these unknown tags while it reads
-  /// them; if GDAL or libgeotiff defined them, their counts may have another form.
+  /// Values of an array tag; empty if missing or of another type. libtiff defines these tags as it
+  /// reads them; their counts may have another form if GDAL or libgeotiff defined them.
   template <class Number>
   [[nodiscard]] std::span<const Number> tags(ttag_t number) const {
     constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE
@@ -80,10 +74,7 @@ class TiffFile {
   }
 
  private:
-  struct Close {
-    void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
-  };
-  using Handle = std::unique_ptr<TIFF, Close>;
+  using Handle = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 
   /// Keeps the first error; warnings concern irrelevant tags. Nothing is printed.
   static int keep_error(TIFF*, void* self, const char*, const char* format, std::va_list arguments) noexcept {
@@ -94,16 +85,16 @@ class TiffFile {
   static int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) noexcept { return 1; }
 
   [[nodiscard]] Handle open() {
-    const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
-                                                                               TIFFOpenOptionsFree);
+    const std::shared_ptr<TIFFOpenOptions> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
-    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not mapped, as the file may be truncated
-    if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
+    // not mapped, as the file may be truncated
+    Handle tiff(TIFFOpenExt(path().c_str(), "rm", options.get()), TIFFClose);
+    if (!tiff) fail("is not a TIFF file that can be read", complaint(), ": expected a GeoTIFF");
     look_for_mask(*tiff);
-    // if a strip or tile has more than it needs, libdeflate leaves the end unread without an error; zlib reads all
+    // of a strip or tile with more than it needs, libdeflate leaves the end unread; zlib reads all
     std::uint16_t scheme = COMPRESSION_NONE;
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &scheme);
     if (scheme == COMPRESSION_ADOBE_DEFLATE || scheme == COMPRESSION_DEFLATE)
@@ -111,7 +102,7 @@ class TiffFile {
     return tiff;
   }
 
-  /// Looks at the images after the first, which are overviews as a rule. An error of theirs is none of the first image.
+  /// Looks at the images after the first, often overviews. An error of theirs is none of the first.
   void look_for_mask(TIFF& tiff) {
     if (TIFFLastDirectory(&tiff) != 0) return;
     constexpr int most = 64;
@@ -121,19 +112,18 @@ class TiffFile {
       has_mask_ = (kind & FILETYPE_MASK) != 0;
     }
     complaint_ = {};
-    if (TIFFSetDirectory(&tiff, 0) != 1) fail("cannot be read again" + complaint());
+    if (TIFFSetDirectory(&tiff, 0) != 1) fail("cannot be read again", complaint());
   }
 
   std::array<char, 256> complaint_{};  ///< first error of libtiff
   bool has_mask_ = false;
   std::vector<std::string> warnings_;
-  InputFile file_;
   Handle tiff_;
 };
 
-/// Colours of a palette picture by the value of a pixel, channels from 0 to 1; empty for other pictures. Values are of
-/// 16 bits; a table without a value above 255 is one of 8 bits, as some programs write it. Source: TIFF 6.0, section 5
-/// (palette-color images), `ColorMap`; for 8 bits, libtiff, tif_getimage.c, `checkcmap`.
+/// Colours of a palette picture by the value of a pixel, channels from 0 to 1; empty for other
+/// pictures. Values are of 16 bits; of 8 if none is above 255, as some programs write them. Source:
+/// TIFF 6.0, section 5, `ColorMap`; for 8 bits, libtiff, tif_getimage.c, `checkcmap`.
 [[nodiscard]] inline std::vector<Vec3> colour_table(const TiffFile& file) {
   if (file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) != PHOTOMETRIC_PALETTE) return {};
   std::array<const std::uint16_t*, 3> channels{};

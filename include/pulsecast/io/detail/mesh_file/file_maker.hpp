@@ -13,21 +13,17 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
-#include <pulsecast/io/detail/mesh_file/model.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/scene/part.hpp>
 
-/// Content of mesh files, from what an importer has of them.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Transform as what is applied to the vertices, and then a placement.
 struct SplitTransform {
-  Matrix3 shape{1};     ///< symmetric, of determinant 1 or -1; the identity for a similarity
-  Placement placement;  ///< of the shape
+  Matrix3 shape{1};       ///< symmetric, of determinant 1 or -1; the identity for a similarity
+  Placement placement{};  ///< of the shape
   bool is_similarity = true;
 };
 
@@ -38,7 +34,6 @@ struct SplitTransform {
   return most;
 }
 
-/// Inverse of the transpose.
 [[nodiscard]] inline Matrix3 inverse_transposed(const Matrix3& m) noexcept {
   const double determinant = dot(m[0], cross(m[1], m[2]));
   return Matrix3(cross(m[1], m[2]) / determinant, cross(m[2], m[0]) / determinant, cross(m[0], m[1]) / determinant);
@@ -48,10 +43,9 @@ struct SplitTransform {
   return Matrix3(m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1], m[0][2], m[1][2], m[2][2]);
 }
 
-/// Splits a transform by its polar decomposition, so that transforms that differ by a similarity have the same shape.
-/// Empty for one that flattens, or is not finite. A deviation of lengths from a similarity of up to 1e-6 is ignored, as
-/// it comes of single precision. Source: Higham 1986, Computing the polar decomposition, SIAM J. Sci. Stat. Comput.
-/// 7(4), Newton's iteration.
+/// Polar decomposition of a transform: those that differ by a similarity have the same shape. Empty
+/// if it flattens, or is not finite. Deviations from a similarity of up to 1e-6 are ignored, as of
+/// single precision. Source: Higham 1986, SIAM J. Sci. Stat. Comput. 7(4), Newton's iteration.
 [[nodiscard]] inline std::optional<SplitTransform> split(const Affine& transform) {
   constexpr double tolerance = 1e-6;
   const double determinant = dot(transform.linear[0], cross(transform.linear[1], transform.linear[2]));
@@ -66,10 +60,9 @@ struct SplitTransform {
     if (greatest(step) < 1e-14) break;
   }
   const double sign = determinant < 0 ? -1 : 1;
-  SplitTransform made;
-  made.placement = {
-      .rotation = normalize(pulsecast::rotation_of(turn * sign)), .scale = scale, .translation = transform.shift};
-  made.shape = transposed(turn) * unit * sign;
+  SplitTransform made{.shape = transposed(turn) * unit * sign};
+  const Rotation rotation = normalize(pulsecast::rotation_of(turn * sign));
+  made.placement = {.rotation = rotation, .scale = scale, .translation = transform.shift};
   made.is_similarity = determinant > 0 && greatest(made.shape - Matrix3(1)) <= tolerance;
   if (made.is_similarity) made.shape = Matrix3(1);
   return made;
@@ -85,26 +78,34 @@ class MeshFileMaker {
   [[nodiscard]] MeshFile make() {
     file_.warnings = scene_.warnings;
     file_.files.assign(scene_.files.begin(), scene_.files.end());
-    const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
     const Matrix3 upright = !settings_.up ? scene_.upright : *settings_.up == UpAxis::y ? y_up : Matrix3(1);
     const double unit = settings_.unit ? *settings_.unit / scene_.applied_unit : scene_.unit;
     const Affine world{upright * unit, {}};
     for (const RawNode& node : scene_.nodes) add(node, world * node.place);
-    if (maker_.flat() > 0) warn(std::to_string(maker_.flat()) + " triangles without area are left out");
+    if (maker_.flat() > 0) warn(maker_.flat(), " triangles without area are left out");
     if (reshaped_ > 0)
-      warn(std::to_string(reshaped_) + " nodes shear, mirror or stretch their meshes, which become " +
-           std::to_string(shaped_.size()) + " meshes of their own");
-    if (flattened_ > 0) warn(std::to_string(flattened_) + " nodes whose transforms flatten their meshes are left out");
-    if (empty_ > 0)
-      warn(std::to_string(empty_) + " meshes have triangles, and none with an area: all their vertices may coincide");
-    note_precision();
+      warn(reshaped_, " nodes shear, mirror or stretch their meshes, which become ", shapes_, " meshes of their own");
+    if (flattened_ > 0) warn(flattened_, " nodes whose transforms flatten their meshes are left out");
+    if (empty_ > 0) warn(empty_, " meshes have triangles, and none with an area: all their vertices may coincide");
+    const double rounding = farthest_ * 0x1p-24;  // of 24 bits. Source: IEEE 754-2019, binary32
+    if (rounding > 1e-3)
+      warn("has coordinates up to ", std::llround(farthest_), " m, which are read in single precision, to ",
+           std::ceil(rounding * 1e3) / 1e3,
+           " m; OBJ files are read in double precision, and small coordinates with a "
+           "translation of the part keep all digits");
     if (file_.placements.empty()) warn("holds no triangle with an area");
-    describe();
+    const PictureFinder find{path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files};
+    for (const std::uint32_t number : used_) {
+      file_.materials.push_back(material_of(scene_.materials[number], settings_.reflectance_of_colour));
+      file_.pictures.push_back(find(scene_.materials[number]));
+    }
     return std::move(file_);
   }
 
  private:
-  void warn(const std::string& what) { file_.warnings.push_back(path_.string() + ": " + what); }
+  using Numbers = std::vector<std::uint32_t>;  ///< of meshes or materials
+
+  void warn(const auto&... oddity) { file_.warnings.push_back(warning(path_.string(), 0, oddity...)); }
 
   void add(const RawNode& node, const Affine& transform) {
     std::optional<SplitTransform> split = detail::split(transform);
@@ -112,8 +113,7 @@ class MeshFileMaker {
       ++flattened_;
       return;
     }
-    const std::optional<std::size_t> mesh =
-        split->is_similarity ? plain(node.meshes) : shaped(node.meshes, split->shape);
+    const std::optional<std::size_t> mesh = mesh_of(node.meshes, *split);
     if (!mesh) return;
     measure(node, transform);
     reshaped_ += split->is_similarity ? 0 : 1;
@@ -123,7 +123,7 @@ class MeshFileMaker {
     file_.placements.push_back({*mesh, split->placement, std::move(name)});
   }
 
-  /// Notes the place of a node and its meshes for the precision, unless they are of double precision.
+  /// Notes the place of a node and its meshes of single precision.
   void measure(const RawNode& node, const Affine& transform) {
     for (const std::uint32_t mesh : node.meshes) {
       const RawMesh& one = scene_.meshes[mesh];
@@ -133,40 +133,25 @@ class MeshFileMaker {
         const Float3& v = one.vertices[i];
         extent->second = std::max({extent->second, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
       }
-      farthest_ = std::max(
-          farthest_, static_cast<double>(extent->second) * greatest(transform.linear) + max_norm(transform.shift));
+      const double size = static_cast<double>(extent->second) * greatest(transform.linear);
+      farthest_ = std::max(farthest_, size + max_norm(transform.shift));
     }
   }
 
-  /// Notes coordinates that single precision, of 24 bits, rounds by more than 1 mm. Source: IEEE 754-2019, binary32.
-  void note_precision() {
-    const double rounding = farthest_ * 0x1p-24;
-    if (rounding > 1e-3)
-      warn("has coordinates up to " + std::to_string(std::llround(farthest_)) +
-           " m, which are read in single precision, to " + text::to_text(std::ceil(rounding * 1e3) / 1e3) +
-           " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all "
-           "digits");
-  }
-
-  [[nodiscard]] std::optional<std::size_t> plain(const std::vector<std::uint32_t>& meshes) {
-    const auto [known, is_new] = plain_.try_emplace(meshes);
-    if (is_new) known->second = made(meshes, Matrix3(1));
-    return known->second;
-  }
-
   /// Mesh of a shape, one for all shapes that are equal within 1e-6.
-  [[nodiscard]] std::optional<std::size_t> shaped(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
+  [[nodiscard]] std::optional<std::size_t> mesh_of(const Numbers& meshes, const SplitTransform& split) {
     std::array<std::int64_t, 9> key;
     for (std::size_t i = 0; i < 9; ++i)
-      key[i] = std::llround(shape[static_cast<int>(i / 3)][static_cast<int>(i % 3)] * 1e6);
-    const auto [known, is_new] = shaped_.try_emplace({meshes, key});
-    if (is_new) known->second = made(meshes, shape);
+      key[i] = std::llround(split.shape[static_cast<int>(i / 3)][static_cast<int>(i % 3)] * 1e6);
+    const auto [known, is_new] = made_.try_emplace({meshes, key});
+    if (is_new) known->second = made(meshes, split.shape);
+    if (is_new && !split.is_similarity) ++shapes_;
     return known->second;
   }
 
-  [[nodiscard]] std::optional<std::size_t> made(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
+  [[nodiscard]] std::optional<std::size_t> made(const Numbers& meshes, const Matrix3& shape) {
     FileMesh one;
-    std::vector<std::uint32_t> materials, shown;
+    Numbers materials, shown;
     for (const std::uint32_t mesh : meshes) {
       if (scene_.meshes[mesh].triangles.empty()) continue;
       shown.push_back(mesh);
@@ -186,25 +171,16 @@ class MeshFileMaker {
     return file_.meshes.size() - 1;
   }
 
-  /// Materials in use, and their pictures.
-  void describe() {
-    const PictureFinder find{path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files};
-    for (const std::uint32_t number : used_) {
-      file_.materials.push_back(material_of(scene_.materials[number], settings_.reflectance_of_colour));
-      file_.pictures.push_back(find(scene_.materials[number]));
-    }
-  }
-
   const std::filesystem::path& path_;
   const RawScene& scene_;
   const MeshFileSettings& settings_;
   MeshMaker maker_;
   MeshFile file_;
   std::map<std::uint32_t, std::uint32_t> numbers_;  ///< of materials in use, by those of the file
-  std::vector<std::uint32_t> used_;
-  std::map<std::vector<std::uint32_t>, std::optional<std::size_t>> plain_;  ///< meshes by what they are made of
-  std::map<std::pair<std::vector<std::uint32_t>, std::array<std::int64_t, 9>>, std::optional<std::size_t>> shaped_;
-  std::uint64_t reshaped_ = 0, flattened_ = 0, empty_ = 0;
+  Numbers used_;
+  /// Meshes by what they are made of, and their shape.
+  std::map<std::pair<Numbers, std::array<std::int64_t, 9>>, std::optional<std::size_t>> made_;
+  std::uint64_t reshaped_ = 0, shapes_ = 0, flattened_ = 0, empty_ = 0;
   std::map<std::uint32_t, float> extents_;  ///< greatest coordinate of each mesh in use
   double farthest_ = 0;                     ///< greatest coordinate of single precision [m]
 };

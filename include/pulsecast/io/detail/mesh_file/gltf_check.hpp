@@ -9,10 +9,10 @@
 
 #include <pulsecast/io/input_file.hpp>
 
-/// Features that change a mesh but are not read by assimp: extensions and numbers of glTF, strips of PLY.
+/// Features of glTF that change a mesh but are not read by assimp: extensions and numbers.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Removes the first value from JSON text. Returns its text; empty if there is none. Source: RFC 8259.
+/// Removes the first value from JSON text. Returns it; empty if there is none. Source: RFC 8259.
 [[nodiscard]] inline std::string_view take_json(std::string_view& text) {
   std::size_t end = 0, depth = 0;
   bool in_string = false;
@@ -34,9 +34,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return std::exchange(text, text.substr(end)).substr(0, end);
 }
 
-/// Calls `visit` with the name and value of each member of an object, and each element of an array without a name.
-template <class Visit>
-void each_json(std::string_view value, const Visit& visit) {
+/// Calls `visit` with name and value of each member of an object, or element of an array, unnamed.
+void each_json(std::string_view value, const auto& visit) {
   const bool is_object = value.starts_with('{');
   if (!is_object && !value.starts_with('[')) return;
   value.remove_prefix(1);
@@ -63,7 +62,7 @@ void each_json(std::string_view value, const Visit& visit) {
   return found;
 }
 
-/// JSON text of a glTF or GLB file; empty for another file. Source: glTF 2.0, 4.4 (binary glTF layout).
+/// JSON text of a glTF or GLB file; empty for another. Source: glTF 2.0, 4.4 (binary glTF layout).
 [[nodiscard]] inline std::string_view gltf_text(std::string_view file) {
   if (file.size() >= 20 && file.starts_with("glTF")) {
     std::uint32_t size = 0;
@@ -75,9 +74,9 @@ void each_json(std::string_view value, const Visit& visit) {
   return file.starts_with('{') ? file : std::string_view();
 }
 
-/// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not
-/// floating-point numbers, which it takes for such; notes extensions without effect that move or hide meshes. Source:
-/// glTF 2.0, 3.12 (required extensions) and 3.7.2.1 (positions are `float`); Khronos registry of extensions.
+/// Refuses a glTF file that requires an extension which assimp does not read, or whose positions
+/// are no floating-point numbers, as assimp takes them; notes extensions that move or hide meshes.
+/// Source: glTF 2.0, 3.12 and 3.7.2.1 (positions are `float`); Khronos registry of extensions.
 inline void check_gltf(const std::filesystem::path& path, std::vector<std::string>& warnings) {
   // tested, with those for materials, which move nothing
   static constexpr std::array<std::string_view, 3> known{"KHR_draco_mesh_compression", "KHR_lights_punctual",
@@ -86,23 +85,20 @@ inline void check_gltf(const std::filesystem::path& path, std::vector<std::strin
                                                           "KHR_node_visibility"};
   const MappedFile file(path, "a mesh file");
   const std::string_view text = gltf_text(file.text());
-  const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
-  const auto extension = [](std::string_view value) {
-    return value.size() >= 2 ? value.substr(1, value.size() - 2) : value;
-  };
+  const auto fail = [&](const auto&... problem) { detail::fail(path, problem...); };
+  const auto unquoted = [](std::string_view s) { return s.size() >= 2 ? s.substr(1, s.size() - 2) : s; };
   each_json(text, [&](std::string_view name, std::string_view) {
-    if (name.find('\\') != name.npos)
-      fail("has the member " + text::quoted(name) + ": expected a name without escapes");
+    if (name.find('\\') != name.npos) fail("has the member ", text::quoted(name), ": expected a name without escapes");
   });
   each_json(json_member(text, "extensionsRequired"), [&](std::string_view, std::string_view value) {
-    const std::string_view one = extension(value);
-    if (!one.starts_with("KHR_materials_") && std::find(known.begin(), known.end(), one) == known.end())
-      fail("requires the glTF extension " + text::quoted(one) +
+    const std::string_view one = unquoted(value);
+    if (!one.starts_with("KHR_materials_") && std::ranges::find(known, one) == known.end())
+      fail("requires the glTF extension ", text::quoted(one),
            ", which is not supported: expected a file without it, as Blender exports it, or gltfpack with -noq");
   });
   each_json(json_member(text, "extensionsUsed"), [&](std::string_view, std::string_view value) {
-    if (const std::string_view one = extension(value); std::find(moving.begin(), moving.end(), one) != moving.end())
-      warnings.push_back(path.string() + ": uses the glTF extension " + std::string(one) + ", which has no effect");
+    if (const std::string_view one = unquoted(value); std::ranges::find(moving, one) != moving.end())
+      warnings.push_back(warning(path.string(), 0, "uses the glTF extension ", one, ", which has no effect"));
   });
   std::vector<std::string_view> types;
   each_json(json_member(text, "accessors"), [&](std::string_view, std::string_view accessor) {
@@ -110,10 +106,11 @@ inline void check_gltf(const std::filesystem::path& path, std::vector<std::strin
   });
   each_json(json_member(text, "meshes"), [&](std::string_view, std::string_view mesh) {
     each_json(json_member(mesh, "primitives"), [&](std::string_view, std::string_view primitive) {
-      const auto number = text::number_in<std::size_t>(json_member(json_member(primitive, "attributes"), "POSITION"));
+      const std::string_view positions = json_member(json_member(primitive, "attributes"), "POSITION");
+      const auto number = text::number_in<std::size_t>(positions);
       if (number && *number < types.size() && types[*number] != "5126")
-        fail("has positions of the component type " + std::string(types[*number]) + " (accessor " +
-             std::to_string(*number) + "): expected 5126, floating-point numbers");
+        fail("has positions of the component type ", types[*number], " (accessor ", *number,
+             "): expected 5126, floating-point numbers");
     });
   });
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -21,35 +22,27 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
-#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
-#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
-/// Import of files by assimp.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Regular files of a folder and of those below it, for reading.
 class FolderSystem : public Assimp::IOSystem {
  public:
-  /// Calls `opened` with the size of each file [byte] before it is opened first.
+  /// Calls `opened` with the size of each file [byte] before it is first opened.
   FolderSystem(std::filesystem::path folder, bool anywhere, std::function<void(std::uint64_t)> opened)
       : folder_(std::move(folder)), anywhere_(anywhere), opened_(std::move(opened)) {}
 
-  /// First file that was refused, as it is outside; empty if there is none.
-  [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
-
-  /// Files that the importer requested, existing or not.
-  [[nodiscard]] const std::set<std::string>& looked_for() const noexcept { return looked_for_; }
+  mutable std::string refused;               ///< first file that was refused, as outside; or empty
+  mutable std::set<std::string> looked_for;  ///< files that were requested, existing or not
 
   bool Exists(const char* file) const override { return is_open_to(found(file)); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* named, const char* mode) override {
     const std::string file = found(named);
-    if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos || !is_open_to(file)) return nullptr;
+    if (std::strpbrk(mode, "wa+") || !is_open_to(file)) return nullptr;
     std::error_code ignored;
     const auto size = std::filesystem::file_size(file, ignored);
     if (!ignored && opened_ && known_.insert(file).second) opened_(size);
@@ -58,18 +51,18 @@ class FolderSystem : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
 
  private:
-  /// Name as it is, or with its percent codes decoded, if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
+  /// Name as it is, or decoded if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
   [[nodiscard]] std::string found(const char* file) const {
-    looked_for_.insert(file);
+    looked_for.insert(file);
     std::error_code ignored;
     return std::filesystem::exists(file, ignored) ? file : unescaped(file);
   }
   [[nodiscard]] bool is_open_to(const std::string& file) const {
-    looked_for_.insert(file);
+    looked_for.insert(file);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return false;
     if (anywhere_ || is_inside(folder_, file)) return true;
-    if (refused_.empty()) refused_ = file;
+    if (refused.empty()) refused = file;
     return false;
   }
 
@@ -78,8 +71,6 @@ class FolderSystem : public Assimp::IOSystem {
   bool anywhere_;
   std::function<void(std::uint64_t)> opened_;
   std::set<std::string> known_;  ///< files that were opened
-  mutable std::set<std::string> looked_for_;
-  mutable std::string refused_;
 };
 
 class MeshImport {
@@ -87,12 +78,11 @@ class MeshImport {
   MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings,
              std::function<void(std::uint64_t)> opened = {})
       : path_(path), settings_(settings) {
-    system_ =
-        new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    system_ = new FolderSystem(folder, settings.files_elsewhere, std::move(opened));
     importer_->SetIOHandler(system_);  // which takes it
   }
 
-  /// @throws FileError
   [[nodiscard]] RawScene read() {
     check_gltf(path_, scene_.warnings);
     Assimp::Importer& importer = *importer_;
@@ -105,53 +95,52 @@ class MeshImport {
     const std::string main = std::filesystem::absolute(path_).string();
     const aiScene* const found = importer.ReadFile(main, 0);
     if (!found || !found->mRootNode) fail(importer.GetErrorString());
-    if (!system_->refused().empty()) fail_elsewhere();
+    require_own_folder();
     format(*found);
     for (unsigned i = 0; i < found->mNumMaterials; ++i) {
-      materials_.push_back(MaterialImport(*found, *found->mMaterials[i], gltf_).read());
-      scene_.materials.push_back(materials_.back().material);
-      if (materials_.back().moved_picture)
-        warn("material '" + materials_.back().material.name +
-             "' transforms its texture coordinates, which has no effect");
+      const ImportedMaterial& one =
+          materials_.emplace_back(MaterialImport(*found, *found->mMaterials[i], gltf_).read());
+      scene_.materials.push_back(one.material);
+      if (one.moved_picture)
+        warn("material '", one.material.name, "' transforms its texture coordinates, which has no effect");
     }
     for (unsigned i = 0; i < found->mNumTextures; ++i)
-      scene_.embedded.push_back(std::make_shared<const std::vector<std::byte>>(embedded_picture(*found->mTextures[i])));
+      scene_.embedded.push_back(embedded_picture(*found->mTextures[i]));
     for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
     nodes(*found->mRootNode);
-    if (posed_ > 0) warn(std::to_string(posed_) + " meshes have bones or morph targets, which are not applied");
-    if (crossings_ > 0)
-      warn(std::to_string(crossings_) + " polygons cross themselves, and become fans about their first corners");
-    if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
-    for (const std::string& file : system_->looked_for())
+    if (posed_ > 0) warn(posed_, " meshes have bones or morph targets, which are not applied");
+    if (crossings_ > 0) warn(crossings_, " polygons cross themselves, and become fans about their first corners");
+    if (left_out_ > 0) warn("points and lines are left out: ", left_out_, " in all");
+    for (const std::string& file : system_->looked_for)
       if (file != main) scene_.files.push_back(file);
     return std::move(scene_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem) const {
-    if (!system_->refused().empty()) fail_elsewhere();
+  [[noreturn]] void fail(const auto&... what) const {
+    require_own_folder();
+    const std::string problem = text::message(what...);
     if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
-    throw FileError(path_.string(), "",
-                    "is no mesh file that can be read: " + (problem.starts_with("No suitable reader")
-                                                                ? "assimp finds none of its formats in it"
-                                                                : printable(problem)));
+    const bool no_format = problem.starts_with("No suitable reader");
+    detail::fail(path_, "is no mesh file that can be read: ",
+                 no_format ? "assimp finds none of its formats in it" : printable(problem));
   }
-  [[noreturn]] void fail_elsewhere() const {
-    throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");
+  void require_own_folder() const {
+    if (!system_->refused.empty())
+      detail::fail(path_, "refers to '", system_->refused, "': expected files in its own folder");
   }
-  void warn(const std::string& what) { scene_.warnings.push_back(path_.string() + ": " + what); }
+  void warn(const auto&... oddity) { scene_.warnings.push_back(warning(path_.string(), 0, oddity...)); }
 
-  /// Unit and axes of the file, as far as assimp does not apply them. Those of DAE files it does, to y up and metres.
+  /// Unit and axes of the file, unless assimp applies them, as to DAE files: y up, in metres.
   void format(const aiScene& found) {
     aiString name;
     if (found.mMetaData) found.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, name);
     const std::string_view word = name.C_Str();
     gltf_ = word.starts_with("glTF");
     const bool fbx = word.find("FBX") != word.npos, dae = word.starts_with("Collada");
-    const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
     if (gltf_ || fbx || dae) scene_.upright = y_up;
     if (dae && settings_.unit)  // assimp scales the root by the unit, and turns it
-      scene_.applied_unit = std::cbrt(std::fabs(static_cast<double>(found.mRootNode->mTransformation.Determinant())));
+      scene_.applied_unit = std::cbrt(std::fabs(double{found.mRootNode->mTransformation.Determinant()}));
     if (!fbx) return;
     const auto whole = [&](const char* key, int otherwise) {
       std::int32_t value = otherwise;
@@ -166,37 +155,33 @@ class MeshImport {
       const Vec3 forward = cross(upward, rightward);
       for (int i = 0; i < 3; ++i) scene_.upright[i] = {rightward[i], forward[i], upward[i]};
     }
-    float centimetres = 1;
-    double precise = 1;
-    if (found.mMetaData->Get("UnitScaleFactor", precise))
-      scene_.unit = precise / 100;
-    else if (found.mMetaData->Get("UnitScaleFactor", centimetres))
-      scene_.unit = static_cast<double>(centimetres) / 100;
-    else
-      scene_.unit = 0.01;
+    float single = 1;
+    double centimetres = 1;
+    if (!found.mMetaData->Get("UnitScaleFactor", centimetres) && found.mMetaData->Get("UnitScaleFactor", single))
+      centimetres = double{single};
+    scene_.unit = centimetres / 100;
   }
 
   void mesh(const aiMesh& from) {
     static_assert(sizeof(aiVector3D) == sizeof(Float3) && sizeof(ai_real) == sizeof(float));
     RawMesh made{.name = from.mName.C_Str(), .material = from.mMaterialIndex};
+    const std::span<aiAnimMesh* const> targets(from.mAnimMeshes, from.mAnimMeshes ? from.mNumAnimMeshes : 0);
     const bool is_morphed =
-        std::any_of(from.mAnimMeshes, from.mAnimMeshes + (from.mAnimMeshes ? from.mNumAnimMeshes : 0),
-                    [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
+        std::ranges::any_of(targets, [](const aiAnimMesh* one) { return one && one->mWeight != 0; });
     posed_ += from.mNumBones > 0 || is_morphed ? 1 : 0;
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
     const auto shared = [&](const aiVector3D* values) {
-      return SharedArray<Float3>({reinterpret_cast<const Float3*>(values), values ? from.mNumVertices : 0}, importer_);
+      const std::size_t count = values ? from.mNumVertices : 0;
+      return SharedArray<Float3>({reinterpret_cast<const Float3*>(values), count}, importer_);
     };
     made.vertices = shared(from.mVertices);
     made.triangles = triangles_of(from);
     if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
-    const ImportedMaterial& material = materials_[from.mMaterialIndex];
-    const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
-                          !material.material.opacity.name.empty();
-    const unsigned channel =
-        material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel
-                                                                                                     : 0;
-    if (pictured) made.texture = shared(from.mTextureCoords[channel]);
+    const auto& [material, channel, moved] = materials_[from.mMaterialIndex];
+    const bool pictured = !material.colour.name.empty() || !material.opacity.name.empty();
+    const bool has_channel = channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(channel);
+    if (pictured || settings_.texture || !settings_.materials.empty())
+      made.texture = shared(from.mTextureCoords[has_channel ? channel : 0]);
     scene_.meshes.push_back(std::move(made));
   }
 
@@ -212,37 +197,32 @@ class MeshImport {
         ++left_out_;
         continue;
       }
-      check(face, from.mNumVertices);
+      check({face.mIndices, face.mNumIndices}, from.mNumVertices);
       crossings_ += cut(face, from.mVertices, to) ? 0 : 1;
       to += face.mNumIndices - 2;
     }
     return triangles;
   }
 
-  void check(const aiFace& face, std::uint32_t vertices) const {
-    if (face.mNumIndices > max_polygon_corners)
-      fail("a polygon has " + std::to_string(face.mNumIndices) + " corners, expected at most " +
-           std::to_string(max_polygon_corners));
-    for (unsigned k = 0; k < face.mNumIndices; ++k)
-      if (face.mIndices[k] >= vertices)
-        fail("a face has the vertex " + std::to_string(face.mIndices[k]) +
-             ", expected less than the number of vertices, " + std::to_string(vertices));
+  void check(std::span<const unsigned> corners, unsigned vertices) const {
+    if (corners.size() > max_polygon_corners)
+      fail("a polygon has ", corners.size(), " corners, expected at most ", max_polygon_corners);
+    for (const unsigned one : corners)
+      if (one >= vertices)
+        fail("a face has the vertex ", one, ", expected less than the number of vertices, ", vertices);
   }
 
-  /// Writes the n - 2 triangles of a face; those not needed have no area. False for a fan: its outline crosses itself.
+  /// Writes the n - 2 triangles of a face, some without area. False if its outline crosses itself.
   [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
     const unsigned* const c = face.mIndices;
-    const auto fan = [&] {
-      for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
-    };
-    fan();
+    for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
     if (face.mNumIndices == 3) return true;
     std::vector<Vec3> corners;
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       const aiVector3D& v = vertices[c[k]];
       corners.emplace_back(v.x, v.y, v.z);
     }
-    if (corners.size() == 4) {  // the fan of a convex one without a search, as most polygons are such
+    if (corners.size() == 4) {  // a convex one, as most polygons are, without a search
       const Vec3 normal = cross(corners[2] - corners[0], corners[3] - corners[1]);
       const auto turns_left = [&](std::size_t k) {
         const Vec3 &a = corners[k], &b = corners[(k + 1) % 4], &after = corners[(k + 2) % 4];
@@ -252,15 +232,8 @@ class MeshImport {
     }
     const auto cuts = triangulated(corners);
     for (std::size_t k = 0; k + 2 < corners.size() && !cuts.empty(); ++k)
-      to[k] = k < cuts.size() ? Corners3{c[cuts[k][0]], c[cuts[k][1]], c[cuts[k][2]]} : Corners3{c[0], c[0], c[0]};
+      for (std::size_t i = 0; i < 3; ++i) to[k][i] = k < cuts.size() ? c[cuts[k][i]] : c[0];
     return !cuts.empty();
-  }
-
-  /// Name of a node with those above it. The root is often one that assimp makes, or one without a meaning.
-  [[nodiscard]] std::string name_of(const aiNode& node, const std::string& above, bool is_root) const {
-    const std::string name = node.mName.C_Str();
-    if (is_root && (name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT")))) return {};
-    return above.empty() ? name : above + "/" + name;
   }
 
   /// Nodes with meshes, each before those below it.
@@ -278,10 +251,12 @@ class MeshImport {
       const aiNode& node = *step.node;
       if (step.depth > 1000) fail("its nodes are nested more than 1000 deep");
       const aiMatrix4x4& m = node.mTransformation;
-      RawNode made{.place = step.above *
-                            Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
-                                   Vec3(m.a4, m.b4, m.c4)}};
-      made.name = name_of(node, step.name, step.depth == 0);
+      const Matrix3 linear(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3));
+      std::string name = node.mName.C_Str();  // that of a root is often made by assimp, or has no meaning
+      const bool means_nothing = name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT"));
+      if (step.depth == 0 && means_nothing) name.clear();
+      RawNode made{.name = step.name.empty() ? name : step.name + "/" + name,
+                   .place = step.above * Affine{linear, Vec3(m.a4, m.b4, m.c4)}};
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");
         made.meshes.push_back(node.mMeshes[i]);
@@ -294,7 +269,7 @@ class MeshImport {
 
   const std::filesystem::path& path_;
   const MeshFileSettings& settings_;
-  std::shared_ptr<Assimp::Importer> importer_ = std::make_shared<Assimp::Importer>();  // owns what its scene holds
+  std::shared_ptr<Assimp::Importer> importer_ = std::make_shared<Assimp::Importer>();  // owns its scene
   FolderSystem* system_;                                                               // of the importer
   RawScene scene_;
   std::vector<ImportedMaterial> materials_;

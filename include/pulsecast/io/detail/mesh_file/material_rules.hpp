@@ -9,14 +9,12 @@
 #include <system_error>
 #include <vector>
 
-#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>
 #include <pulsecast/material/phong.hpp>
 
-/// Materials of mesh files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Number from an interval; one that is none becomes the lower end.
@@ -24,15 +22,17 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return value >= low ? std::min(static_cast<double>(value), high) : low;
 }
 
-/// Phong's law by the rule of `read_mtl`; facets of glTF, whose slope is the square of the roughness. Source:
-/// glTF 2.0, B.2.
+/// Phong's law as `read_mtl`; facets of glTF, of the slope roughness^2. Source: glTF 2.0, B.2.
 inline void set_gloss(const RawOptics& o, Material& made) {
-  const double specular = within(o.specular[0], 0, 1) + within(o.specular[1], 0, 1) + within(o.specular[2], 0, 1);
-  const double diffuse = within(o.colour[0], 0, 1) + within(o.colour[1], 0, 1) + within(o.colour[2], 0, 1);
+  const auto sum = [](const std::array<float, 3>& c) {
+    return within(c[0], 0, 1) + within(c[1], 0, 1) + within(c[2], 0, 1);
+  };
+  const double specular = sum(o.specular), diffuse = sum(o.colour);
   if (specular > 0 && o.shininess > 0) {
     made.law = Phong{specular / (diffuse + specular), within(o.shininess, 0, 1e6)};
   } else if (o.linear && o.roughness >= 0 && o.roughness < 1 && !(o.metallic > 0)) {
-    made.law = Microfacet{std::clamp(static_cast<double>(o.roughness) * static_cast<double>(o.roughness), 1e-3, 2.0)};
+    const auto roughness = static_cast<double>(o.roughness);
+    made.law = Microfacet{std::clamp(roughness * roughness, 1e-3, 2.0)};
   }
 }
 
@@ -46,13 +46,13 @@ inline void set_interface(const RawOptics& o, Material& made) {
     made.smooth = SmoothInterface::glass();
     if (has_index) made.smooth.inside = {.index = index};
   } else if (o.metallic > 0 && o.roughness <= 0.1F) {
-    made.smooth = SmoothInterface::mirror(std::min(within(o.metallic, 0, 1), 1 - std::min(made.reflectance, 1.0)));
+    const double rest = 1 - std::min(made.reflectance, 1.0);
+    made.smooth = SmoothInterface::mirror(std::min(within(o.metallic, 0, 1), rest));
   } else if (made.law.reflects_interface() && has_index) {
     made.smooth.inside.index = index;
   }
 }
 
-/// Material from the properties of a file.
 [[nodiscard]] inline Material material_of(const RawMaterial& from, bool reflectance_of_colour) {
   const RawOptics& o = from.optics;
   const bool named = !from.name.empty() && from.name != "DefaultMaterial";
@@ -105,9 +105,9 @@ struct PictureFinder {
       files.push_back(candidate);
       if (std::filesystem::is_regular_file(candidate, ignored)) return {.file = candidate};
     }
-    warnings.push_back(file.string() + ": material '" + of.name + "' has the picture '" + picture.name +
-                       "', which is not there" +
-                       (is_inside(folder, folder / name) ? "" : " or outside the file's folder") + ": it is left out");
+    const char* const or_outside = is_inside(folder, folder / name) ? "" : " or outside the file's folder";
+    warnings.push_back(warning(file.string(), 0, "material '", of.name, "' has the picture '", picture.name,
+                               "', which is not there", or_outside, ": it is left out"));
     return {};
   }
 };

@@ -9,12 +9,10 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
-/// Meshes of the library from those of a file.
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Joins the meshes of a node to one, with a material each.
@@ -23,7 +21,7 @@ class MeshMaker {
   MeshMaker(std::string path, const RawScene& scene, const Workers& workers)
       : path_(std::move(path)), scene_(scene), workers_(workers) {}
 
-  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if all is flat.
+  /// Mesh of meshes by number, each with its place in a table of materials, mapped by `shape`.
   [[nodiscard]] MeshData operator()(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials,
                                     const Matrix3& shape) {
     MeshData made;
@@ -42,15 +40,13 @@ class MeshMaker {
     made.triangles.resize(triangles);
     if (several) made.materials.resize(triangles);
     if (textured) made.texture.resize(triangles);
+    const bool mirrors = dot(shape[0], cross(shape[1], shape[2])) < 0;
     std::size_t vertex = 0, triangle = 0;
     for (std::size_t k = 0; k < meshes.size(); ++k) {
       const RawMesh& from = scene_.meshes[meshes[k]];
       place(from, shape, made.vertices.data() + vertex);
-      index(from, static_cast<std::uint32_t>(vertex), made.triangles.data() + triangle, mirrors(shape));
-      if (several)
-        std::fill_n(made.materials.begin() + static_cast<std::ptrdiff_t>(triangle), from.triangles.size(),
-                    materials[k]);
-      if (!from.texture.empty()) texture(from, made.texture.data() + triangle, mirrors(shape));
+      index(from, static_cast<std::uint32_t>(vertex), triangle, made, mirrors);
+      if (several) std::fill_n(made.materials.data() + triangle, from.triangles.size(), materials[k]);
       vertex += from.vertex_count();
       triangle += from.triangles.size();
     }
@@ -72,10 +68,6 @@ class MeshMaker {
     });
   }
 
-  [[nodiscard]] static bool mirrors(const Matrix3& shape) noexcept {
-    return dot(shape[0], cross(shape[1], shape[2])) < 0;
-  }
-
   void place(const RawMesh& from, const Matrix3& shape, Vec3* to) const {
     const bool moved = shape != Matrix3(1);
     const auto vertex = [&](std::size_t i) {
@@ -86,33 +78,25 @@ class MeshMaker {
     each(from.vertex_count(), [&](std::size_t i) {
       const Vec3 at = vertex(i);
       if (!(max_norm(at) <= 1e12) || !finite(at))
-        throw FileError(path_, "",
-                        "mesh '" + from.name + "': vertex " + std::to_string(i) +
-                            " is not finite, or beyond 1e12: expected a place");
+        detail::fail(path_, "mesh '", from.name, "': vertex ", i, " is not finite, or beyond 1e12: expected a place");
       to[i] = moved ? shape * at : at;
     });
   }
 
-  void index(const RawMesh& from, std::uint32_t first, Corners3* to, bool turned) const {
-    each(from.triangles.size(), [&](std::size_t i) {
-      const Corners3& c = from.triangles[i];
-      to[i] = {c[0] + first, c[turned ? 2 : 1] + first, c[turned ? 1 : 2] + first};
-    });
-  }
-
-  void texture(const RawMesh& from, std::array<Vec2, 3>* to, bool turned) const {
-    const auto at = [&](std::uint32_t vertex) {
-      const Float3& t = from.texture[vertex];
+  /// Triangles and texture coordinates, from a vertex and a triangle of the mesh on.
+  void index(const RawMesh& from, std::uint32_t vertex, std::size_t triangle, MeshData& to, bool turned) const {
+    const auto at = [&](std::uint32_t corner) {
+      const Float3& t = from.texture[corner];
       const Vec2 place(static_cast<double>(t.x), static_cast<double>(t.y));
       if (!(std::fabs(place.x) <= 1e30 && std::fabs(place.y) <= 1e30))
-        throw FileError(
-            path_, "",
-            "mesh '" + from.name + "': a texture coordinate of vertex " + std::to_string(vertex) + " is not finite");
+        detail::fail(path_, "mesh '", from.name, "': a texture coordinate of vertex ", corner, " is not finite");
       return place;
     };
     each(from.triangles.size(), [&](std::size_t i) {
-      const Corners3& c = from.triangles[i];
-      to[i] = {at(c[0]), at(c[turned ? 2 : 1]), at(c[turned ? 1 : 2])};
+      Corners3 c = from.triangles[i];
+      if (turned) std::swap(c[1], c[2]);
+      to.triangles[triangle + i] = {c[0] + vertex, c[1] + vertex, c[2] + vertex};
+      if (!from.texture.empty()) to.texture[triangle + i] = {at(c[0]), at(c[1]), at(c[2])};
     });
   }
 

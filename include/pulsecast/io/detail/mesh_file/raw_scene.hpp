@@ -7,22 +7,21 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/child_process.hpp>
+#include <pulsecast/io/detail/mesh_file/model.hpp>
 
-/// Content of a mesh file as an importer has it, before materials and units, as a child process transfers it.
+/// Content of a mesh file as an importer has it, before materials and units, for a child process.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Vector of single precision.
 struct Float3 {
   float x = 0, y = 0, z = 0;
 };
 using Corners3 = std::array<std::uint32_t, 3>;  ///< vertex indices of a triangle
 
-/// Linear map and shift.
 struct Affine {
   Matrix3 linear{1};  ///< columns are the images of the axes
   Vec3 shift{};       ///< image of the origin
@@ -31,6 +30,8 @@ struct Affine {
     return {linear * inner.linear, linear * inner.shift + shift};
   }
 };
+
+inline const Matrix3 y_up{Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0)};  ///< to z up
 
 /// Mesh of one material.
 struct RawMesh {
@@ -43,7 +44,9 @@ struct RawMesh {
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return precise.empty() ? vertices.size() : precise.size(); }
 
-  /// True if triangles have vertices that there are, and all vertices or none have texture coordinates.
+  void archive(auto& a) { a(name, material, vertices, precise, triangles, texture); }
+
+  /// True if vertices of triangles exist, and all vertices or none have texture coordinates.
   [[nodiscard]] bool is_consistent() const {
     const auto is_vertex = [&](std::uint32_t vertex) { return vertex < vertex_count(); };
     return (texture.empty() || texture.size() == vertex_count()) &&
@@ -56,12 +59,16 @@ struct RawNode {
   std::string name{};                   ///< names of nodes joined by `/`
   Affine place{};                       ///< to the frame of the root
   std::vector<std::uint32_t> meshes{};  ///< numbers of meshes
+
+  void archive(auto& a) { a(name, place, meshes); }
 };
 
 /// Picture that a material names.
 struct RawPicture {
   std::string name{};          ///< path as in the file, or name of an embedded one; empty: none
   std::int64_t embedded = -1;  ///< number of an embedded picture; negative: none
+
+  void archive(auto& a) { a(name, embedded); }
 };
 
 /// Numbers of a material that are plain.
@@ -78,13 +85,14 @@ struct RawOptics {
   bool linear = false;                     ///< true: the colour is a linear share of light
   std::uint16_t classification = 0;        ///< ASPRS class
   bool ground = false;                     ///< true if it may carry set-ups
-  bool has_diffuse = false;                ///< true: the file has a colour
 };
 
 struct RawMaterial {
   std::string name{};
   RawOptics optics{};
   RawPicture colour{}, opacity{};  ///< pictures
+
+  void archive(auto& a) { a(name, optics, colour, opacity); }
 };
 
 struct RawScene {
@@ -99,6 +107,10 @@ struct RawScene {
   Matrix3 upright{1};                ///< to z up, by the file
   std::string reference{};           ///< name of a reference system
 
+  void archive(auto& a) {
+    a(meshes, nodes, materials, embedded, warnings, files, unit, applied_unit, upright, reference);
+  }
+
   /// True if all meshes have a material, and all nodes meshes.
   [[nodiscard]] bool is_consistent() const {
     const auto is_mesh = [&](std::uint32_t mesh) { return mesh < meshes.size(); };
@@ -112,9 +124,25 @@ struct RawScene {
 /// Message of a library, cut and without the bytes of the file that it may have.
 [[nodiscard]] inline std::string printable(std::string message) {
   message.resize(std::min<std::size_t>(message.size(), 300));
-  std::ranges::replace_if(
-      message, [](char c) { return c < ' ' || c > '~'; }, '?');
+  for (char& c : message)
+    if (c < ' ' || c > '~') c = '?';
   return message;
+}
+
+/// Result of an import in a child process: `import` takes a function to call with the size of each
+/// further file [byte].
+template <class Import>
+[[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits,
+                                      const Import& import) {
+  std::error_code ignored;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, ignored));
+  const double bytes = ignored ? 0 : size;
+  const ChildLimits of_child{.memory = limits.memory + limits.memory_per_byte * bytes,
+                             .time = limits.time + limits.time_per_byte * bytes};
+  const auto opened = [&](std::uint64_t more) {
+    ChildProcess::allow(limits.memory_per_byte * static_cast<double>(more));
+  };
+  return ChildProcess::result(path.string(), of_child, [&] { return import(opened); });
 }
 
 /// True for a path that does not leave a folder by its words; links are followed.

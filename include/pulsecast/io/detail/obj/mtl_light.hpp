@@ -9,7 +9,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/material.hpp>
@@ -25,17 +24,16 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
 }
 
-/// Expected words of a key of HELIOS++ or of this library, for a message; null if they are right, or the key is
-/// another.
+/// Expected words of an extra key, for a message; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
   const std::size_t count = words.size();
   const auto is = [&](std::string_view word) { return count > 0 && words[0] == word; };
   const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers from low to high
-    return std::all_of(words.data() + std::min(first, count), words.data() + std::min(end, count),
-                       [&](std::string_view word) {
-                         const std::optional<double> number = number_in<double>(word);
-                         return number && *number >= low && *number <= high;
-                       });
+    for (std::size_t i = first; i < std::min(end, count); ++i) {
+      const std::optional<double> number = number_in<double>(words[i]);
+      if (!number || *number < low || *number > high) return false;
+    }
+    return true;
   };
   const auto need = [](bool right, const char* expected) { return right ? nullptr : expected; };
   if (key == "helios_reflectance")
@@ -67,9 +65,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return nullptr;
 }
 
-/// Sets what a material passes on from the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and 9
-/// bodies of glass with the index `Ni`. Source: MTL specification, Wavefront 1995; `Pm`: the common extension for
-/// physically based shading. Returns false for an index out of range, in place of which that of glass is set.
+/// Sets specular light by the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and
+/// 9 glass of the index `Ni`. False for an index out of range: that of glass is set. Source: MTL
+/// specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
 [[nodiscard]] inline bool set_standard_light(Material& made, const tinyobj::material_t& m) {
   const double rest = 1 - std::min(made.reflectance, 1.0),
                specular = (m.specular[0] + m.specular[1] + m.specular[2]) / 3;
@@ -85,17 +83,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return true;
 }
 
-/// Water of a key's words, which are right, for light of a wavelength [m]. @throws SettingError for a wavelength out of
-/// range
-[[nodiscard]] inline SmoothInterface water_of(const std::vector<std::string_view>& words, double wavelength) {
-  if (const auto type = jerlov_type(words[0])) return SmoothInterface::water(water(*type, wavelength));
-  return SmoothInterface::water(secchi_water(*text::number_in<double>(words[1]), wavelength));
-}
-
-/// Sets what a material passes on from the keys of this library, but for water, whose words are right. `words_of(key)`
-/// are those of a key.
-template <class WordsOf>
-void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& words_of) {
+/// Sets specular light by the keys of this library, but for water. `words_of(key)` are right.
+void set_own_light(Material& made, const tinyobj::material_t& m, const auto& words_of) {
   const auto number = [](std::string_view word) { return *text::number_in<double>(word); };
   if (const auto words = words_of("pulsecast_interface"); !words.empty()) {
     if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
@@ -115,16 +104,15 @@ void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& 
     made.smooth.inside.absorption = -std::log(transmission) / made.smooth.thickness;
   if (const auto words = words_of("pulsecast_retroreflection"); !words.empty()) {
     const double coefficient = number(words[0]);
-    const auto kind = words_of("pulsecast_retroreflector");
-    const bool prisms = !kind.empty() && kind[0] == "prisms",
-               corners = prisms || (!kind.empty() && kind[0] == "cubeCorner");
-    const std::size_t width = prisms ? 2 : 1;
-    const double half_angle = kind.size() > width ? number(kind[width]) : 0;
-    if (corners)
-      made.law = Retroreflector<CubeCorners>{coefficient, half_angle, {prisms ? number(kind[1]) : 1}};
+    const auto of = words_of("pulsecast_retroreflector");
+    const std::string_view kind = of.empty() ? "beads" : of[0];
+    const std::size_t width = kind == "prisms" ? 2 : 1;
+    const double half_angle = of.size() > width ? number(of[width]) : 0;
+    const Beads beads = words.size() > 1 ? Beads{radians(number(words[1]))} : Beads{};
+    if (kind == "beads")
+      made.law = Retroreflector<Beads>{coefficient, half_angle, beads};
     else
-      made.law =
-          Retroreflector<Beads>{coefficient, half_angle, words.size() > 1 ? Beads{radians(number(words[1]))} : Beads{}};
+      made.law = Retroreflector<CubeCorners>{coefficient, half_angle, {kind == "prisms" ? number(of[1]) : 1}};
   }
   if (const auto words = words_of("pulsecast_roughness"); !words.empty()) made.law = Microfacet{number(words[0])};
 }

@@ -19,7 +19,6 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 
@@ -35,37 +34,25 @@ class ObjPiece : private StatementBuffer {
     std::optional<std::uint32_t> number;
   };
 
-  /// An `mtllib` statement.
   struct Libraries {
     std::size_t line;
     std::string quoted, rest;
-    std::vector<std::string> names;
   };
 
-  /// First error and its line.
-  struct Failure {
-    std::size_t line = std::numeric_limits<std::size_t>::max();
-    std::exception_ptr error;
-  };
+  static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max();
 
-  /// Text about a line.
-  struct Note {
-    std::size_t line;
-    std::string text;
-  };
-
-  /// Lines with the same oddity: the first of them, with its text, and their number.
+  /// Lines with the same oddity: their number, the first of them, and its text.
   struct Notes {
-    Note first{std::numeric_limits<std::size_t>::max(), {}};
-    std::size_t count = 0;
+    std::size_t count = 0, line = no_line;
+    std::string text{};
 
-    void add(const Note& note, std::size_t times = 1) {
-      count += times;
-      if (times > 0 && note.line < first.line) first = note;
+    void add(const Notes& more) {
+      const std::size_t all = count + more.count;
+      if (more.line < line) *this = more;
+      count = all;
     }
   };
 
-  /// `textured` to read texture coordinates.
   ObjPiece(const std::string& path, std::string text, std::size_t lines_before, bool textured = false)
       : StatementBuffer(path, std::move(text), lines_before), textured_(textured) {}
 
@@ -78,10 +65,7 @@ class ObjPiece : private StatementBuffer {
     callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
       static_cast<ObjPiece*>(self)->face({corners, static_cast<std::size_t>(count)});
     };
-    callbacks.usemtl_cb = [](void* self, const char* name, int) {
-      ObjPiece& piece = *static_cast<ObjPiece*>(self);
-      piece.uses.push_back({name, piece.line(), std::nullopt});
-    };
+    callbacks.usemtl_cb = [](void* self, const char* name, int) { static_cast<ObjPiece*>(self)->use(name); };
     try {
       std::istream stream(this);
       stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
@@ -91,8 +75,8 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before`
-  /// vertices of earlier ones; `all_places` and `places_before` are those of texture coordinates.
+  /// Triangulates the faces up to the first error. `all`: `before` vertices of earlier pieces, and
+  /// those of this one, z up. `all_places`, `places_before`: texture coordinates.
   void triangulate(std::span<const Vec3> all, std::size_t before, std::span<const Vec2> all_places = {},
                    std::size_t places_before = 0) {
     triangles.reserve(faces_.size());
@@ -116,24 +100,26 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  std::vector<Vec3> vertices;                   ///< as in the file
+  std::vector<Vec3> vertices;                   ///< vertices as in the file
   std::vector<Vec2> places;                     ///< texture coordinates
   std::vector<Use> uses = std::vector<Use>(1);  ///< the first is in force from earlier pieces
   std::vector<Libraries> libraries;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
-  std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
-  std::vector<std::size_t> without_place;    ///< by index into `uses`: corners without texture coordinates
-  std::vector<Note> crossings;               ///< polygons whose outline crosses itself
+  std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if read
+  std::vector<std::size_t> without_place;    ///< by use: corners without texture coordinates
+  std::vector<std::size_t> crossings;        ///< lines of polygons whose outline crosses itself
   Notes unknown, flat;                       ///< unknown statements, and faces without an area
-  std::size_t open_line = 0;                 ///< line of a last statement without end; 0 if there is none
-  Failure failure;
+  std::size_t open_line = 0;                 ///< line of a last statement without end; 0: none
+  struct {
+    std::size_t line = no_line;
+    std::exception_ptr error;
+  } failure;  ///< first error
 
  private:
-  /// Polygon of a face.
   struct Face {
     std::size_t line;
-    std::uint32_t corners, above, use;  ///< number of corners; vertices of this piece above it; index into `uses`
+    std::uint32_t corners, above, use;  ///< corners; vertices of this piece above it; index into `uses`
     std::uint32_t places_above;         ///< texture coordinates of this piece above it
   };
 
@@ -147,21 +133,19 @@ class ObjPiece : private StatementBuffer {
       require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
               "three finite numbers, none beyond 1e12");
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
-      return flat.add({line(), {}});
+      return flat.add({1, line()});
     } else if (keyword() == "f") {
       require(std::ranges::all_of(given, is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl" && given.empty()) {
-      uses.push_back({"default", line(), std::nullopt});
-      return;
+      return use("default");
     } else if (keyword() == "vt" && textured_) {
-      place(given);
-      return;
+      return place(given);
     } else if (keyword() != "usemtl") {
-      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read only the first of several
-        libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first of several
+        libraries.push_back({line(), quoted(), std::string(rest())});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
-        unknown.add({line(), quoted()});
+        unknown.add({1, line(), quoted()});
       }
       return;
     }
@@ -179,6 +163,8 @@ class ObjPiece : private StatementBuffer {
     }
     return false;
   }
+
+  void use(const char* name) { uses.push_back({name, line(), std::nullopt}); }
 
   void vertex(const Vec3& p) {
     require(max_norm(p) <= max_number, "three finite numbers, none beyond 1e12");
@@ -200,8 +186,9 @@ class ObjPiece : private StatementBuffer {
     for (const tinyobj::index_t& corner : given) corners_.push_back(corner.vertex_index);
     if (textured_)
       for (const tinyobj::index_t& corner : given) place_corners_.push_back(corner.texcoord_index);
-    faces_.push_back({line(), static_cast<std::uint32_t>(given.size()), static_cast<std::uint32_t>(vertices.size()),
-                      static_cast<std::uint32_t>(uses.size() - 1), static_cast<std::uint32_t>(places.size())});
+    const auto whole = [](std::size_t count) { return static_cast<std::uint32_t>(count); };
+    faces_.push_back(
+        {line(), whole(given.size()), whole(vertices.size()), whole(uses.size() - 1), whole(places.size())});
   }
 
   /// Takes the texture coordinates of a face; (0, 0) where it has none, or refers to missing ones.
@@ -217,13 +204,12 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  /// Records that a face refers to a missing vertex.
   void reject(std::size_t face_line, int corner, std::int64_t count) {
     try {
       rewind();
       while (next_statement() && line() < face_line) continue;
-      fail_here(quoted() + " refers to vertex " + std::to_string(corner) + ": expected from 1 to the " +
-                std::to_string(count) + " vertices above, or from -1 backwards");
+      fail_here(quoted(), " refers to vertex ", corner, ": expected from 1 to the ", count,
+                " vertices above, or from -1 backwards");
     } catch (...) {
       failure = {face_line, std::current_exception()};
     }
@@ -235,14 +221,13 @@ class ObjPiece : private StatementBuffer {
     const auto pieces = triangulated(positions_);
     for (const auto& [a, b, c] : pieces) triangle(face, a, b, c);
     if (!pieces.empty()) return;
-    crossings.push_back(
-        {face.line, "the outline of the polygon crosses itself: it becomes a fan about its first corner"});
+    crossings.push_back(face.line);
     for (std::size_t k = 2; k < numbers_.size(); ++k) triangle(face, 0, k - 1, k);
   }
 
   void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
     const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
-    if (area == Vec3{0, 0, 0}) return flat.add({face.line, {}});
+    if (area == Vec3{0, 0, 0}) return flat.add({1, face.line});
     triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
     triangle_uses.push_back(face.use);
     if (textured_) texture.push_back({face_places_[a], face_places_[b], face_places_[c]});

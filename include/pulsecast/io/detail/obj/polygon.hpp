@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_POLYGON_HPP
 #define PULSECAST_IO_DETAIL_OBJ_POLYGON_HPP
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -13,13 +14,13 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; triangulation takes quadratic time
+inline constexpr std::size_t max_polygon_corners = 4096;  ///< limit, as the time is quadratic
 
-/// Triangulates a polygon by ear clipping; a convex one becomes the fan about its first corner. Returns corner indices,
-/// three a triangle; empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
-/// tinyobjloader 2.0 rc10 triangulates, too, but loses parts of concave polygons away from the origin.
+/// Triangles of a polygon, as corner indices, by ear clipping (tinyobjloader 2.0 rc10 loses parts
+/// of concave polygons); a convex one becomes the fan about its first corner. Empty if the outline
+/// crosses itself. Source: Meisters 1975, every simple polygon has two ears.
 [[nodiscard]] inline std::vector<std::array<std::size_t, 3>> triangulated(const std::vector<Vec3>& corners) {
-  // projection along the axis nearest to the normal, counter-clockwise. Source: Newell, in Sutherland et al. 1974.
+  // projection along the axis nearest to the normal. Source: Newell, in Sutherland et al. 1974
   Vec3 normal{};
   for (std::size_t i = 0; i < corners.size(); ++i)
     normal += cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
@@ -32,7 +33,7 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; tria
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     flat.push_back(normal[axis] < 0 ? Vec2{p[v], p[u]} : Vec2{p[u], p[v]});
   }
-  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive if the path a, b, c turns left
+  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive for a turn to the left
     const Vec2 ab = flat[b] - flat[a], ac = flat[c] - flat[a];
     return ab.x * ac.y - ab.y * ac.x;
   };
@@ -45,12 +46,10 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; tria
   const auto is_ear = [&](std::size_t i) {
     const auto [before, after] = neighbours(i);
     if (!(left(before, ring[i], after) > 0)) return false;
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const std::size_t p = ring[k];
-      if (flat[p] == flat[before] || flat[p] == flat[ring[i]] || flat[p] == flat[after]) continue;
-      if (left(before, ring[i], p) >= 0 && left(ring[i], after, p) >= 0 && left(after, before, p) >= 0) return false;
-    }
-    return true;
+    return std::ranges::none_of(ring, [&, a = before, b = ring[i], c = after](std::size_t p) {
+      return flat[p] != flat[a] && flat[p] != flat[b] && flat[p] != flat[c] && left(a, b, p) >= 0 &&
+             left(b, c, p) >= 0 && left(c, a, p) >= 0;
+    });
   };
   const auto is_straight = [&](std::size_t i) {
     const auto [before, after] = neighbours(i);

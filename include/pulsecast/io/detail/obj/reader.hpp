@@ -5,47 +5,36 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <set>
 #include <system_error>
 #include <vector>
 
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/piece.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
-#include <pulsecast/material/material.hpp>
-#include <pulsecast/shape/mesh_data.hpp>
 
-/// Reading of OBJ files.
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-/// Reader of a file in windows of some pieces. Pieces are read in parallel, and triangulated in parallel once the
-/// vertices before them are known; results are joined in the order of the file.
+/// Reader of a file in windows of some pieces, read in parallel, and triangulated in parallel once
+/// the vertices before them are known; results are joined in the order of the file.
 class ObjReader {
  public:
   ObjReader(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers,
-            std::size_t piece_bytes = StatementFile::piece_bytes)
+            std::size_t piece_bytes = std::size_t{1} << 18)
       : file_(path), folder_(path.parent_path()), settings_(settings), workers_(workers), piece_bytes_(piece_bytes) {}
 
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
-    MeshData& mesh = model_.mesh;
     if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
-    const auto& [unknown, unknown_count] = unknown_;
-    if (unknown_count > 0)
-      warn(unknown.line, unknown.text + " is not known and left out, the first of " + std::to_string(unknown_count));
-    if (flat_.count > 0)
-      warn(flat_.first.line, "a face without area is left out, the first of " + std::to_string(flat_.count));
-    if (mesh.triangles.empty())
-      model_.warnings.push_back(file_.path() +
-                                ": holds no face with an area: expected at least one 'f' statement of such a one");
+    if (unknown_.count > 0)
+      warn(unknown_.line, unknown_.text, " is not known and left out, the first of ", unknown_.count);
+    if (flat_.count > 0) warn(flat_.line, "a face without area is left out, the first of ", flat_.count);
+    if (model_.mesh.triangles.empty())
+      warn(0, "holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
     return std::move(model_);
   }
@@ -53,7 +42,6 @@ class ObjReader {
  private:
   using Use = ObjPiece::Use;
 
-  /// Reads the next window; false at the end of the file.
   bool read_window() {
     std::vector<std::unique_ptr<ObjPiece>> pieces;
     while (pieces.size() < std::size_t{4} * workers_.count()) {
@@ -75,8 +63,7 @@ class ObjReader {
       places_before.push_back(places_.size());
       vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
       places_.insert(places_.end(), piece->places.begin(), piece->places.end());
-      if (vertices.size() > std::numeric_limits<int>::max())
-        file_.fail("has too many vertices: expected fewer than 2^31");
+      if (vertices.size() > 0x7FFFFFFF) file_.fail("has too many vertices: expected fewer than 2^31");
     }
     for_each_index(pieces.size(), workers_,
                    [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i], places_, places_before[i]); });
@@ -87,8 +74,8 @@ class ObjReader {
   void add(ObjPiece& piece) {
     auto crossing = piece.crossings.begin();
     const auto warn_before = [&](std::size_t line) {
-      for (; crossing != piece.crossings.end() && crossing->line < line; ++crossing)
-        warn(crossing->line, crossing->text);
+      for (; crossing != piece.crossings.end() && *crossing < line; ++crossing)
+        warn(*crossing, "the outline of the polygon crosses itself: it becomes a fan about its first corner");
     };
     for (const ObjPiece::Libraries& statement : piece.libraries) {
       if (statement.line > piece.failure.line) break;
@@ -96,7 +83,7 @@ class ObjReader {
       libraries(statement);
     }
     if (piece.failure.error) std::rethrow_exception(piece.failure.error);
-    warn_before(std::numeric_limits<std::size_t>::max());
+    warn_before(ObjPiece::no_line);
 
     piece.uses.front() = use_;
     MeshData& mesh = model_.mesh;
@@ -106,8 +93,8 @@ class ObjReader {
       without_place_[piece.uses[use].name] += piece.without_place[use];
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
-    unknown_.add(piece.unknown.first, piece.unknown.count);
-    flat_.add(piece.flat.first, piece.flat.count);
+    unknown_.add(piece.unknown);
+    flat_.add(piece.flat);
     open_line_ = std::max(open_line_, piece.open_line);
   }
 
@@ -122,10 +109,10 @@ class ObjReader {
 
   /// Reads the files of `mtllib`: one file, whose name may have blanks, or several.
   void libraries(const ObjPiece::Libraries& statement) {
-    std::error_code ignored_error;
-    if (std::filesystem::exists(library_path(statement.rest), ignored_error)) return library(statement.rest, statement);
+    std::error_code ignored;
+    if (std::filesystem::exists(library_path(statement.rest), ignored)) return library(statement.rest, statement);
     model_.files.push_back(library_path(statement.rest));
-    for (const std::string& name : statement.names) library(name, statement);
+    for (std::string_view left = statement.rest; !left.empty();) library(std::string(text::take_word(left)), statement);
   }
 
   [[nodiscard]] std::filesystem::path library_path(std::string path) const {
@@ -138,7 +125,7 @@ class ObjReader {
     model_.files.push_back(path);
     std::error_code ignored_error;
     if (!std::filesystem::is_regular_file(path, ignored_error)) {
-      warn(statement.line, statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
+      warn(statement.line, statement.quoted, ": expected an MTL file at ", path.string(), ", but there is none");
       return;
     }
     if (!read_.insert(path.string()).second) return;
@@ -153,27 +140,26 @@ class ObjReader {
     for (const Use& use : uses_) {
       const auto found = library_.find(use.name);
       if (found == library_.end() && use.line > 0)
-        warn(use.line, "no MTL file describes the material '" + use.name + "': a reflectance of 0.5 is assumed");
+        warn(use.line, "no MTL file describes the material '", use.name, "': a reflectance of 0.5 is assumed");
       model_.materials.push_back(found == library_.end() ? undescribed(use.name) : found->second);
       const auto pictures = pictures_.find(use.name);
       if (pictures == pictures_.end()) continue;
       if (const std::size_t count = without_place_[use.name]; count > 0)
-        model_.warnings.push_back(file_.path() + ": " + std::to_string(count) + " corners of material '" + use.name +
-                                  "' have no texture coordinates: 0, 0 is assumed");
+        warn(0, count, " corners of material '", use.name, "' have no texture coordinates: 0, 0 is assumed");
       model_.pictures.resize(model_.materials.size());
       model_.pictures.back() = pictures->second;
     }
   }
 
-  void warn(std::size_t line, const std::string& text) {
-    model_.warnings.push_back(file_.path() + ", line " + std::to_string(line) + ": " + text);
+  void warn(std::size_t line, const auto&... oddity) {
+    model_.warnings.push_back(warning(file_.path(), line, oddity...));
   }
 
   StatementFile file_;
   std::filesystem::path folder_;
   ObjSettings settings_;
   Workers workers_;
-  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of lines read
+  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of those read
   ObjModel model_;
   std::vector<Vec2> places_;  // texture coordinates, if they are read
   std::map<std::string, Material, std::less<>> library_;

@@ -19,9 +19,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 static_assert(std::same_as<tinyobj::real_t, double>,
               "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
-inline constexpr double max_number = 1e12;  ///< in a file, so that products of a few numbers cannot overflow
+inline constexpr double max_number = 1e12;  ///< in a file, so that products cannot overflow
 
-/// Number in a word, if tinyobjloader would read the same: others it reads in part, and it fails at long ones.
+/// Number, if tinyobjloader reads the same: it reads others in part, and fails at long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
   const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
@@ -29,16 +29,16 @@ template <class Number>
 }
 
 /// Text of an OBJ or MTL file, read in pieces.
-class StatementFile {
+class StatementFile : public InputFile {
  public:
-  explicit StatementFile(const std::filesystem::path& path) : file_(path, "an OBJ or MTL file") {}
+  explicit StatementFile(const std::filesystem::path& path) : InputFile(path, "an OBJ or MTL file") {}
 
   /// Next whole statements, about `bytes` long; empty at the end of the file.
   [[nodiscard]] std::string next(std::size_t bytes) {
     std::string text = std::exchange(rest_, {});
     std::size_t end = 0;
     while (end == 0) {
-      const std::string_view more = file_.take(bytes);
+      const std::string_view more = take(bytes);
       if (more.empty()) break;
       text += more;
       end = end_of_statements(text);
@@ -50,13 +50,6 @@ class StatementFile {
     if (!std::exchange(begun_, true)) text.erase(0, text.size() - text::without_byte_order_mark(text).size());
     return text;
   }
-
-  [[nodiscard]] std::string all() { return file_.take_rest(); }
-
-  static constexpr std::size_t piece_bytes = std::size_t{1} << 18;  ///< default size of a piece [byte]
-
-  [[nodiscard]] const std::string& path() const { return file_.path(); }
-  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
 
  private:
   /// End of the last line that is not continued in the next; 0 if there is none.
@@ -70,12 +63,11 @@ class StatementFile {
     return 0;
   }
 
-  InputFile file_;
   std::string rest_;
   bool begun_ = false;
 };
 
-/// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error has its line.
+/// Buffer that feeds tinyobjloader by statements, so that checks and errors have their lines.
 class StatementBuffer : public std::streambuf {
  public:
   /// `text` of whole statements of a file, after `lines_before` lines.
@@ -83,14 +75,13 @@ class StatementBuffer : public std::streambuf {
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
  protected:
-  /// Sets `ready`, empty at first, to the current statement for tinyobjloader. Throws a `FileError` if it is invalid.
+  /// Sets `ready`, empty at first, to the current statement for tinyobjloader. @throws FileError
   virtual void check(std::string& ready) = 0;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::size_t line() const { return line_; }   ///< first line of the current statement, from 1
-  [[nodiscard]] bool line_is_open() const { return open_; }  ///< true for a last line without end
-  /// Current statement, with one blank after the keyword.
-  [[nodiscard]] const std::string& statement() const { return statement_; }
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< first of the statement
+  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< for a last line without end
+  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< one blank after keyword
   [[nodiscard]] std::string_view keyword() const {
     return std::string_view(statement_).substr(0, statement_.find(' '));
   }
@@ -98,7 +89,6 @@ class StatementBuffer : public std::streambuf {
     return text::trimmed(std::string_view(statement_).substr(keyword().size()));
   }
 
-  /// Words after the keyword.
   [[nodiscard]] const std::vector<std::string_view>& words() {
     words_.clear();
     for (std::string_view left = rest(); !left.empty();) words_.push_back(text::take_word(left));
@@ -106,14 +96,11 @@ class StatementBuffer : public std::streambuf {
   }
 
   [[nodiscard]] std::string quoted() const { return text::quoted(statement_); }
-  [[noreturn]] void fail_here(const std::string& problem) const {
-    throw FileError(path_, "line " + std::to_string(line_), problem);
-  }
+  [[noreturn]] void fail_here(const auto&... problem) const { fail_at(path_, line_, problem...); }
   void require(bool fulfilled, const char* expected) const {
-    if (!fulfilled) fail_here(quoted() + ": expected " + expected);
+    if (!fulfilled) fail_here(quoted(), ": expected ", expected);
   }
 
-  /// Returns to the beginning of the text.
   void rewind() noexcept {
     at_ = 0;
     lines_ = lines_before_;
@@ -142,7 +129,7 @@ class StatementBuffer : public std::streambuf {
     return traits_type::to_int_type(ready_.front());
   }
 
-  /// Joins lines continued by a backslash, which tinyobjloader does not support. False at the end of the text.
+  /// Joins lines continued by a backslash, unlike tinyobjloader. False at the end of the text.
   bool take_statement() {
     joined_.clear();
     line_ = lines_ + 1;
@@ -179,7 +166,7 @@ class StatementBuffer : public std::streambuf {
   std::string path_, text_;
   std::string joined_, statement_, ready_;
   std::vector<std::string_view> words_;
-  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: begin of the next line in the text
+  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: begin of the next line
   bool open_ = false;
 };
 

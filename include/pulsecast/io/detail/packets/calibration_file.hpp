@@ -73,11 +73,11 @@ class CalibrationFile {
   }
 
   /// @throws FileError about a node
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& problem) const { fail(node.Mark(), problem); }
+  [[noreturn]] void fail(const YAML::Node& node, const auto&... problem) const { fail(node.Mark(), problem...); }
 
  private:
-  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& problem) const {
-    throw FileError(path_, mark.is_null() ? "" : "line " + std::to_string(mark.line + 1), problem);
+  [[noreturn]] void fail(const YAML::Mark& mark, const auto&... problem) const {
+    throw FileError(path_, mark.is_null() ? "" : text::message("line ", mark.line + 1), text::message(problem...));
   }
 
   std::string path_;

@@ -22,14 +22,14 @@ enum class ColourBy : std::uint8_t { height, intensity, object, classification, 
 
 /// Settings of a picture.
 struct ImageSettings {
-  int width = 1600;                ///< width of the picture [px]
-  int height = 900;                ///< height of the picture [px]
-  double azimuth = radians(30);    ///< viewing direction, clockwise from north [rad]
-  double elevation = radians(30);  ///< viewing direction below the horizon; a quarter turn looks straight down [rad]
-  double field_of_view = radians(30);     ///< angle across the scene, approximate; 0 for a parallel projection [rad]
-  std::optional<Vec3> eye{};              ///< position of the camera; by default chosen to frame all points [m]
+  int width = 1600;                       ///< width of the picture [px]
+  int height = 900;                       ///< height of the picture [px]
+  double azimuth = radians(30);           ///< viewing direction, clockwise from north [rad]
+  double elevation = radians(30);         ///< viewing direction below the horizon [rad]
+  double field_of_view = radians(30);     ///< angle across the scene; 0: parallel projection [rad]
+  std::optional<Vec3> eye{};              ///< position of the camera; default: frames all points [m]
   ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
-  double point_size = 0;                  ///< diameter in the middle of the scene; 0 to close the gaps [px]
+  double point_size = 0;                  ///< diameter in mid-scene; 0 to close the gaps [px]
   Srgb background{13, 17, 23};            ///< colour of the background
   std::size_t points_max = 3'000'000;     ///< maximum to draw; of more, every k-th
 
@@ -49,7 +49,6 @@ struct ImageSettings {
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Point of a picture.
 struct ImagePoint {
   float x, y, z;  ///< relative to a nearby origin [m]
   float value;    ///< quantity shown by the colour
@@ -57,7 +56,7 @@ struct ImagePoint {
   [[nodiscard]] Vec3 position() const noexcept { return {x, y, z}; }
 };
 
-/// Percentiles that leave `share` of all values below, and above; those of a sample for many points.
+/// Percentiles that leave `share` of all values below, and above; of a sample of many points.
 [[nodiscard]] std::pair<double, double> percentiles(std::span<const ImagePoint> points, double share,
                                                     const auto& value) {
   constexpr std::size_t sample = 200'000;
@@ -85,7 +84,7 @@ class Camera {
     s.eye ? stand(s, *s.eye) : frame(s, points);
   }
 
-  /// Column and row from the upper left corner [px], and depth along the view [m]. NaN behind the camera.
+  /// Column and row from the upper left [px], and depth along the view [m]; NaN behind the camera.
   [[nodiscard]] Vec3 pixel(const ImagePoint& p) const {
     const Vec3 v = seen(p);
     return {shift_.x + scale_ * v.x, shift_.y - scale_ * v.y, v.z};
@@ -105,7 +104,6 @@ class Camera {
     return {m * dot(v, right_), m * dot(v, up_), depth};
   }
 
-  /// Places the camera at a given position.
   void stand(const ImageSettings& s, const Vec3& eye) {
     distance_ = 10;  // distance of the set point size [m]
     near_ = 0.3;     // nearer points would fill the picture [m]
@@ -114,19 +112,18 @@ class Camera {
     shift_ = {0.5 * s.width, 0.5 * s.height};
   }
 
-  /// Places the camera so that the picture is full except for outliers.
   void frame(const ImageSettings& s, std::span<const ImagePoint> points) {
     constexpr double outliers = 0.001, margin = 0.95;
     double radius = 1e-3;  // minimum, for a scene of one point [m]
     for (const Vec3& axis : {right_, forward_, up_}) {
-      const auto [low, high] =
-          percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
+      const auto along = [&](const ImagePoint& p) { return dot(axis, p.position()); };
+      const auto [low, high] = percentiles(points, outliers, along);
       centre_ += axis * (0.5 * (low + high));
       radius = std::max(radius, 0.5 * (high - low));
     }
     distance_ = radius / std::tan(0.5 * (parallel_ ? radians(30) : s.field_of_view));
-    const auto [x_low, x_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).x; });
-    const auto [y_low, y_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).y; });
+    const auto [x_low, x_high] = percentiles(points, outliers, [&](const auto& p) { return seen(p).x; });
+    const auto [y_low, y_high] = percentiles(points, outliers, [&](const auto& p) { return seen(p).y; });
     scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius),
                                s.height / std::max(y_high - y_low, 0.01 * radius));
     shift_ = {0.5 * s.width - scale_ * 0.5 * (x_low + x_high), 0.5 * s.height + scale_ * 0.5 * (y_low + y_high)};

@@ -98,15 +98,30 @@ class TextTable {
     return unquoted_;
   }
 
-  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
-  [[noreturn]] void fail_here(const std::string& problem) const { file_.fail_at_line(problem); }
+  [[noreturn]] void fail(const auto&... problem) const { file_.fail(problem...); }
+  [[noreturn]] void fail_here(std::string_view what, const auto&... more) const { file_.fail_at_line(what, more...); }
 
   /// `column` is counted from 0 here, from 1 in the message.
-  [[noreturn]] void fail_here(std::size_t column, const std::string& problem) const {
-    file_.fail_at_column(column, problem);
+  [[noreturn]] void fail_here(std::size_t column, const auto&... problem) const {
+    file_.fail_at_column(column, problem...);
   }
 
-  [[nodiscard]] static std::string place(std::size_t line) { return "line " + std::to_string(line); }
+  /// Throws a `FileError` about a text of the current line that is none of what is expected.
+  [[noreturn]] void refuse(std::string_view text, const auto&... expected) const {
+    fail_here(text::quoted(text), ": expected ", expected...);
+  }
+  [[noreturn]] void refuse(std::size_t column, const auto&... expected) const {
+    fail_here(column, text::quoted(unquoted_[column]), ": expected ", expected...);
+  }
+
+  /// Adds a warning about a line, or the whole file for line 0.
+  void warn(std::size_t line, const auto&... oddity) { warnings.push_back(detail::warning(path(), line, oddity...)); }
+  /// Adds a warning about lines, if there are any.
+  void warn(const Oddity& lines, std::string_view what, std::string_view consequence = {}) {
+    if (lines.count > 0) warn(lines.first, what, ", the first of ", lines.count, consequence);
+  }
+
+  std::vector<std::string> warnings;  ///< oddities that could still be read
 
  private:
   [[nodiscard]] static char separator_in(std::string_view row) {

@@ -10,7 +10,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// Conventions of attitudes in files: angles, their axes and order, and the axes of quaternions and positions.
+/// Conventions of attitudes in files: angles, their order, and axes of quaternions and positions.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Three angles of an attitude, to be interpreted by an `AngleConvention`.
@@ -26,8 +26,8 @@ struct ElementalRotation {
   Vec3 axis;                    ///< axis in the body, unit; right-handed
 };
 
-/// Convention of three angles. At zero the body is level and faces `zero_heading`. It is then rotated about its own
-/// axes in the order of the list; they are perpendicular to each other.
+/// Convention of three angles. At zero the body is level and faces `zero_heading`. It is then
+/// rotated about its own axes in the order of the list; they are perpendicular to each other.
 struct AngleConvention {
   /// Intrinsic rotations; read backwards, the list is that of extrinsic ones.
   std::array<ElementalRotation, 3> turns{
@@ -38,18 +38,18 @@ struct AngleConvention {
     require_angle("AngleConvention::zero_heading", zero_heading);
     constexpr double rounding = 1e-9;
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t next = (i + 1) % 3;
-      require_within("AngleConvention::turns axis (length)", length(turns[i].axis), 1 - rounding, 1 + rounding, "");
-      require_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding,
-                     rounding, "");
-      if (turns[i].angle == turns[next].angle || turns[i].angle == nullptr)
+      const ElementalRotation &turn = turns[i], &next = turns[(i + 1) % 3];
+      require_within("AngleConvention::turns axis (length)", length(turn.axis), 1 - rounding, 1 + rounding, "");
+      const double cosine = dot(turn.axis, next.axis);
+      require_within("AngleConvention::turns axes (cosine between)", cosine, -rounding, rounding, "");
+      if (turn.angle == next.angle || turn.angle == nullptr)
         throw SettingError("AngleConvention::turns angle (place)", static_cast<double>(i), "",
                            "roll, pitch and yaw, each once");
     }
   }
 };
 
-/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: body axes forward, right, down in a
+/// Heading clockwise from north, pitch nose up, roll right wing down: body axes forward, right, down in a
 /// world of north, east, down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
 inline const AngleConvention heading_pitch_roll{};
 
@@ -58,19 +58,19 @@ inline const AngleConvention helios_arinc_705{
     .turns = {
         {{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
 
-/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ writes this, its "CANONICAL".
+/// Roll about right, pitch about forward, yaw left from north: "CANONICAL" of HELIOS++.
 inline const AngleConvention helios_canonical{
     .turns = {
         {{&RollPitchYaw::roll, axis::right}, {&RollPitchYaw::pitch, axis::forward}, {&RollPitchYaw::yaw, axis::up}}}};
 
-/// Yaw counter-clockwise from east, then pitch, nose up, then roll, right wing down.
+/// Yaw counter-clockwise from east, pitch nose up, roll right wing down.
 inline const AngleConvention mathematical{.turns = {{{&RollPitchYaw::yaw, axis::up},
                                                      {&RollPitchYaw::pitch, axis::right},
                                                      {&RollPitchYaw::roll, axis::forward}}},
                                           .zero_heading = pi / 2};
 
-/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: body axes forward, left, up in a
-/// world of east, north, up. Source: ROS REP 103.
+/// Yaw counter-clockwise from east, pitch nose down, roll right wing down: body axes forward, left,
+/// up in a world of east, north, up. Source: ROS REP 103.
 inline const AngleConvention ros_roll_pitch_yaw{.turns = {{{&RollPitchYaw::yaw, axis::up},
                                                            {&RollPitchYaw::pitch, -axis::right},
                                                            {&RollPitchYaw::roll, axis::forward}}},
@@ -84,30 +84,27 @@ inline const AngleConvention ros_roll_pitch_yaw{.turns = {{{&RollPitchYaw::yaw, 
   return normalize(rotation);
 }
 
-/// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2, pi/2], the others in
-/// [-pi, pi]. They reproduce the attitude to some 1e-14 everywhere. In gimbal lock (middle angle +-pi/2) all rotation
-/// is yaw, or the first angle if yaw is in the middle. Source: half-angle sums of the product of three quaternions, as
-/// in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
+/// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2,
+/// pi/2], the others in [-pi, pi]. They reproduce the attitude to some 1e-14 everywhere. In gimbal
+/// lock (middle angle +-pi/2) all rotation is yaw, or the first angle if yaw is in the middle.
+/// Source: half-angle sums as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
 [[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
   const auto& [first, middle, last] = convention.turns;
   const Rotation q = rotation_about(axis::up, convention.zero_heading) * rotation;
   const Vec3 v{q.x, q.y, q.z};
-  const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // handedness of the three axes
+  const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // handedness
   const double a = dot(v, first.axis), b = sense * dot(v, middle.axis), c = dot(v, last.axis);
   // With the angles A, B, C of the turns, q is, up to length and sign,
   //   w + b = (cos B/2 + sin B/2) cos (A+C)/2,  a + c = (cos B/2 + sin B/2) sin (A+C)/2,
   //   w - b = (cos B/2 - sin B/2) cos (A-C)/2,  a - c = (cos B/2 - sin B/2) sin (A-C)/2.
   const double plus = std::hypot(q.w + b, a + c), minus = std::hypot(q.w - b, a - c);
   double half_sum = std::atan2(a + c, q.w + b), half_difference = std::atan2(a - c, q.w - b);
-  constexpr double rounding = 1e-14;  // below it, one of the two is noise
-  if (plus < rounding || minus < rounding) {
-    const bool first_is_zero = last.angle == &RollPitchYaw::yaw;
-    const double sign = first_is_zero ? -1 : 1;
-    if (plus < rounding)
-      half_sum = sign * half_difference;
-    else
-      half_difference = sign * half_sum;
-  }
+  constexpr double rounding = 1e-14;                              // below it, one of the two is noise
+  const double sign = last.angle == &RollPitchYaw::yaw ? -1 : 1;  // -1: the first angle is zero
+  if (plus < rounding)
+    half_sum = sign * half_difference;
+  else if (minus < rounding)
+    half_difference = sign * half_sum;
   RollPitchYaw angles;
   angles.*first.angle = std::remainder(half_sum + half_difference, 2 * pi);
   angles.*middle.angle = sense * (2 * std::atan2(plus, minus) - pi / 2);
@@ -133,12 +130,12 @@ struct Axes {
   BodyAxes body = BodyAxes::right_forward_up;  ///< of the body
   WorldAxes world = WorldAxes::east_north_up;  ///< of the world
 
-  /// Converts a position from these world axes to east, north, up, and back, as the swap is its own inverse.
+  /// Position from these world axes in east, north, up, and back: the swap is its own inverse.
   [[nodiscard]] Vec3 swapped(const Vec3& position) const noexcept {
     return world == WorldAxes::east_north_up ? position : Vec3{position.y, position.x, -position.z};
   }
 
-  /// Converts an attitude between these axes to right, forward, up and east, north, up.
+  /// Attitude between these axes as one from right, forward, up to east, north, up.
   [[nodiscard]] Rotation from_file(const Rotation& rotation) const noexcept {
     return of_world() * rotation * conjugate(of_body());
   }
@@ -149,7 +146,8 @@ struct Axes {
   }
 
  private:
-  static Rotation down_from_up() noexcept { return rotation_about(axis::right + axis::forward, pi); }  // (y, x, -z)
+  // (x, y, z) becomes (y, x, -z)
+  static Rotation down_from_up() noexcept { return rotation_about(axis::right + axis::forward, pi); }
 
   [[nodiscard]] Rotation of_world() const noexcept {
     return world == WorldAxes::east_north_up ? no_rotation : down_from_up();

@@ -7,16 +7,13 @@
 #include <cmath>
 
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/detail/trajectory/attitude.hpp>
-#include <pulsecast/io/detail/trajectory/columns.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as in `Waypoints`. A window
-/// that begins at a jump begins after it; one that ends there ends before it.
+/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as in
+/// `Waypoints`. A window that begins at a jump begins after it; one that ends there ends before it.
 struct TimeWindow {
   std::optional<double> start{};  ///< begin; by default the first pose [s]
   std::optional<double> end{};    ///< end; by default the last pose [s]
@@ -32,13 +29,13 @@ struct TimeWindow {
 /// Content of a trajectory file: `Waypoints(table.poses)` moves along it.
 struct TrajectoryTable {
   double start_time = 0;              ///< clock time of the file at the first pose [s]
-  std::vector<TimedPose> poses;       ///< poses in order of time, from 0; a time occurs twice where the platform jumps
+  std::vector<TimedPose> poses;       ///< poses in order of time, from 0; at a jump, twice a time
   std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
 namespace detail {
 
-inline constexpr double max_in_trajectory = 1e12;  ///< [s, m or rad]; at this size a double resolves about 0.1 mm
+inline constexpr double max_in_trajectory = 1e12;  ///< resolved to about 1e-4 [s, m or rad]
 
 class TrajectoryReader {
  public:
@@ -64,10 +61,11 @@ class TrajectoryReader {
       }
     }
     if (rows_.empty()) table_.fail("holds no pose: expected at least one line of numbers");
-    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may be truncated");
+    if (table_.line_is_open()) table_.warn(table_.line(), "has no line end: the file may be truncated");
     sort();
     remarks();
     cut(validated(window));
+    result_.warnings = std::move(table_.warnings);
     return std::move(result_);
   }
 
@@ -90,17 +88,16 @@ class TrajectoryReader {
       }
     } else if (text.starts_with("#TIME_COLUMN:")) {
       text = text::trimmed(text.substr(13));
-      const std::optional<double> number = text::finite_number_in(text);
-      if (!number || *number < 0 || *number > 1000 || *number != std::floor(*number))
-        table_.fail_here(text::quoted(text) + " is not a column index: expected a whole number from 0 to 1000");
-      time_place_ = static_cast<std::size_t>(*number);
+      const double number = text::finite_number_in(text).value_or(-1);
+      if (number < 0 || number > 1000 || number != std::floor(number))
+        table_.fail_here(text::quoted(text), " is not a column index: expected a whole number from 0 to 1000");
+      time_place_ = static_cast<std::size_t>(number);
     }
   }
 
   /// True if the line could be a header without a comment mark.
   [[nodiscard]] bool has_names_only() {
-    const std::vector<std::string_view>& cells = table_.cells();
-    return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
+    return std::ranges::none_of(table_.cells(), [](std::string_view cell) {
       return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || text::finite_number_in(cell);
     });
   }
@@ -109,7 +106,8 @@ class TrajectoryReader {
     const std::vector<std::string_view>& cells = table_.cells();
     if (text::finite_number_in(cells.front()))
       table_.fail_here(
-          "has numbers: expected the names of the columns, as in time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
+          "has numbers: expected the names of the columns, as in "
+          "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
     names_.assign(cells.begin(), cells.end());
     understand();
   }
@@ -122,8 +120,8 @@ class TrajectoryReader {
     };
     if (time_place_ && !named_) std::erase_if(names_, is_time);
     if (time_place_ && *time_place_ >= names_.size() + (named_ ? 0 : 1))
-      table_.fail_here("#TIME_COLUMN is " + std::to_string(*time_place_) + ": expected the index, from 0, of one of " +
-                       std::to_string(names_.size()) + " columns");
+      table_.fail_here("#TIME_COLUMN is ", *time_place_, ": expected the index, from 0, of one of ", names_.size(),
+                       " columns");
     if (time_place_ && named_ && !is_time(names_[*time_place_])) names_[*time_place_] = "t";
     if (time_place_ && !named_) names_.insert(names_.begin() + static_cast<std::ptrdiff_t>(*time_place_), "t");
     understand();
@@ -133,8 +131,9 @@ class TrajectoryReader {
     if (may_have_more()) leave_out_unknown();
     columns_.emplace(names_, format_.left_out, format_.angle_unit);
     if (columns_->problem().empty()) return;
-    if (!columns_->culprit()) table_.fail_here(columns_->problem() + unknown_names());
-    table_.fail_here(*columns_->culprit(), text::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
+    const std::optional<std::size_t> at = columns_->culprit();
+    if (!at) table_.fail_here(columns_->problem(), unknown_names());
+    table_.fail_here(*at, text::quoted(names_[*at]), " ", columns_->problem());
   }
 
   /// Names that are not those of columns, to end a message.
@@ -152,30 +151,27 @@ class TrajectoryReader {
 
   void leave_out_unknown() {
     std::string unknown;
-    const auto is_left_out = [this](const std::string& name) {
-      return std::find(format_.left_out.begin(), format_.left_out.end(), name) != format_.left_out.end();
-    };
+    std::vector<std::string>& out = format_.left_out;
     for (const std::string& name : names_) {
-      if (trajectory_column(name, format_.angle_unit) || is_left_out(name)) continue;
-      format_.left_out.push_back(name);
+      if (trajectory_column(name, format_.angle_unit) || std::ranges::find(out, name) != out.end()) continue;
+      out.push_back(name);
       unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
     }
-    if (!unknown.empty())
-      result_.warnings.push_back(table_.path() + ": unknown columns are left out: " + unknown.substr(0, 1000));
+    if (!unknown.empty()) table_.warn(0, "unknown columns are left out: ", unknown.substr(0, 1000));
   }
 
   void row() {
     const std::vector<std::string_view>& cells = table_.cells();
     if (cells.size() < names_.size() || (cells.size() > names_.size() && !may_have_more()))
-      table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(names_.size()));
+      table_.fail_here("has ", cells.size(), " columns: expected ", names_.size());
     QuantityValues values;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::optional<TrajectoryColumn>& column = columns_->all()[i];
       if (!column) continue;
       const std::optional<double> number = text::finite_number_in(cells[i]);
       if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
-        table_.fail_here(i, text::quoted(cells[i]) + " in column " + names_[i] +
-                                ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
+        table_.fail_here(i, text::quoted(cells[i]), " in column ", names_[i],
+                         ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
     }
     rows_.push_back({{values[Quantity::time], position(values), rotation(values)}, table_.line()});
@@ -192,8 +188,7 @@ class TrajectoryReader {
     if (!columns_->has(qw)) return rotation_of({values[roll], values[pitch], values[yaw]}, format_.angles);
     const Rotation given = pulsecast::detail::rotation_wxyz(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
-    if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the norm " + text::to_text(length(given)) + ": expected 1, within 1e-3");
+    if (!(error <= 1e-3)) table_.fail_here("the quaternion has the norm ", length(given), ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
@@ -202,7 +197,7 @@ class TrajectoryReader {
     const auto earlier = [](const Row& a, const Row& b) { return a.pose.time < b.pose.time; };
     for (std::size_t i = 1; i < rows_.size(); ++i)
       if (earlier(rows_[i], rows_[i - 1])) unsorted_.at(rows_[i].line);
-    if (unsorted_.count > 0) std::stable_sort(rows_.begin(), rows_.end(), earlier);
+    if (unsorted_.count > 0) std::ranges::stable_sort(rows_, earlier);
     const auto repeats = [this](const Row& before, const Row& row) {
       const TimedPose &a = before.pose, &b = row.pose;
       if (a.time != b.time || a.position != b.position || a.rotation != b.rotation) return false;
@@ -213,35 +208,28 @@ class TrajectoryReader {
   }
 
   void remarks() {
-    const auto of = [](const Oddity& oddity) { return ", the first of " + std::to_string(oddity.count); };
-    if (unsorted_.count > 0)
-      warn(unsorted_.first, "is earlier than the previous pose" + of(unsorted_) + ": the poses were sorted by time");
-    if (repeated_.count > 0) warn(repeated_.first, "repeats a pose" + of(repeated_) + ": it is left out");
-    if (not_unit_.count > 0)
-      warn(not_unit_.first, "has a quaternion that is not unit" + of(not_unit_) + ": it is normalized");
+    table_.warn(unsorted_, "is earlier than the previous pose", ": the poses were sorted by time");
+    table_.warn(repeated_, "repeats a pose", ": it is left out");
+    table_.warn(not_unit_, "has a quaternion that is not unit", ": it is normalized");
     if (columns_->has(Quantity::qw)) return;
     for (const auto& [quantity, name] :
          {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
-      if (!columns_->has(quantity))
-        result_.warnings.push_back(table_.path() + ": no column for the " + name + ": 0 is assumed");
+      if (!columns_->has(quantity)) table_.warn(0, "no column for the ", name, ": 0 is assumed");
   }
 
   /// Cuts the poses to the window and starts its clock.
   void cut(const TimeWindow& window) {
     const double first = rows_.front().pose.time, last = rows_.back().pose.time;
-    const double start = std::max(first, window.start.value_or(first)), end = std::min(last, window.end.value_or(last));
+    const double from = window.start.value_or(first), to = window.end.value_or(last);
+    const double start = std::max(first, from), end = std::min(last, to);
     if (start > end)
-      table_.fail("has poses from " + seconds(first) + " to " + seconds(last) + ": expected some from " +
-                  seconds(window.start.value_or(first)) + " to " + seconds(window.end.value_or(last)));
-    if (window.start && *window.start < first)
-      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, at " + seconds(first));
-    if (window.end && *window.end > last)
-      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, at " + seconds(last));
+      table_.fail("has poses from ", first, " s to ", last, " s: expected some from ", from, " s to ", to, " s");
+    if (from < first) table_.warn(0, "the window begins before the first pose, at ", first, " s");
+    if (to > last) table_.warn(0, "the window ends after the last pose, at ", last, " s");
     result_.start_time = start;
-    const auto within =
-        std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
-    const auto behind =
-        std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
+    const auto time_of = [](const Row& row) { return row.pose.time; };
+    const auto within = std::ranges::upper_bound(rows_, start, {}, time_of);
+    const auto behind = std::ranges::lower_bound(within, rows_.end(), end, {}, time_of);
     result_.poses.push_back((within - 1)->pose.time == start ? (within - 1)->pose : between(within, start));
     Oddity jumps;
     for (auto row = within; row != behind; ++row) {
@@ -251,48 +239,37 @@ class TrajectoryReader {
     if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
     note_gaps();
     for (TimedPose& pose : result_.poses) pose.time -= start;
-    if (jumps.count > 0)
-      warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " +
-                            std::to_string(jumps.count) + ": a jump of the platform");
+    table_.warn(jumps, "repeats the time of the previous pose at another pose", ": a jump of the platform");
   }
 
   /// Notes intervals without poses of more than 20 times the median, from 4 intervals on.
   void note_gaps() {
     std::vector<double> intervals;
     const std::vector<TimedPose>& poses = result_.poses;
-    for (std::size_t i = 1; i < poses.size(); ++i)
-      if (poses[i].time > poses[i - 1].time) intervals.push_back(poses[i].time - poses[i - 1].time);
-    if (intervals.size() < 4) return;
-    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-    std::nth_element(intervals.begin(), middle, intervals.end());
-    const double median = *middle;
-    std::size_t gaps = 0, longest = 1;
+    std::size_t longest = 1;
     const auto length = [&](std::size_t i) { return poses[i].time - poses[i - 1].time; };
     for (std::size_t i = 1; i < poses.size(); ++i) {
-      gaps += length(i) > 20 * median ? 1 : 0;
+      if (length(i) > 0) intervals.push_back(length(i));
       if (length(i) > length(longest)) longest = i;
     }
+    if (intervals.size() < 4) return;
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+    std::ranges::nth_element(intervals, middle);
+    const auto gaps = std::ranges::count_if(intervals, [&](double one) { return one > 20 * *middle; });
     if (gaps > 0)
-      result_.warnings.push_back(
-          table_.path() + ": no pose between " + seconds(poses[longest - 1].time) + " and " +
-          seconds(poses[longest].time) + ", the longest of " + std::to_string(gaps) +
-          " gaps of more than 20 times the median interval: poses are interpolated across it; windows (tStart, tEnd) "
-          "leave gaps out");
+      table_.warn(0, "no pose between ", poses[longest - 1].time, " s and ", poses[longest].time, " s, the longest of ",
+                  gaps,
+                  " gaps of more than 20 times the median interval: poses are "
+                  "interpolated across it; windows (tStart, tEnd) leave gaps out");
   }
 
   /// Pose at a time between a row and the one before.
   [[nodiscard]] static TimedPose between(std::vector<Row>::const_iterator row, double time) {
-    const TimedPose &before = (row - 1)->pose, &after = row->pose;
-    const auto pose =
-        Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
-            .at(Tick::of_seconds(time - before.time));
+    TimedPose before = (row - 1)->pose, after = row->pose;
+    const double start = std::exchange(before.time, 0);
+    after.time -= start;
+    const auto pose = Waypoints({before, after}).at(Tick::of_seconds(time - start));
     return {time, pose.position, pose.rotation};
-  }
-
-  [[nodiscard]] static std::string seconds(double time) { return text::to_text(time) + " s"; }
-
-  void warn(std::size_t line, const std::string& text) {
-    result_.warnings.push_back(table_.path() + ", " + TextTable::place(line) + ": " + text);
   }
 
   TrajectoryFormat format_;
@@ -308,14 +285,11 @@ class TrajectoryReader {
 
 }  // namespace detail
 
-/// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
-///
-/// Warnings:
+/// Reads a trajectory. Throws a `FileError` with path, line and column at the first error, also a
+/// quaternion whose norm is off by more than 1/1000, or a number beyond 1e12 s, m or rad. Warnings:
 /// - poses out of order, which are sorted; repeated poses, which are left out;
-/// - different poses at one time within the window, which are a jump from the first in the file to the last;
+/// - different poses at one time within the window: a jump from the first in the file to the last;
 /// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
-///
-/// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
 [[nodiscard]] inline TrajectoryTable read_trajectory(const std::filesystem::path& path,
                                                      const TrajectoryFormat& format = csv_format(),
                                                      const TimeWindow& window = {}) {
