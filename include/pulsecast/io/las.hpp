@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
@@ -52,6 +53,14 @@ class LasRecords {
   std::uint64_t begin_ = 0;  // [byte]
   std::size_t record_ = 0;   // [byte]
 };
+
+#if defined(PULSECAST_COMPILED)  // which has these functions
+#if PULSECAST_DEFINES(IO_LAS)
+template class LasFileWriter<LasRecords>;
+#else
+extern template class LasFileWriter<LasRecords>;
+#endif
+#endif
 
 }  // namespace detail
 
