@@ -58,9 +58,10 @@ class AssetSearch {
     const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1),
                       name = pattern.substr(slash + 1), extended = posix_extended(name);
     if (extended.empty() && !name.empty())
-      return {.problem = "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
-                         " letters, no back-reference, no lookahead, and four counts in braces, none of them after a "
-                         "group or a count"};
+      return {.problem =
+                  "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
+                  " letters, no back-reference, no lookahead, and four counts in braces below 1000, none after a "
+                  "group or a count"};
     regex_t expression;
     if (regcomp(&expression, extended.c_str(), REG_EXTENDED) != 0)
       return {.problem = "does not end with a regular expression"};
@@ -135,7 +136,8 @@ class AssetSearch {
         if (!rest.starts_with("?:")) return {};  // lookahead
         i += 2;
       } else if (c == '{') {
-        if (++counts > 4 || repeated || (i > 0 && pattern[i - 1] == ')') || rest.find('}') > 7) return {};
+        const std::size_t end = rest.find('}'), comma = std::min(rest.find(','), end);
+        if (++counts > 4 || repeated || (i > 0 && pattern[i - 1] == ')') || comma > 3 || end - comma > 4) return {};
       } else if (c == '?' && repeated) {
         continue;  // the shortest match: of a whole name, all are alike
       }
