@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <concepts>
-#include <type_traits>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/optional_member.hpp>
@@ -64,9 +63,7 @@ inline void require_within(std::string_view field, double value, double low, dou
 }
 
 /// As above, of a count.
-template <std::integral T>
-void require_within(std::string_view field, T value, std::type_identity_t<T> low, std::type_identity_t<T> high,
-                    std::string_view unit = "") {
+void require_within(std::string_view field, std::integral auto value, auto low, auto high, std::string_view unit = "") {
   require_within(field, static_cast<double>(value), static_cast<double>(low), static_cast<double>(high), unit);
 }
 

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_LAS_HPP
 #define PULSECAST_IO_LAS_HPP
 
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
@@ -45,6 +46,14 @@ class LasRecords {
   std::uint64_t begin_ = 0;  // [byte]
   std::size_t record_ = 0;   // [byte]
 };
+
+#if defined(PULSECAST_COMPILED)  // which has these functions
+#if PULSECAST_DEFINES(IO_LAS)
+template class LasFileWriter<LasRecords>;
+#else
+extern template class LasFileWriter<LasRecords>;
+#endif
+#endif
 
 }  // namespace detail
 

@@ -59,30 +59,9 @@ struct LasExtendedRecords {
 template <class Records>
 class LasFileWriter {
  public:
-  LasFileWriter(std::filesystem::path path, LasSettings how, Records records)
-      : encoder_(settled(validated(std::move(how)))), records_(std::move(records)), file_(std::move(path)) {
-    if (settings().waveforms) packets_.emplace(packets_path());
-    write_header();
-    write_descriptor(Records::first_descriptor());
-    write_extra_bytes_record();
-    if (!settings().wkt.empty()) write_wkt_record();
-    if (by_keys()) write_keys_record();
-    descriptors_at_ = file_.position();
-    if (packets_) {
-      file_.write(packets_->descriptors());
-      variable_records_ += LasPackets::descriptor_count;
-    }
-    write_descriptor(Records::descriptor(layout()));
-    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // as `LasLayout`
-    points_at_ = file_.position();
-    records_.begin(file_, layout(), encoder_.automatic_intensity());
-    records_at_ = file_.position();
-  }
+  LasFileWriter(std::filesystem::path path, LasSettings how, Records records);
 
-  void operator()(const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots)
-      if (shot.echoes != 0) write(shot, batch);
-  }
+  void operator()(const EchoBatch& batch);
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
@@ -106,19 +85,7 @@ class LasFileWriter {
   }
 
   /// Completes header and intensities, and gives the file its name. @throws FileError
-  void close() {
-    if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
-      throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
-    if (encoder_.automatic_intensity())
-      records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
-    records_.finish(file_, encoder_);
-    write_header();
-    if (packets_) {
-      file_.overwrite(descriptors_at_, packets_->descriptors());
-      packets_->close();
-    }
-    file_.commit();
-  }
+  void close();
 
  private:
   using Header = LasBytes<375>;  ///< longest header
@@ -260,6 +227,48 @@ class LasFileWriter {
   std::uint32_t variable_records_ = 0;                                 // number of them
   std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // offsets in the file [byte]
 };
+
+template <class Records>
+LasFileWriter<Records>::LasFileWriter(std::filesystem::path path, LasSettings how, Records records)
+    : encoder_(settled(validated(std::move(how)))), records_(std::move(records)), file_(std::move(path)) {
+  if (settings().waveforms) packets_.emplace(packets_path());
+  write_header();
+  write_descriptor(Records::first_descriptor());
+  write_extra_bytes_record();
+  if (!settings().wkt.empty()) write_wkt_record();
+  if (by_keys()) write_keys_record();
+  descriptors_at_ = file_.position();
+  if (packets_) {
+    file_.write(packets_->descriptors());
+    variable_records_ += LasPackets::descriptor_count;
+  }
+  write_descriptor(Records::descriptor(layout()));
+  if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // as `LasLayout`
+  points_at_ = file_.position();
+  records_.begin(file_, layout(), encoder_.automatic_intensity());
+  records_at_ = file_.position();
+}
+
+template <class Records>
+void LasFileWriter<Records>::operator()(const EchoBatch& batch) {
+  for (const Shot& shot : batch.shots)
+    if (shot.echoes != 0) write(shot, batch);
+}
+
+template <class Records>
+void LasFileWriter<Records>::close() {
+  if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
+    throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
+  if (encoder_.automatic_intensity())
+    records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
+  records_.finish(file_, encoder_);
+  write_header();
+  if (packets_) {
+    file_.overwrite(descriptors_at_, packets_->descriptors());
+    packets_->close();
+  }
+  file_.commit();
+}
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
 
