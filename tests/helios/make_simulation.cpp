@@ -132,6 +132,17 @@ TEST_CASE("surveys and colours outlive their simulation") {
   CHECK(coloured == after.size());
 }
 
+TEST_CASE("points have the laser of their channel, for columns in photons") {
+  SurveySettings s = survey();
+  s.scanner.channels.push_back(s.scanner.channels[0]);
+  s.scanner.channels[1].wavelength = 532e-9;
+  s.scanner.channels[1].pulse_length = 1e-9;
+  const std::vector<Laser> lasers = make_simulation(s, {.meshes = {plane()}})->points().lasers;
+  REQUIRE(lasers.size() == 2);
+  CHECK((lasers[0].wavelength == 1064e-9 && lasers[0].pulse_length == 4e-9));
+  CHECK((lasers[1].wavelength == 532e-9 && lasers[1].pulse_length == 1e-9));
+}
+
 TEST_CASE("warnings of other receivers belong to their simulation") {
   const auto simulation = make_simulation(survey(), {.waveforms = true, .las_waveforms = true, .meshes = {plane()}});
   CHECK(simulation->warnings().empty());

@@ -40,7 +40,7 @@ struct OnePoint {
             .velocity = -3};
   PointSettings settings{.rings = {5, 11},
                          .start_time = 1000,
-                         .laser = {.wavelength = 1e-6, .pulse_length = 5e-9},
+                         .lasers = {{}, {.wavelength = 1e-6, .pulse_length = 5e-9}},
                          .power_reference = 2e-8};
   PointSurface surface{
       .interaction = {.material_index = 3, .part = 7}, .normal = {0.25, 0.5, 1}, .velocity = {4, 5, 6}};

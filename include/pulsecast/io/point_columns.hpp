@@ -47,17 +47,17 @@ struct PointSettings {
   Vec3 origin{};                                         ///< place of coordinates 0 in the world [m]
   std::vector<std::uint16_t> rings{};                    ///< see `SpinningSensor::rings`; empty: channel
   double start_time = 0;                                 ///< clock time at tick 0 [s]
-  Laser laser{};                                         ///< laser, for the column photons
-  double power_reference = 1e-9;                         ///< power of 0 dB of intensity_level [W]
-  SurfaceQuery surfaces{};                               ///< of echoes, see `surfaces_of`; empty: unknown
-  PointColours colours{};                                ///< of echoes, see `colours_of`; empty: unknown
-  ObjectAttributes attributes{};                         ///< attributes of objects
+  std::vector<Laser> lasers{};    ///< of each channel, the last of all further ones; empty: default
+  double power_reference = 1e-9;  ///< power of 0 dB of intensity_level [W]
+  SurfaceQuery surfaces{};        ///< of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};         ///< of echoes, see `colours_of`; empty: unknown
+  ObjectAttributes attributes{};  ///< attributes of objects
 
   void validate() const {
     require_finite("PointSettings::origin (length)", length(origin), "m");
     require_finite("PointSettings::start_time", start_time, "s");
     require_positive("PointSettings::power_reference", power_reference, "W");
-    laser.validate();
+    for (const Laser& laser : lasers) laser.validate();
   }
 };
 
@@ -175,7 +175,12 @@ inline double incidence_of(View p) noexcept { return std::acos(std::clamp(p.echo
 inline double azimuth_of(View p) noexcept { return std::atan2(p.position.y, p.position.x); }
 inline double elevation_of(View p) noexcept { return std::atan2(p.position.z, std::hypot(p.position.x, p.position.y)); }
 inline double reflectivity_of(View p) noexcept { return reflectivity_byte(p.echo.reflectance); }
-inline double photons_of(View p) noexcept { return photon_count(p.echo.amplitude, p.settings.laser); }
+inline double photons_of(View p) noexcept {
+  const std::vector<Laser>& lasers = p.settings.lasers;
+  const Laser usual{};
+  return photon_count(p.echo.amplitude,
+                      lasers.empty() ? usual : lasers[std::min<std::size_t>(p.shot.channel, lasers.size() - 1)]);
+}
 inline double intensity_level_of(View p) noexcept { return level_of(p.echo.amplitude / p.settings.power_reference); }
 inline double reflectance_level_of(View p) noexcept { return level_of(p.echo.reflectance); }
 inline double rgb_of(View p) noexcept {

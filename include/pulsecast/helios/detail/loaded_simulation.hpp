@@ -272,6 +272,8 @@ class LoadedSimulation final : public Simulation {
     };
     points.surfaces = kept(points.surfaces);
     points.colours = kept(points.colours);
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
+      points.lasers.push_back(survey_laser(channel, {}));
     return points;
   }
 
