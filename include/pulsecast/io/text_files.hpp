@@ -85,7 +85,7 @@ class XyzWriter {
 
   TextFileSettings settings_;
   std::optional<PointEncoder> more_;
-  std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);  // of the further columns
+  std::vector<std::byte> record_ = std::vector<std::byte>(more_ ? more_->layout().size : 0);  // of further columns
   TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);
@@ -96,10 +96,9 @@ static_assert(EchoSink<XyzWriter>);
 ///
 /// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9; time: departure [ns], 4, all exact;
 /// pulseIndex: slot, the fullwaveIndex of points; deviceIndex: emitter, from 0; fate: number of its `Fate`:
-/// 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1) were
-/// never sent, and have no line. HELIOS++ has the first nine, also in nanoseconds; but pulseIndex counts
-/// from 0 and over all devices, and directions have more decimals. Only `close()` completes the file: see
-/// `OutputFile`. @throws FileError @throws SettingError
+/// 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1) have no line.
+/// HELIOS++ has the first nine, also in nanoseconds; but pulseIndex counts from 0 and over all devices, and directions
+/// have more decimals. Only `close()` completes the file: see `OutputFile`. @throws FileError @throws SettingError
 class PulseTextWriter {
  public:
   explicit PulseTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
@@ -167,10 +166,10 @@ static_assert(EchoSink<SubrayTextWriter>);
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///
 /// fullwaveIndex: slot of the pulse; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9;
-/// tmin, tmax: times of the first and last sample [ns], 6; gpsTime: departure [s], 9; w: samples of received
-/// power [nW], 9. HELIOS++ has these columns. As there, tmin and tmax are one-way times, range by speed of
-/// light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`. Only `close()` completes the
-/// file: see `OutputFile`. @throws FileError @throws SettingError
+/// tmin, tmax: times of the first and last sample [ns], 6; gpsTime: departure [s], 9; w: samples of power [nW], 9.
+/// HELIOS++ has these columns. As there, tmin and tmax are one-way times, range by speed of light: sample i is from the
+/// range `c (tmin + (tmax - tmin) i / (n - 1))`. Only `close()` completes the file: see `OutputFile`. @throws FileError
+/// @throws SettingError
 class WaveformTextWriter {
  public:
   explicit WaveformTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
