@@ -27,12 +27,12 @@ struct AsciiGrid {
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
-/// Reads an Esri ASCII grid, a raster of heights as text, with coordinates in metres. Keywords of any case
-/// and order come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`,
-/// `cellsize` or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from the north.
-/// Missing heights, NaN and values not within 1e15 m become NaN. @throws FileError with the line if known,
-/// for keywords that are unknown, repeated or missing, and too few, too many or no heights
-/// @throws SettingError Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; GDAL manual.
+/// Reads an Esri ASCII grid, a raster of heights as text, in metres. Keywords of any case and order
+/// come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize`
+/// or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from the north. Missing
+/// heights, NaN and values not within 1e15 m become NaN. @throws FileError with the line if known,
+/// for keywords that are unknown, repeated or missing, and too few, too many or no heights @throws
+/// SettingError Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; GDAL manual.
 [[nodiscard]] AsciiGrid read_ascii_grid(const std::filesystem::path& path, const AsciiGridSettings& settings = {});
 
 /// True for the extension `.asc`, in any case.
@@ -214,7 +214,7 @@ class AsciiGridReader {
   std::string path_;
   MappedFile file_;
   std::string_view left_ = text::without_byte_order_mark(file_.text());  // of the file
-  std::size_t lines_ = 1, line_ = 1;                                     // of the next byte, and of the last word
+  std::size_t lines_ = 1, line_ = 1;                                     // of the next byte, the last word
   std::string_view word_;                                                // the last one
   std::array<Entry, keys> entries_{};
   AsciiGrid grid_;

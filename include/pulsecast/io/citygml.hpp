@@ -16,11 +16,11 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for CityGML files.
 struct CityGmlSettings {
-  unsigned max_lod = 4;               ///< highest level of detail, of which each object's highest is read
+  unsigned max_lod = 4;               ///< of the levels of detail up to it, an object's highest is read
   bool interior = false;              ///< true: rooms, their surfaces and furniture, too
-  std::filesystem::path materials{};  ///< MTL file that replaces materials, as `RoofSurface`; or none
+  std::filesystem::path materials{};  ///< MTL file that replaces materials by name; or none
   SpectralLibrary spectra{};          ///< spectra for `helios_spectra` in that file
-  bool isolated = false;              ///< true: libcitygml runs in a child process; for untrusted files
+  bool isolated = false;              ///< true: in a child process; for untrusted files
   ImportLimits limits{};              ///< of that process
 
   void validate() const {

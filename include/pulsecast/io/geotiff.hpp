@@ -17,9 +17,9 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings for GeoTIFF files.
 struct GeoTiffSettings {
   std::uint16_t band = 1;                  ///< band of the heights, from 1
-  std::optional<double> vertical_scale{};  ///< metres per unit of the numbers; by default by the file's tags
-  std::optional<double> missing{};         ///< value of missing heights; by default from the file (GDAL_NODATA)
-  bool packed = false;                     ///< whole numbers of 8 and 16 bits as `Raster::packed`, if it can hold them
+  std::optional<double> vertical_scale{};  ///< metres per unit of numbers; default: by the tags
+  std::optional<double> missing{};         ///< value of missing heights; default: GDAL_NODATA
+  bool packed = false;                     ///< whole numbers of 8 and 16 bits as `Raster::packed`
 
   void validate() const {
     require_within("GeoTiffSettings::band", band, 1, 65535, "");
@@ -31,18 +31,18 @@ struct GeoTiffSettings {
 struct GeoTiff {
   Raster raster;                        ///< heights [m]
   std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if any
-  std::vector<Vec3> colours{};          ///< colour table (sRGB, from 0 to 1) by value of a pixel; or empty
+  std::vector<Vec3> colours{};          ///< colour table by value (sRGB, from 0 to 1); or empty
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
 /// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, of
 /// integers of 8 to 64 bits or floating-point numbers of 16 to 64, with any compression of libtiff. Heights
-/// become `float`; missing ones, NaN and values not within 1e15 m become NaN. With `packed`, whole numbers
-/// of 8 and 16 bits stay so, with the same heights; not if tiles are left out of 16 bits without a value
-/// for missing heights. A picture with a colour table, such as a map of land cover, is a raster of numbers.
-/// Masks and alpha bands are not applied, with a warning. Throws a `FileError`, with the byte if known, for
-/// a raster that is incomplete, rotated, sheared, in degrees, in feet but for its heights, of depths, or
-/// without a place. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); GDAL manual, GTiff driver.
+/// become `float`; missing ones, NaN and values not within 1e15 m become NaN. With `packed`, whole numbers of 8 and 16
+/// bits stay so, but not if tiles of 16 bits without a value for missing heights are left out. A picture with a colour
+/// table, such as a map of land cover, is a raster of numbers. Masks and alpha bands are not applied, with a warning.
+/// Throws a `FileError`, with the byte if known, for a raster that is incomplete, rotated, sheared, in degrees, in feet
+/// but for its heights, of depths, or without a place. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); GDAL manual, GTiff
+/// driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 
 /// EPSG code of the projected reference system, if any. @throws FileError as `read_geotiff`

@@ -45,7 +45,7 @@ namespace detail {
 /// File read from beginning to end in blocks, as bytes or lines; memory is independent of its size.
 class InputFile {
  public:
-  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< limit of a line, and of one `take` [byte]
+  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< limit of a line or `take` [byte]
 
   /// `expected` content for messages, as in "a point cloud". @throws FileError if missing or empty
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
@@ -63,11 +63,11 @@ class InputFile {
     seek(0);
   }
 
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }     ///< path, for messages
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }     ///< for messages
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< of the file [byte]
-  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< of the next byte
   [[nodiscard]] std::size_t line() const noexcept { return line_; }            ///< line taken last, from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< true for a last line without end
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< for a last line without end
 
   /// Moves to any byte, and restarts the count of lines there.
   void seek(std::uint64_t byte) {

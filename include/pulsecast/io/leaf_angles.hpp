@@ -59,7 +59,7 @@ struct LeafRow {
 }  // namespace detail
 
 PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) {
-  constexpr double same = 5e-6, widest = 10 * pi / 180 + same;  // six decimals resolve angles to some 2e-6
+  constexpr double same = 5e-6, widest = 10 * pi / 180 + same;  // six decimals: some 2e-6
   const auto tenths = [](double angle) { return std::round(degrees(angle) * 10) / 10; };
   TextTable table(path, "a table of leaf projections, x,y,z,G");
   std::vector<detail::LeafRow> rows;

@@ -21,16 +21,15 @@ namespace PULSECAST_NAMESPACE::io {
 /// Content of MTL files.
 struct MaterialLibrary {
   std::map<std::string, Material, std::less<>> materials;           ///< materials by name
-  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< of materials, for `add_pictures`
+  std::map<std::string, MaterialPictures, std::less<>> pictures{};  ///< for `add_pictures`
   std::vector<std::string> warnings;                                ///< oddities that could still be read
 };
 
 /// Reads an MTL file. Colours select the law: `Ks` Phong's, with `Ns`, `Kd` alone Lambert's. Reflectance is
-/// `helios_reflectance`, a fraction, or the spectrum named by `helios_spectra`. Further keys in use are
-/// `helios_isGround`, `helios_classification`, `illum`, `Ni`, `Tf`, `Pm` and those of this library, see
-/// docs/surveys.md; pictures are `map_Kd` (colour of points), `map_d` (outline) and
-/// `pulsecast_reflectanceMap`, without options. Of equal names, the first counts; keys before any are of
-/// "default". Throws a `FileError` with path and line at the first error.
+/// `helios_reflectance`, a fraction, or the spectrum named by `helios_spectra`. Others in use are `helios_isGround`,
+/// `helios_classification`, `illum`, `Ni`, `Tf`, `Pm` and those of this library, see docs/surveys.md; pictures are
+/// `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`, without options. Of equal names, the
+/// first counts; keys before any are of "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
 /// Surface without a description: it scatters equally in all directions, as in HELIOS++.
@@ -235,9 +234,9 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;
-  bool begun_ = false, repeated_ = false;  // true after a statement; for a name that is not the first such
-  std::string current_ = "default";        // name of the current material
-  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
+  bool begun_ = false, repeated_ = false;                             // after a statement; for a name again
+  std::string current_ = "default";                                   // name of the current material
+  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // by material and keyword
   std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
 };
 

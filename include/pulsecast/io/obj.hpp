@@ -28,7 +28,7 @@ struct ObjModel {
   std::vector<Material> materials;             ///< materials of triangles, in order of first use
   std::vector<MaterialPictures> pictures{};    ///< of each material, for `add_pictures`; or empty
   std::vector<std::string> warnings;           ///< oddities that could still be read
-  std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, also missing ones
+  std::vector<std::filesystem::path> files{};  ///< MTL files looked for, also missing ones
 };
 
 /// Reads an OBJ file and its MTL files. Polygons, also concave ones, are triangulated; triangles of

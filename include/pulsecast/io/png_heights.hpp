@@ -18,8 +18,8 @@ struct PngHeightSettings {
   double vertical_scale = 1;                      ///< metres per unit of grey [m]
   double vertical_offset = 0;                     ///< height of grey 0, black [m]
   std::optional<std::uint16_t> missing{};         ///< grey of missing heights
-  std::optional<Vec2> pixel{};                    ///< spacing, east and south; default: by the world file [m]
-  std::optional<Vec2> first{};                    ///< centre of the north-west pixel; default: as `pixel`, or 0 [m]
+  std::optional<Vec2> pixel{};                    ///< size; default: by the world file [m]
+  std::optional<Vec2> first{};                    ///< centre of the north-west one; default: as `pixel`, or 0 [m]
   std::size_t max_pixels = std::size_t{1} << 28;  ///< pixels at most
 
   void validate() const {

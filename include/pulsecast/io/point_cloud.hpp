@@ -35,9 +35,9 @@ struct PointCloudSettings {
   double voxel_size = 1;                          ///< edge of a voxel [m]
   VoxelLattice lattice = VoxelLattice::at_cloud;  ///< position of the lattice
   VoxelNormals normals = VoxelNormals::none;      ///< source of the normals
-  std::optional<Vec3> default_normal{};           ///< for voxels without a normal, of any length but 0
+  std::optional<Vec3> default_normal{};           ///< for voxels without, of any length but 0
   bool colours = false;                           ///< true to give voxels colours
-  std::optional<double> colour_max{};             ///< of a channel; default: 65535 in LAS, 255 in text
+  std::optional<double> colour_max{};             ///< default: 65535 in LAS, 255 in text
   TextPointColumns columns = {};                  ///< columns of text files
 
   void validate() const {

@@ -26,11 +26,11 @@
 
 /// Cache of a built scene: one memory-mapped file.
 ///
-/// A cache belongs to one build of the program on one machine: arrays keep their memory layout. It is used
-/// only if complete, by a checksum over all bytes, and made by this version, for these shapes and element
-/// types, from the present bytes of its sources. Forgery is detected as far as a shape has `is_consistent`.
-/// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones
-/// intact; but programs that start together should not make the same cache.
+/// A cache belongs to one build of the program on one machine: arrays keep their memory layout. It
+/// is used only if complete, by a checksum over all bytes, and made by this version, for these
+/// shapes and element types, from the present bytes of its sources. Forgery is detected as far as a
+/// shape has `is_consistent`. Limits: a mapped file must not be written to. Caches are replaced as
+/// a whole, which leaves mapped ones intact; but two programs should not make one at once.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Geometry that can be kept in a cache. A function names all members, for writing and reading:
@@ -70,7 +70,7 @@ concept CacheableScene = requires(const S& scene) {
 
 /// Inputs of a scene.
 struct SceneSources {
-  std::vector<std::filesystem::path> files{};  ///< files that the build reads; of a folder, all below it
+  std::vector<std::filesystem::path> files{};  ///< files of the build; of a folder, all
   std::string settings{};                      ///< all else that the scene depends on, as text
 };
 

@@ -21,7 +21,7 @@ enum class ReflectanceScale : std::uint8_t { fraction, percent };
 struct SpectrumFile {
   std::shared_ptr<const Spectrum> spectrum;             ///< reflectance by wavelength, as fractions
   ReflectanceScale scale = ReflectanceScale::fraction;  ///< unit in the file
-  std::string report{};                                 ///< units assumed for the columns, and reasons
+  std::string report{};                                 ///< units assumed, and reasons
   std::vector<std::string> warnings{};                  ///< oddities that could still be read
 };
 

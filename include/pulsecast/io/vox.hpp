@@ -24,9 +24,9 @@ enum class VoxelUse : std::uint8_t {
 /// Settings for voxel files.
 struct VoxelFileSettings {
   VoxelUse use = VoxelUse::transmissive;  ///< use of the voxels
-  double exponent = 0.5;                  ///< edges of scaled cubes: (PAD / PADmax)^exponent of the cell's
-  std::optional<double> density_max{};    ///< PADmax; by default by the file, or its maximum [m^2/m^3]
-  std::optional<std::uint64_t> shift{};   ///< seed of random shifts of scaled cubes in cells; or none
+  double exponent = 0.5;                  ///< edges of scaled cubes: (PAD / PADmax)^exponent
+  std::optional<double> density_max{};    ///< PADmax; default: by the file [m^2/m^3]
+  std::optional<std::uint64_t> shift{};   ///< seed of shifts of scaled cubes; or none
 
   void validate() const {
     require_not_negative("VoxelFileSettings::exponent", exponent, "");

@@ -27,7 +27,7 @@ struct WorldFile {
 [[nodiscard]] WorldFile read_world_file(const std::filesystem::path& path);
 
 /// Paths of world files beside a picture, in order of search: with the first and last letter of its
-/// extension and a `w`, as in `dem.pgw`, the whole extension and a `w`, or `.wld`; then in capitals.
+/// extension and a `w`, as in `dem.pgw`, all of it and a `w`, or `.wld`; then in capitals.
 [[nodiscard]] std::vector<std::filesystem::path> world_files_of(const std::filesystem::path& picture);
 
 /// The first of them that exists; empty if there is none.

@@ -18,7 +18,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/image.hpp>
 
-/// Serialization of objects for one program on one machine: arrays keep their layout, used in place.
+/// Serialization for one program on one machine: arrays keep their layout, used in place.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Archive of other types, or inconsistent.

@@ -18,7 +18,7 @@ namespace PULSECAST_NAMESPACE::io {
 class CellNumbers {
  public:
   using Cell = std::array<std::uint32_t, 3>;
-  static constexpr std::size_t max_size = 4294967294;  ///< upper limit of cells, as in a grid of voxels
+  static constexpr std::size_t max_size = 4294967294;  ///< upper limit, as in a grid of voxels
 
   [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
 

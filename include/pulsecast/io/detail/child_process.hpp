@@ -60,7 +60,7 @@ inline void leave_network() noexcept {
   };
   std::array<sock_filter, 8> rules{
       load(offsetof(seccomp_data, arch)),
-      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, machine, 0, 5),  // system calls of another machine
+      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, machine, 0, 5),  // calls of another machine
       load(offsetof(seccomp_data, nr)),
       sock_filter BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, other_numbers, 3, 0),
       skip_if_equal(SYS_socket, 2),

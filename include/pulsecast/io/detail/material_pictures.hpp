@@ -22,7 +22,7 @@ enum class UpAxis : std::uint8_t {
 
 /// Spectra by name.
 struct SpectralLibrary {
-  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
+  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< by name
   std::vector<std::string> reports{};   ///< report of each file, as in `SpectrumFile`
   std::vector<std::string> warnings{};  ///< oddities that could still be read
   std::vector<double> wavelengths{};    ///< of the lasers, for warnings; empty if unknown [m]
@@ -42,7 +42,7 @@ struct MaterialPictures {
   PictureSource opacity{};           ///< outline: by its opacity, or by its grey or red without one
   PictureSource reflectance{};       ///< reflectance
   bool reflectance_pattern = false;  ///< true if that is a pattern, see `ReflectanceMap::pattern`
-  bool outlined_by_colour = false;   ///< true: the opacity of the colour picture, if any, is the outline
+  bool outlined_by_colour = false;   ///< true: the opacity of the colour picture is the outline
   double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
 
   [[nodiscard]] bool empty() const noexcept { return colour.empty() && opacity.empty() && reflectance.empty(); }

@@ -252,7 +252,7 @@ class MeshImport {
       if (step.depth > 1000) fail("its nodes are nested more than 1000 deep");
       const aiMatrix4x4& m = node.mTransformation;
       const Matrix3 linear(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3));
-      std::string name = node.mName.C_Str();  // that of a root is often made by assimp, or has no meaning
+      std::string name = node.mName.C_Str();  // of a root, often without a meaning
       const bool means_nothing = name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT"));
       if (step.depth == 0 && means_nothing) name.clear();
       RawNode made{.name = step.name.empty() ? name : step.name + "/" + name,

@@ -35,13 +35,13 @@ struct MeshFileSettings {
   /// Vertical axis; default: y in glTF and GLB, as named in DAE and FBX, z in others.
   std::optional<UpAxis> up = std::nullopt;
   std::optional<double> unit{};        ///< size of a unit; default: as in DAE and FBX, else 1 [m]
-  std::filesystem::path materials{};   ///< MTL file that replaces materials but their colours; or none
+  std::filesystem::path materials{};   ///< MTL file that replaces all but colours; or none
   SpectralLibrary spectra{};           ///< spectra for `helios_spectra` in that file
-  bool reflectance_of_colour = false;  ///< true: reflectance is the luminance of the colour, not 0.5
+  bool reflectance_of_colour = false;  ///< true: reflectance by luminance, not 0.5
   bool texture = false;                ///< true: texture coordinates also without pictures
   bool pictures = true;                ///< false: pictures are listed, but not read
-  bool files_elsewhere = false;        ///< true: buffers and pictures may lie outside the file's folder
-  bool isolated = false;               ///< true: assimp runs in a child process; for untrusted files
+  bool files_elsewhere = false;        ///< true: also files outside the folder
+  bool isolated = false;               ///< true: in a child process; for untrusted files
   ImportLimits limits{};               ///< of that process
 
   void validate() const {
@@ -66,11 +66,11 @@ struct MeshPlacement {
 /// Content of a mesh file.
 struct MeshFile {
   std::vector<FileMesh> meshes{};              ///< each once, however many nodes show it
-  std::vector<MeshPlacement> placements{};     ///< in order of the nodes, each before those below it
+  std::vector<MeshPlacement> placements{};     ///< by node, each before those below it
   std::vector<Material> materials{};           ///< materials, in order of first use
   std::vector<MaterialPictures> pictures{};    ///< pictures of the materials, one for each
   std::vector<std::string> warnings{};         ///< oddities that could still be read
-  std::vector<std::filesystem::path> files{};  ///< other files that were looked for, also missing ones
+  std::vector<std::filesystem::path> files{};  ///< other files that were looked for
 
   /// Number of triangles, of all placements.
   [[nodiscard]] std::uint64_t triangle_count() const noexcept {

@@ -28,7 +28,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 [[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
   const std::size_t count = words.size();
   const auto is = [&](std::string_view word) { return count > 0 && words[0] == word; };
-  const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers from low to high
+  const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers in a range
     for (std::size_t i = first; i < std::min(end, count); ++i) {
       const std::optional<double> number = number_in<double>(words[i]);
       if (!number || *number < low || *number > high) return false;

@@ -119,7 +119,7 @@ class ObjPiece : private StatementBuffer {
  private:
   struct Face {
     std::size_t line;
-    std::uint32_t corners, above, use;  ///< corners; vertices of this piece above it; index into `uses`
+    std::uint32_t corners, above, use;  ///< their number; vertices above; index into `uses`
     std::uint32_t places_above;         ///< texture coordinates of this piece above it
   };
 
@@ -142,7 +142,7 @@ class ObjPiece : private StatementBuffer {
     } else if (keyword() == "vt" && textured_) {
       return place(given);
     } else if (keyword() != "usemtl") {
-      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first of several
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first
         libraries.push_back({line(), quoted(), std::string(rest())});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
         unknown.add({1, line(), quoted()});

@@ -33,7 +33,7 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< limit, as the tim
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     flat.push_back(normal[axis] < 0 ? Vec2{p[v], p[u]} : Vec2{p[u], p[v]});
   }
-  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive for a turn to the left
+  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive: to the left
     const Vec2 ab = flat[b] - flat[a], ac = flat[c] - flat[a];
     return ab.x * ac.y - ab.y * ac.x;
   };

@@ -57,7 +57,7 @@ class ObjReader {
       for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
     });
     std::vector<Vec3>& vertices = model_.mesh.vertices;
-    std::vector<std::size_t> before, places_before;  // vertices and texture coordinates before each piece
+    std::vector<std::size_t> before, places_before;  // numbers before each piece
     for (const auto& piece : pieces) {
       before.push_back(vertices.size());
       places_before.push_back(places_.size());
@@ -169,7 +169,7 @@ class ObjReader {
   std::vector<Use> uses_;                                          // in use by triangles
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
   ObjPiece::Notes unknown_, flat_;
-  std::map<std::string, std::size_t> without_place_;  // corners without texture coordinates, by material
+  std::map<std::string, std::size_t> without_place_;  // corners, by material
   std::size_t open_line_ = 0;
 };
 
@@ -180,7 +180,7 @@ PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjS
   return reading(path, [&] {
     ObjModel model = detail::ObjReader(path, settings, workers).read();
     if (model.pictures.empty() || settings.texture) return model;
-    ObjSettings textured = settings;  // few files have pictures, so that the others are not read for them
+    ObjSettings textured = settings;  // not at first, as few files have pictures
     textured.texture = true;
     return detail::ObjReader(path, textured, workers).read();
   });

@@ -79,7 +79,7 @@ class StatementBuffer : public std::streambuf {
   virtual void check(std::string& ready) = 0;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::size_t line() const { return line_; }                   ///< first of the statement
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< its first line, from 1
   [[nodiscard]] bool line_is_open() const { return open_; }                  ///< for a last line without end
   [[nodiscard]] const std::string& statement() const { return statement_; }  ///< one blank after keyword
   [[nodiscard]] std::string_view keyword() const {

@@ -27,7 +27,7 @@ struct ImageSettings {
   double azimuth = radians(30);           ///< viewing direction, clockwise from north [rad]
   double elevation = radians(30);         ///< viewing direction below the horizon [rad]
   double field_of_view = radians(30);     ///< angle across the scene; 0: parallel projection [rad]
-  std::optional<Vec3> eye{};              ///< position of the camera; default: frames all points [m]
+  std::optional<Vec3> eye{};              ///< place of the camera; default: frames all [m]
   ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
   double point_size = 0;                  ///< diameter in mid-scene; 0 to close the gaps [px]
   Srgb background{13, 17, 23};            ///< colour of the background

@@ -49,8 +49,8 @@ struct AngleConvention {
   }
 };
 
-/// Heading clockwise from north, pitch nose up, roll right wing down: body axes forward, right, down in a
-/// world of north, east, down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
+/// Heading clockwise from north, pitch nose up, roll right wing down: axes forward, right, down in
+/// a world of north, east, down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
 inline const AngleConvention heading_pitch_roll{};
 
 /// `heading_pitch_roll` with roll before pitch. HELIOS++ calls this "ARINC 705".

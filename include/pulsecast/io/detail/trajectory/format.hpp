@@ -107,7 +107,7 @@ inline constexpr auto units = std::to_array<Unit>({
 
 }  // namespace detail
 
-/// Column of a name of any case; empty if unknown. A unit may follow: `time_s`, `Roll [deg]`; without one,
+/// Column of a name; empty if unknown. A unit may follow: `time_s`, `Roll [deg]`; without one,
 /// times are in seconds and lengths in metres. A word may precede a height: `Ellipsoid height`.
 [[nodiscard]] inline std::optional<TrajectoryColumn> trajectory_column(std::string_view name, AngleUnit angles) {
   const std::string whole = detail::plain(name);
@@ -155,7 +155,7 @@ class TrajectoryColumns {
     if (problem_.empty()) require_whole();
   }
 
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< of the names; or empty
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< or empty
 
   /// Column of the problem, from 0; empty if it concerns all.
   [[nodiscard]] std::optional<std::size_t> culprit() const noexcept { return culprit_; }
@@ -211,7 +211,7 @@ enum class ColumnNames : std::uint8_t {
   nowhere,     ///< nowhere, by agreement
 };
 
-/// Format of a trajectory file. Names: see `trajectory_column`. Lines that begin with # are comments.
+/// Format of a trajectory file. Names: `trajectory_column`. Lines that begin with # are comments.
 struct TrajectoryFormat {
   ColumnNames names = ColumnNames::first_line;  ///< place of the names
   /// Columns to write, in this order, and to read from a file without names.

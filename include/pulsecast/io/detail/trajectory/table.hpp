@@ -289,7 +289,7 @@ class TrajectoryReader {
 /// quaternion whose norm is off by more than 1/1000, or a number beyond 1e12 s, m or rad. Warnings:
 /// - poses out of order, which are sorted; repeated poses, which are left out;
 /// - different poses at one time within the window: a jump from the first in the file to the last;
-/// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
+/// - angles without a column, which are 0; quaternions that are not unit, which are normalized.
 [[nodiscard]] inline TrajectoryTable read_trajectory(const std::filesystem::path& path,
                                                      const TrajectoryFormat& format = csv_format(),
                                                      const TimeWindow& window = {}) {
