@@ -85,7 +85,7 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 /// sizes; a string is length, bytes and zero. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
 [[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, std::string_view frame_id) noexcept {
   const auto aligned = [](std::size_t at) { return (at + 3) / 4 * 4; };
-  const auto with_string = [&](auto at, std::string_view text) { return aligned(at) + 4 + text.size() + 1; };
+  const auto with_string = [&](std::size_t at, std::string_view text) { return aligned(at) + 4 + text.size() + 1; };
   std::size_t size = aligned(with_string(8, frame_id)) + 12;  // height, width, fields
   for (const PointField& field : layout.fields)
     size = aligned(aligned(with_string(size, field.name)) + 4 + 1) + 4;  // offset, type, count

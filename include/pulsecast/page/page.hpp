@@ -6,15 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <map>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
@@ -40,19 +32,18 @@ struct PageLeg {
   std::vector<Vec3> places{};   ///< one for each time, in the world [m]
 };
 
-/// Samples a trajectory from `start` to `start + duration` in the survey's time: evenly spaced, or once if it does not
-/// move. The trajectory's own time begins at 0.
+/// Samples a trajectory from `start` to `start + duration` in the survey's time: evenly spaced, or
+/// once if it does not move. The trajectory's own time begins at 0.
 [[nodiscard]] PageLeg page_leg(std::string name, const Trajectory auto& trajectory, Tick start, Tick duration,
                                int moments = 200) {
   PageLeg leg{std::move(name), {}, {}};
-  bool moves = false;
   for (int k = 0; k < moments; ++k) {
     const double time = duration.seconds() * k / std::max(moments - 1, 1);
     leg.times.push_back(start.seconds() + time);
     leg.places.push_back(trajectory.at(Tick::of_seconds(time)).position);
-    moves = moves || length(leg.places.back() - leg.places.front()) > 1e-4;
   }
-  if (!moves) {
+  const auto stays = [&](const Vec3& p) { return !(length(p - leg.places.front()) > 1e-4); };
+  if (std::ranges::all_of(leg.places, stays)) {
     leg.times.resize(1);
     leg.places.resize(1);
   }
@@ -69,10 +60,10 @@ struct PageSurvey {
 /// Settings of a page.
 struct PageSettings {
   std::size_t points_max = 1'000'000;     ///< from 2 to 2^27; larger clouds are thinned
-  double position_step = 0;               ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
+  double position_step = 0;               ///< step of coordinates; 0: by `page_step` [m]
   int effort = 6;                         ///< compression level, 1 to 9
-  std::vector<io::PointField> columns{};  ///< columns beyond the usual ones, see `io::layouts::columns`
-  io::PointSettings points{};  ///< values of columns; the page has colours if these have, and is in the world
+  std::vector<io::PointField> columns{};  ///< further columns, see `io::layouts::columns`
+  io::PointSettings points{};             ///< values of columns; colours if these have any
 
   void validate() const {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
@@ -85,21 +76,21 @@ struct PageSettings {
 namespace detail {
 
 /// Writes the colour scales of pictures, for the page.
-inline void write_colours(page::detail::JsonWriter& json) {
+inline void write_colours(detail::JsonWriter& json) {
   const auto scale = [](std::span<const io::Srgb> colours) {
-    return [colours](std::size_t i) { return io::to_srgb(io::along(colours, static_cast<double>(i) / 255)); };
+    return [colours](auto i) { return io::to_srgb(io::along(colours, static_cast<double>(i) / 255)); };
   };
   json.begin_object();
   json.key("viridis").array(256, scale(io::viridis));
   json.key("greys").array(256, scale(io::greys));
-  json.key("hues").array(256, [](std::size_t i) { return io::to_srgb(io::of_hue(static_cast<double>(i) / 256)); });
+  json.key("hues").array(256, [](auto i) { return io::to_srgb(io::of_hue(static_cast<double>(i) / 256)); });
   json.key("classes").array(70, [](std::size_t i) { return io::of_class(static_cast<std::uint16_t>(i)); });
   json.member("kinds", io::okabe_ito);
   json.member("light", io::kind_colours);
   json.end_object();
 }
 
-inline void write_legs(page::detail::JsonWriter& json, std::span<const PageLeg> legs) {
+inline void write_legs(detail::JsonWriter& json, std::span<const PageLeg> legs) {
   const auto rounded = [](double value, double steps) { return std::round(value * steps) / steps; };
   json.begin_array();
   for (const PageLeg& leg : legs) {
@@ -115,7 +106,7 @@ inline void write_legs(page::detail::JsonWriter& json, std::span<const PageLeg> 
 }
 
 inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool live) {
-  page::detail::JsonWriter json;
+  detail::JsonWriter json;
   json.begin_object().member("name", survey.name).member("scanner", survey.scanner).member("platform", survey.platform);
   json.member("version", PULSECAST_VERSION).member("echoes", echoes).member("live", live);
   json.key("objects").begin_object();
@@ -131,23 +122,22 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 
 }  // namespace detail
 
-/// Whole page as HTML, without other files or network requests. With `live`, it has no points and loads them from its
-/// own server.
+/// Whole page as HTML. With `live`, it has no points and loads them from its own server.
 [[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns,
                                            bool live = false) {
   std::string out;
-  for (const std::string_view piece : page::detail::html_before_survey) out += piece;
+  for (const std::string_view piece : detail::html_before_survey) out += piece;
   out += detail::json_of(survey, echoes, live);
-  for (const std::string_view piece : page::detail::html_before_points) out += piece;
+  for (const std::string_view piece : detail::html_before_points) out += piece;
   out += base64(columns);
-  for (const std::string_view piece : page::detail::html_after_points) out += piece;
+  for (const std::string_view piece : detail::html_after_points) out += piece;
   return out;
 }
 
-/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes.
-/// Works in any browser since 2023, without a network. The file depends on echoes and settings alone. `PageSample`
-/// thins larger clouds evenly; `page_columns` states the accuracy of attributes. Only `close()` makes the file: see
-/// `OutputFile`.
+/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and
+/// point attributes. Works in any browser since 2023, without a network. The file depends on echoes
+/// and settings alone. `PageSample` thins larger clouds; `page_columns` states the accuracy. Only
+/// `close()` makes the file: see `OutputFile`.
 class PageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
@@ -158,7 +148,7 @@ class PageWriter {
         sample_(settings.points_max, settings.points, settings.columns) {}
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
   /// Description of the survey; may be changed until the file is closed.
   [[nodiscard]] PageSurvey& survey() noexcept { return survey_; }

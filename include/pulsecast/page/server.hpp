@@ -10,10 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <span>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include <httplib.h>
 
@@ -25,13 +23,11 @@
 
 namespace PULSECAST_NAMESPACE::page {
 
-/// Sink that shows the growing cloud: the page of `PageWriter` with progress and a stop button, at an address of this
-/// machine only.
+/// Sink that shows the growing cloud at 127.0.0.1: the page of `PageWriter` with a stop button.
 ///
-/// It is a `LocalServer` at 127.0.0.1: no client takes memory, descriptors or time from the run. Every address contains
-/// a random secret of this object. Requests must use the name of this machine and come from no other site's page, so
-/// that other sites in the same browser learn and stop nothing. Any reader of this user's screen has access. The
-/// functions may be called from any thread.
+/// It is a `LocalServer`: no client takes memory, descriptors or time from the run. Every address
+/// contains a random secret. Requests must use the name of this machine and come from no other
+/// site's page. The functions may be called from any thread.
 class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any free one.
@@ -76,7 +72,7 @@ class PageServer {
 
   /// Removes all points and starts another run.
   void begin(PageSurvey survey) { begin(std::move(survey), settings_); }
-  /// As above, with other settings, such as the values of columns of another scene. @throws SettingError
+  /// As above, with other settings. @throws SettingError
   void begin(PageSurvey survey, const PageSettings& settings) {
     const std::lock_guard lock(mutex_);
     settings_ = validated(settings);
@@ -91,7 +87,7 @@ class PageServer {
     const std::lock_guard lock(mutex_);
     sample_(batch);
   }
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
   /// Sets the progress shown.
   void show(const Progress& progress) {
@@ -102,14 +98,14 @@ class PageServer {
   /// True if the stop button was pressed.
   [[nodiscard]] bool stop_requested() const noexcept { return stop_requested_; }
 
-  /// Ends the run, and waits until open pages have all points: not without a page, and at most `patience`.
+  /// Ends the run, and waits until open pages have all points, but at most `patience`.
   void finish(bool complete, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
     {
       const std::lock_guard lock(mutex_);
       state_ = complete ? "complete" : "stopped";
     }
     const auto began = Clock::now();
-    constexpr auto quiet = std::chrono::milliseconds(1500);  // pages in the background poll once a second
+    constexpr auto quiet = std::chrono::milliseconds(1500);  // hidden pages poll each second
     while (Clock::now() - began < patience) {
       {
         const std::lock_guard lock(mutex_);
@@ -121,23 +117,20 @@ class PageServer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t max_at_once = 65'536;  // points
+  static constexpr std::ptrdiff_t max_at_once = 65'536;  // points
 
   /// 128 random bits as text.
   [[nodiscard]] static std::string secret() {
-    std::array<unsigned char, 16> bytes{};
+    std::array<unsigned char, 32> bytes{};
     if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
       throw std::runtime_error("no page can be served: the system has no random numbers");
     std::string out;
-    for (const unsigned char byte : bytes) {
-      out += "0123456789abcdef"[byte / 16];
-      out += "0123456789abcdef"[byte % 16];
-    }
+    for (const unsigned char byte : bytes) out += "0123456789abcdef"[byte % 16];
     return out;
   }
 
-  /// True if a request has the right host name and, if a page sent it, comes from this page. Other names may resolve to
-  /// this machine ("DNS rebinding"). Other pages may send requests without access to the response.
+  /// True if a request has the right host name, as others may resolve to this machine ("DNS
+  /// rebinding"), and does not come from another page.
   [[nodiscard]] bool is_ours(const httplib::Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (host != "127.0.0.1" + host_ && host != "localhost" + host_) return false;
@@ -151,10 +144,9 @@ class PageServer {
     return page_html(survey_, sample_.seen(), "", true);
   }
 
-  /// Progress of the run, and points of later pulses than `after`: the length of a JSON text in four bytes, the text,
-  /// and columns.
+  /// Progress, and points of later pulses than `after`: a JSON text with its length, and columns.
   [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
-    page::detail::JsonWriter json;
+    detail::JsonWriter json;
     PagePoints fresh;
     {
       const std::lock_guard lock(mutex_);
@@ -163,8 +155,7 @@ class PageServer {
       const std::vector<PagePoint>& all = sample_.points().points;
       const auto later = [](std::uint64_t pulse, const PagePoint& p) { return pulse < p.pulse; };
       const auto first = other || !after ? all.begin() : std::upper_bound(all.begin(), all.end(), *after, later);
-      auto end =
-          first + static_cast<std::ptrdiff_t>(std::min(max_at_once, static_cast<std::size_t>(all.end() - first)));
+      auto end = first + std::min(max_at_once, all.end() - first);
       if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
       fresh = sample_.points().part(static_cast<std::size_t>(first - all.begin()),
                                     static_cast<std::size_t>(end - all.begin()));
@@ -198,7 +189,7 @@ class PageServer {
   std::uint64_t run_ = 1;
   std::optional<Clock::time_point> asked_{};  // time of the last request
   std::atomic<bool> stop_requested_ = false;
-  LocalServer server_;  // not made or copied here: the layout of a `Request` depends on how httplib was compiled
+  LocalServer server_;  // no `Request` is made here: its layout depends on how httplib was compiled
 };
 static_assert(EchoSink<PageServer>);
 

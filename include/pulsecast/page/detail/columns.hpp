@@ -5,21 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <new>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include <zlib.h>
 
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/io/gzip.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
 
@@ -37,8 +27,7 @@ struct PageColumnSettings {
   }
 };
 
-/// Step of coordinates for an extent [m]: the least of 1, 2 and 5 times a power of ten with 2^17 steps across, at least
-/// `least`, by default 0.1 mm.
+/// Least step of 1, 2 or 5 times a power of ten, from `least` on, with 2^17 across an extent [m].
 [[nodiscard]] inline double page_step(double extent, double least = 1e-4) noexcept {
   for (double power = least; power < 1e300; power *= 10)
     for (const double step : {power, 2 * power, 5 * power})
@@ -55,20 +44,30 @@ struct PageCodes {
   double offset = 0, step = 0;             ///< for linear and logarithmic codes
   std::vector<std::uint32_t> values{};     ///< for listed codes
   std::optional<double> per_pulse{};       ///< term added, times the number of the pulse
-  bool differences = true;                 ///< store differences, for attributes with similar neighbours
+  bool differences = true;                 ///< store differences, of similar neighbours
   std::optional<std::string_view> unit{};  ///< unit, of a column that the page does not know
   std::vector<std::uint64_t> codes{};
 };
 
+/// Least and greatest of the finite values of `value(i)`; infinity and its negative without any.
+template <class Value>
+std::pair<double, double> extent_of(std::size_t count, const Value& value) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const double v = value(i); std::isfinite(v)) {
+      least = std::min(least, v);
+      most = std::max(most, v);
+    }
+  return {least, most};
+}
+
 inline constexpr double max_page_code = 0x1p52;  // up to here, a double represents every integer
 
-/// Linear codes of `value(i)` for the first `count` numbers: 1 + the number of steps above `from`, or the least value.
+/// Linear codes of `value(i)`, `count` of them: 1 + steps above `from`, or the least value.
 template <class Value>
 PageCodes linear_codes(std::string name, std::size_t count, double step, const Value& value,
                        std::optional<double> from = {}) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i)
-    if (const double v = value(i); std::isfinite(v)) least = std::min(least, v);
+  const double least = extent_of(count, value).first;
   const double offset = from.value_or(std::isfinite(least) ? std::floor(least / step) * step : 0);
   PageCodes out{.name = std::move(name), .kind = "linear", .offset = offset, .step = step};
   out.codes.reserve(count);
@@ -79,19 +78,15 @@ PageCodes linear_codes(std::string name, std::size_t count, double step, const V
   return out;
 }
 
-/// Logarithmic codes: 1 + the number of steps of the logarithm above the least value. Values not above zero have code
-/// 0.
+/// Logarithmic codes: 1 + steps of the logarithm above the least value; 0 for others.
 template <class Value>
 PageCodes logarithmic_codes(std::string name, std::size_t count, double step, const Value& value) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto sound = [](double v) { return v > 0 && std::isfinite(v); };
-  for (std::size_t i = 0; i < count; ++i)
-    if (const double v = value(i); sound(v)) least = std::min(least, v);
-  const double offset = std::isfinite(least) ? least : 1;
+  const auto sound = [&](std::size_t i) { return value(i) > 0 ? value(i) : std::nan(""); };
+  const double least = extent_of(count, sound).first, offset = std::isfinite(least) ? least : 1;
   PageCodes out{.name = std::move(name), .kind = "logarithmic", .offset = offset, .step = step, .differences = false};
   for (std::size_t i = 0; i < count; ++i) {
-    const double v = value(i);
-    out.codes.push_back(sound(v) ? static_cast<std::uint64_t>(1 + std::round(std::log(v / least) / step)) : 0);
+    const double code = 1 + std::round(std::log(sound(i) / least) / step);
+    out.codes.push_back(std::isfinite(code) ? static_cast<std::uint64_t>(code) : 0);
   }
   return out;
 }
@@ -116,13 +111,8 @@ PageCodes listed_codes(std::string name, std::size_t count, const Value& value) 
 /// Step of a column: that of the page, or one of the extent of its values.
 inline double step_of(const PagePoints& all, std::size_t column) noexcept {
   if (all.columns[column].step > 0) return all.columns[column].step;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    const double v = all.value(i, column);
-    if (!std::isfinite(v)) continue;
-    least = std::min(least, v);
-    most = std::max(most, v);
-  }
+  const auto value = [&](std::size_t i) { return all.value(i, column); };
+  const auto [least, most] = extent_of(all.points.size(), value);
   return page_step(most > least ? most - least : 0, 1e-15);
 }
 
@@ -155,11 +145,11 @@ inline PageCodes codes_of(const PagePoints& all, std::size_t column) {
 /// Mean time between pulses [s].
 inline double time_of_a_pulse(std::span<const PagePoint> points) {
   if (points.empty() || points.back().pulse <= points.front().pulse) return 0;
-  return (points.back().time - points.front().time) / static_cast<double>(points.back().pulse - points.front().pulse);
+  const PagePoint &first = points.front(), &last = points.back();
+  return (last.time - first.time) / static_cast<double>(last.pulse - first.pulse);
 }
 
-/// Replaces codes by differences to the previous one, with the sign in the lowest bit: small numbers for similar
-/// neighbours.
+/// Replaces codes by differences to the previous one, with the sign in the lowest bit.
 inline void make_differences(std::vector<std::uint64_t>& codes) {
   std::uint64_t before = 0;
   for (std::uint64_t& code : codes) {
@@ -169,33 +159,10 @@ inline void make_differences(std::vector<std::uint64_t>& codes) {
   }
 }
 
-/// Appends bytes in deflate format, without zlib header and checksum. Source: RFC 1951.
-inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, int effort) {
-  z_stream stream{};
-  constexpr int no_head = -15, memory_level = 9;
-  if (deflateInit2(&stream, effort, Z_DEFLATED, no_head, memory_level, Z_FILTERED) != Z_OK) throw std::bad_alloc();
-  std::vector<Bytef> room(std::size_t{1} << 18);
-  constexpr std::size_t most = std::size_t{1} << 30;  // chunk size: zlib counts in 32 bits
-  do {
-    const auto part = bytes.first(std::min(bytes.size(), most));
-    bytes = bytes.subspan(part.size());
-    stream.next_in = const_cast<Bytef*>(part.data());
-    stream.avail_in = static_cast<uInt>(part.size());
-    do {
-      stream.next_out = room.data();
-      stream.avail_out = static_cast<uInt>(room.size());
-      deflate(&stream,
-              bytes.empty() ? Z_FINISH : Z_NO_FLUSH);  // cannot fail: the stream is valid, and the output has room
-      out.append(reinterpret_cast<const char*>(room.data()), room.size() - stream.avail_out);
-    } while (stream.avail_out == 0);
-  } while (!bytes.empty());
-  deflateEnd(&stream);
-}
-
 /// JSON text after its length in four bytes, little-endian.
 inline std::string with_length(const std::string& text) {
   std::string out;
-  for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
+  for (int k = 0; k < 4; ++k) out += static_cast<char>(text.size() >> 8 * k);
   return out + text;
 }
 
@@ -225,13 +192,14 @@ class PageBlock {
   /// Bytes of the whole block; `effort` is the compression level, 1 to 9.
   [[nodiscard]] std::string finish(int effort) {
     head_.end_array().end_object();
-    std::string out = with_length(head_.text());
-    deflate_into(out, planes_, effort);
-    return out;
+    std::vector<std::byte> packed;
+    io::detail::DeflateEncoder(effort, io::detail::DeflateEncoder::no_head, Z_FILTERED)
+        .encode(std::as_bytes(std::span(planes_)), true, packed);
+    return with_length(head_.text()).append(reinterpret_cast<const char*>(packed.data()), packed.size());
   }
 
  private:
-  page::detail::JsonWriter head_;
+  detail::JsonWriter head_;
   std::vector<std::uint8_t> planes_;
 };
 
@@ -249,17 +217,17 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 
 }  // namespace detail
 
-/// Encodes points for a page: the length of a JSON text in four bytes, little-endian; the text; deflated bytes.
+/// Encodes points for a page: length of a JSON text in four bytes; the text; deflated bytes.
 ///
 ///     {"count":N,"columns":[{"name":"x","kind":"linear","offset":0,"step":0.001,"differences":true,"planes":2},...]}
 ///
-/// The deflated bytes are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1)
-/// step, offset exp((code - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the
-/// previous code, doubled, less one if negative. `per_pulse`, times the pulse's number, is added to a value. Values are
-/// exact to half a step. Positions have that of the settings, also the origins of pulses (`from_x` and so on). Steps of
-/// others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width 1 ps. Amplitudes are exact to
-/// 1 %, integers exactly. A colour is the number 65536 red + 256 green + blue. Further columns have their `unit`; real
-/// ones are exact to a 130,000th of their extent.
+/// These are the byte planes of each column in turn, lowest byte first. A value is offset + (code -
+/// 1) step, offset exp((code - 1) step), or the (code - 1)th of `values`; code 0: none. Differences
+/// are to the previous code, doubled, less one if negative. `per_pulse`, times the pulse's number,
+/// is added. Values are exact to half a step: that of the settings for positions and origins of
+/// pulses (`from_x`), time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width
+/// 1 ps. Amplitudes are exact to 1 %, integers exactly. A colour is 65536 red + 256 green + blue.
+/// Further columns have their `unit`; real ones are exact to a 130,000th of their extent.
 [[nodiscard]] inline std::string page_columns(const PagePoints& all, const PageColumnSettings& settings = {}) {
   settings.validate();
   using detail::linear_codes;

@@ -6,9 +6,6 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/error.hpp>
 
@@ -16,8 +13,7 @@ namespace PULSECAST_NAMESPACE::page::detail {
 
 /// JSON writer, token by token; it sets the commas. Source: RFC 8259.
 ///
-/// Texts are escaped for HTML, too: `<`, `>` and `&` become codes. A number that is not finite becomes `null`. The
-/// caller closes each array and object.
+/// Texts are escaped for HTML, too. A number that is not finite becomes `null`.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }
@@ -56,7 +52,7 @@ class JsonWriter {
     return end_array();
   }
 
-  [[nodiscard]] const std::string& text() const noexcept { return text_; }  ///< UTF-8, if the texts are
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }  ///< UTF-8
 
  private:
   /// Writes a comma, except before a first item or the value of a member.

@@ -27,9 +27,9 @@ namespace PULSECAST_NAMESPACE::page {
 
 /// Limits of a `LocalServer` that protect the program's memory, descriptors and time from clients.
 struct LocalServerLimits {
-  std::size_t connections = 32;  ///< open at once, in half of the process's descriptors; one more closes the oldest
+  std::size_t connections = 32;                     ///< at once, in half of the descriptors; one more closes the oldest
   std::size_t request_bytes = 65'536;               ///< request line and headers
-  std::chrono::milliseconds request_time{2'000};    ///< from the connection to the end of the headers
+  std::chrono::milliseconds request_time{2'000};    ///< to the end of the headers
   std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte sent
 };
 
@@ -67,14 +67,14 @@ class BufferedExchange final : public httplib::Stream {
 
 }  // namespace detail
 
-/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses the routes and the
-/// parser of `httplib::Server`. One thread polls all connections, so that idle clients cost nothing. A connection is
-/// one request, without a body.
+/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses
+/// the routes and the parser of `httplib::Server`. One thread polls all connections, so that idle
+/// clients cost nothing. A connection is one request, without a body.
 class LocalServer final : public httplib::Server {
  public:
   explicit LocalServer(const LocalServerLimits& limits = {}) : limits_(limits) {
     set_payload_max_length(0);
-    set_socket_options([](socket_t socket) {  // instead of httplib's, by which two servers may share a port
+    set_socket_options([](socket_t socket) {  // httplib's let two servers share a port
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
       fcntl(socket, F_SETFL, O_NONBLOCK);
@@ -85,7 +85,7 @@ class LocalServer final : public httplib::Server {
   LocalServer& operator=(const LocalServer&) = delete;
   ~LocalServer() override { end(); }
 
-  /// Binds to a port, 0 for any free one, and returns it. Throws a `std::runtime_error` if the port is not available.
+  /// Binds to a port, 0 for any free one, and returns it. @throws std::runtime_error if it is taken
   int bind(int port) {
     const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
     if (bound <= 0)
@@ -130,7 +130,7 @@ class LocalServer final : public httplib::Server {
       for (const Connection& c : open_)
         ready.push_back({c.socket, static_cast<short>(c.answered ? POLLOUT : POLLIN), 0});
       poll(ready.data(), ready.size(), may_accept && open_.empty() ? -1 : tick);
-      const auto now = Clock::now();  // once a round: the time of one response is not charged to the others
+      const auto now = Clock::now();  // once a round: no client pays for another's response
       for (std::size_t k = 0; k < open_.size(); ++k) {
         if (ready[k + 1].revents != 0) proceed(open_[k]);
         if (now > open_[k].deadline) open_[k].over = true;
@@ -141,15 +141,14 @@ class LocalServer final : public httplib::Server {
     close_if([](const Connection&) { return true; });
   }
 
-  /// Accepts one connection only, so that all others are served before the next. Returns false if the system has no
-  /// descriptor left.
+  /// Accepts one connection, so that others are served before the next; false without a descriptor.
   bool accept_one() {
     socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;
     // descriptors are assigned in order: this number counts those in use, by the program as well
     const bool takes_share = static_cast<rlim_t>(socket) >= share_ && !open_.empty();
     if (open_.size() >= limits_.connections || takes_share) {
-      const auto waiting = std::find_if(open_.begin(), open_.end(), [](const Connection& c) { return !c.answered; });
+      const auto waiting = std::ranges::find(open_, false, &Connection::answered);
       const auto oldest = waiting != open_.end() ? waiting : open_.begin();
       // the new one takes the number of the oldest, so that numbers stay low
       close(dup3(socket, oldest->socket, O_CLOEXEC) >= 0 ? std::exchange(socket, oldest->socket) : oldest->socket);
@@ -172,7 +171,8 @@ class LocalServer final : public httplib::Server {
   /// Returns true once `bytes` is a response.
   bool receive(Connection& c) {
     char room[4096];
-    const ssize_t count = recv(c.socket, room, std::min(sizeof room, limits_.request_bytes - c.bytes.size()), 0);
+    const std::size_t most = std::min(sizeof room, limits_.request_bytes - c.bytes.size());
+    const ssize_t count = recv(c.socket, room, most, 0);
     if (count <= 0) {
       c.over = count == 0 || (errno != EAGAIN && errno != EINTR);
       return false;

@@ -5,14 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
@@ -42,15 +36,15 @@ enum class PageCoding : std::uint8_t {
 
 /// Column of a page.
 struct PageColumn {
-  io::PointField field{};                 ///< name on the page, type in the record, column and scale
+  io::PointField field{};                 ///< name on the page; type in the record
   PageCoding coding = PageCoding::steps;  ///< coding
-  double step = 0;                        ///< step of the values times `scale` by `divisor`; 0: from their extent
+  double step = 0;                        ///< step of the values on the page; 0: from their extent
   double scale = 1, divisor = 1;          ///< factors of the unit on the page
-  std::optional<double> plain{};          ///< value that says nothing: the column is left out if all have it
+  std::optional<double> plain{};          ///< the column is left out if all have this value
   bool further = false;                   ///< asked for: name and unit are shown as they are
 };
 
-/// Columns of a page, in order, without those of `PagePoint`: the usual ones, colours if any, and further ones.
+/// Columns of a page besides `PagePoint`: the usual ones, colours if any, and further ones.
 [[nodiscard]] inline std::vector<PageColumn> columns_of_page(bool colours, std::span<const io::PointField> further) {
   using enum io::NumberType;
   using enum PageCoding;
@@ -108,7 +102,7 @@ struct PagePoints {
   }
 };
 
-/// Pseudo-random number of an echo, independent of the rest of the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
+/// Pseudo-random number of an echo alone. Source: Appleby 2011, MurmurHash3, fmix64.
 [[nodiscard]] constexpr std::uint32_t page_key(PulseIndex pulse, std::uint8_t number) noexcept {
   std::uint64_t h = pulse * 256 + number;
   h = (h ^ h >> 33) * 0xff51afd7ed558ccd;
@@ -116,12 +110,12 @@ struct PagePoints {
   return static_cast<std::uint32_t>((h ^ h >> 33) >> 32);
 }
 
-/// Sink that keeps at most `most` points, those with the least keys, in pulse order: a uniform sample that depends on
-/// the echoes alone. It skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
+/// Sink that keeps at most `most` points, those with the least keys, in pulse order: a uniform
+/// sample that depends on the echoes alone. It skips points that are not finite.
 class PageSample {
  public:
-  /// `most` is from 2 to 2^27. The points have colours if `points` has; surfaces and colours are asked for those that
-  /// are kept for the moment. `further`: columns beyond the usual ones.
+  /// `most` is from 2 to 2^27. The points have colours if `points` has; surfaces and colours are
+  /// asked for those that are kept for the moment. `further`: columns beyond the usual ones.
   explicit PageSample(std::size_t most, const io::PointSettings& points = {},
                       std::span<const io::PointField> further = {})
       : most_(most),

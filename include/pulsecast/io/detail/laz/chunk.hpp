@@ -39,7 +39,7 @@ class LazChunk {
     layers.push_back(bytes<64>(&LazPoint::flags, [](auto&, auto& before) { return before.flags; }));
     layers.push_back(intensities());
     layers.push_back(changes<2>(&LazPoint::angle));
-    layers.push_back(bytes<256>(&LazPoint::user, [](auto&, auto& before) { return before.user / 4; }));
+    layers.push_back(bytes<256>(&LazPoint::user, [](auto&, auto& before) { return before.user / 4U; }));
     layers.push_back(changes<1>(&LazPoint::source));
     layers.push_back(times());
     if (colour_ > 0) layers.push_back(layer_at<LazColours>(laz_point_size));
