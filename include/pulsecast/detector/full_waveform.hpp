@@ -237,7 +237,7 @@ class FullWaveform {
     only.reset();
   }
 
-  /// True if a maximum of reflections that is a pulse from others is surely an echo.
+  /// True if a maximum of reflections, a pulse away from others, is an echo whatever these are.
   [[nodiscard]] bool is_apart(const DetectorInput& input) const noexcept {
     return input.continuous.empty() || (s_.dead_time == 0 && s_.prominence == 0 &&
                                         std::fmax(s_.window, s_.separation) <= input.emitter.laser.pulse_length);

@@ -26,7 +26,7 @@ template <WorldSource P>
 class Legs {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// Up to 65535 legs, with at most 2^60 slots, 1e15 s and `max_emitters`. @throws SettingError
+  /// 1 to 65535 legs, of at most 2^60 slots, 1e15 s and `max_emitters`. @throws SettingError
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", legs.size(), 1, 65535, "");
     PulseIndex first = 0;

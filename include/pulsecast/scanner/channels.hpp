@@ -19,7 +19,7 @@ requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
   using refinements = refines<tag::MakesLanes>;
-  /// Up to `max_emitters` channels and emitters, of one size and duration. @throws SettingError
+  /// 1 to `max_emitters` channels and emitters, of one size and duration. @throws SettingError
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
     require_within("Channels::channels (number)", channels_.size(), 1, max_emitters, "");
     std::size_t emitters = 0;

@@ -155,7 +155,7 @@ class LatticeFootprint {
   }
 
   /// Exchanges the rows of two subrays, and then of others, whose exchange brings across and up
-  /// nearest to independence: columns and rows stay nearly upright and level. Many are so.
+  /// nearest to independence: columns and rows stay nearly upright and level. Many are nearly so.
   void decorrelate_axes() noexcept {
     const std::size_t n = offsets_.size();
     double mixed = 0;

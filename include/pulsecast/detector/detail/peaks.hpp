@@ -109,7 +109,7 @@ struct OnlyPeak {
 
 /// Echo of a peak of the sum of reflections, sorted by range. `shape(t)` is the pulse at t since
 /// its peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the
-/// continuous return that it is of, or none, for the power of reflections in it [W] if `met`.
+/// continuous return that it is of, or none, by the power of reflections in it [W] and if any are.
 [[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const auto& shape,
                            EchoTiming timing, const auto& continuous) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();

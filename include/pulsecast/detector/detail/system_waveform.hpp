@@ -144,7 +144,7 @@ class WaveformSum {
   double start = 0;                ///< time of the first sample [s]
   double squares = 0;              ///< sum of the squared residuals [W^2]
 
-  /// Improves the estimate; false without positive parts within the samples, `interval` apart [s].
+  /// Improves the estimate; false if it does not converge to positive parts within the samples.
   [[nodiscard]] bool fit(const SystemWaveform& wave, std::span<const float> y, double interval) noexcept {
     double damping = 1e-3;
     Equations here = equations(wave, y, interval);

@@ -44,8 +44,8 @@ struct PathPiece {
 }
 
 /// Path through waypoints: straight legs joined by tangent arcs of one radius (the circles and
-/// lines of Dubins 1957). Where an arc would take more than half of a leg, there is a three-point
-/// turn. Consecutive waypoints must differ. Headings are continuous.
+/// lines of Dubins 1957). Where an arc would take more than half of a leg, it makes a three-point
+/// turn at the waypoint. Consecutive waypoints must differ. Headings are continuous.
 [[nodiscard]] inline std::vector<PathPiece> path_through(std::span<const Vec2> waypoints, double radius) {
   std::vector<PathPiece> path;
   const std::size_t legs = waypoints.empty() ? 0 : waypoints.size() - 1;

@@ -95,7 +95,7 @@ struct PathSection {
 };
 
 /// Lowers the speeds at the joints of sections, until each can be driven within its limits:
-/// forwards for speeding up, backwards for braking. Source: machine tools.
+/// forwards for speeding up, backwards for braking. Source: look-ahead of machine tools.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {
