@@ -101,6 +101,8 @@ inline void require_scan_rate(const ChannelSettings& channel, double rate) {
 /// Number for messages, rounded to three digits after the point.
 [[nodiscard]] inline std::string brief(double value) { return text::to_text(std::round(value * 1e3) / 1e3); }
 
+namespace detail {
+
 /// Notes on rates and angles that channel `c` rounds or cuts, without plain limits of the first.
 [[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c,
                                                           const LegScannerSettings& leg, double pulse_rate) {
@@ -135,6 +137,8 @@ inline void require_scan_rate(const ChannelSettings& channel, double rate) {
     note("headRotatePerSec_deg is limited to " + deg(channel.head_rate_max) + ", unlike that of the first channel");
   return notes;
 }
+
+}  // namespace detail
 
 /// Builds the optic of a channel. `tilt` is added to the mount of the channel.
 struct OpticBuilder {
