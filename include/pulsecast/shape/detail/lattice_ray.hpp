@@ -40,8 +40,7 @@ class LatticeRay {
       per_speed_[k] = 1 / direction[k];
       sense_[k] = !std::isfinite(per_speed_[k]) ? 0 : direction[k] > 0 ? 1 : -1;
     }
-    const bool moves = sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0;
-    valid_ = finite(rays.origin) && finite(direction) && moves;
+    valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);
   }
 
   /// True if origin and direction are finite and the ray moves along at least one axis.

@@ -85,8 +85,7 @@ struct LatticeWalker {
     for (int k = 0; k < 3; ++k) {
       if (ray.sense(k) == 0) continue;
       const Crossing wall = ray.crossing(k, ray.sense(k) > 0 ? 0 : extent[static_cast<std::size_t>(k)]);
-      const bool after_walls = wall.range == in.range && in.axis != Crossing::begin;
-      if (wall.range > in.range || after_walls) in = wall;
+      if (wall.range > in.range || (wall.range == in.range && in.axis != Crossing::begin)) in = wall;
     }
     if (!(in.range < infinity)) return;
     for (int k = 0; k < 3; ++k)
@@ -144,8 +143,8 @@ struct LatticeWalker {
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       at[axis] = cell[axis] >> shift;
-      const std::int32_t plane = (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift;
-      exit[axis] = ray.sense(k) == 0 ? infinity : ray.crossing(k, plane).range;
+      exit[axis] =
+          ray.sense(k) == 0 ? infinity : ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
     }
     for (;;) {
       const int k = first_of(exit);
