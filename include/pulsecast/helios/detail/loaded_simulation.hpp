@@ -22,7 +22,7 @@
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
-#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
