@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/helios/make_simulation.hpp>
+#include <pulsecast/helios/scene.hpp>
 #include <pulsecast/io/scene_cache.hpp>
 
 #include "options.hpp"
