@@ -79,18 +79,10 @@ class SurveyLight {
                                                           std::span<Reflection> reflections) const noexcept {
     if (const auto* direct = std::get_if<DirectLight>(&light_))
       return direct->trace(target, light, *std::get_if<DirectLight::Workspace>(&w), reflections);
-    return trace_paths(target, light, *std::get_if<LightPaths::Workspace>(&w), reflections);
+    return std::get_if<LightPaths>(&light_)->trace(target, light, *std::get_if<LightPaths::Workspace>(&w), reflections);
   }
 
  private:
-  // a function of its own: compiled once for all detectors, and the branch of direct light keeps its registers
-  template <SceneQueries Target>
-  [[nodiscard, gnu::noinline]] TransportResult trace_paths(const Target& target, const TransportInput& light,
-                                                           LightPaths::Workspace& w,
-                                                           std::span<Reflection> reflections) const noexcept {
-    return std::get_if<LightPaths>(&light_)->trace(target, light, w, reflections);
-  }
-
   std::variant<DirectLight, LightPaths> light_;
 };
 
