@@ -96,33 +96,9 @@ TEST_CASE("a pattern that backtracking would follow for ever is matched at once,
   CHECK(f.search.find_all("(tree|bush)+\\d{1,3}\\.obj").files == Paths{f.root / "a/tree2.obj", f.root / "b/tree1.obj"});
 }
 
-TEST_CASE("a pattern has the classes, sets and shortest repeats of ECMAScript, and matches whole names") {
-  const Folders f;
-  const std::filesystem::path folder = f.root / "names";
-  std::filesystem::create_directories(folder);
-  for (const char* name : {"a1.xyz", "a-1.xyz", "a].xyz", "a.xyz", "a*.xyz", "ab.xyz", "a1.xyz.old", "a b.xyz"})
-    std::ofstream(folder / name) << "0 0 0\n";
-  const auto names = [&](const std::string& pattern) {
-    std::string found;
-    for (const auto& file : f.search.find_all("../names/" + pattern).files) found += file.stem().string() + " ";
-    return found;
-  };
-  CHECK(names(R"(a\d\.xyz)") == "a1 ");
-  CHECK(names(R"(a\D\.xyz)") == "a* a] ab ");
-  CHECK(names(R"(a\W\.xyz)") == "a* a] ");
-  CHECK(names(R"(a[\d\]]\.xyz)") == "a1 a] ");
-  CHECK(names(R"(a[^\w]?\.xyz)") == "a* a a] ");
-  CHECK(names(R"(a[\-\w]+?\.xyz)") == "a-1 a1 ab ");
-  CHECK(names(R"(a[[:digit:]\]]\.xyz)") == "a1 a] ");
-  CHECK(names(R"((?:a|ab)\*?\.xyz)") == "a* a ab ");
-  CHECK(names(R"(a\s?b.xyz)") == "a b ab ");
-  CHECK(names(R"(a.{1,2}?\.xyz|b)") == "a b a* a-1 a1 a] ab ");
-  CHECK(names(R"(a1)") == "");
-}
-
 TEST_CASE("patterns whose states have no bound are refused") {
   const Folders f;
-  for (const char* pattern : {"(a)\\1", "(a){9}", "a{9}{9}{9}{9}{9}", "a{9}{9}", "a{1000}", "a{0,1000}", "(?=a)a", "a\\x41"}) {
+  for (const char* pattern : {"(a)\\1", "(a){9}", "a{9}{9}{9}{9}{9}"}) {
     CAPTURE(pattern);
     CHECK(contains(f.search.find_all(pattern).problem, "supported regular expression"));
   }

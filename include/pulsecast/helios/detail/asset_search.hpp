@@ -3,16 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 #define PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 
-#include <regex.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>
@@ -51,38 +48,34 @@ class AssetSearch {
   }
 
   /// Finds the files whose names match a regular expression as a whole: the last component of `pattern` (ECMAScript,
-  /// without back-references and lookahead). Searches all folders. Time is linear in the length of a name.
+  /// without back-references). Searches all folders. Time is linear in the length of a name.
   [[nodiscard]] AssetMatch find_all(const std::string& pattern) const {
     const std::size_t slash = pattern.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1),
-                      name = pattern.substr(slash + 1), extended = posix_extended(name);
-    if (extended.empty() && !name.empty())
-      return {.problem =
-                  "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
-                  " letters, no back-reference, no lookahead, and four counts in braces below 1000, none after a "
-                  "group or a count"};
-    regex_t expression;
-    if (regcomp(&expression, extended.c_str(), REG_EXTENDED) != 0)
-      return {.problem = "does not end with a regular expression"};
-    const std::unique_ptr<regex_t, decltype(&regfree)> owner(&expression, &regfree);
+                      name = pattern.substr(slash + 1);
+    if (!is_simple(name))
+      return {.problem = "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
+                         " letters, no back-reference, and four counts in braces, none of them after a group"};
     AssetMatch match;
     const std::vector<std::filesystem::path> places = candidates(folder);
-    for (const std::filesystem::path& place : places) {
-      std::error_code error;
-      std::size_t entries = 0;
-      for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end;
-           entry.increment(error)) {
-        if (++entries > max_entries)
-          return {.problem = "names a folder with more than " + std::to_string(max_entries) + " files"};
-        std::error_code ignored;
-        const std::string file = entry->path().filename().string();
-        regmatch_t longest{};
-        if (regexec(&expression, file.c_str(), 1, &longest, 0) != 0 || longest.rm_so != 0 ||
-            static_cast<std::size_t>(longest.rm_eo) != file.size() || !entry->is_regular_file(ignored))
-          continue;
-        match.files.push_back(normal(entry->path()));
-        if (match.warning.empty()) match.warning = warning(pattern, match.files.back());
+    try {
+      const std::regex expression(name, syntax);
+      for (const std::filesystem::path& place : places) {
+        std::error_code error;
+        std::size_t entries = 0;
+        for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end;
+             entry.increment(error)) {
+          if (++entries > max_entries)
+            return {.problem = "names a folder with more than " + std::to_string(max_entries) + " files"};
+          std::error_code ignored;
+          if (!std::regex_match(entry->path().filename().string(), expression) || !entry->is_regular_file(ignored))
+            continue;
+          match.files.push_back(normal(entry->path()));
+          if (match.warning.empty()) match.warning = warning(pattern, match.files.back());
+        }
       }
+    } catch (const std::regex_error&) {
+      return {.problem = "does not end with a regular expression"};
     }
     std::sort(match.files.begin(), match.files.end());
     match.files.erase(std::unique(match.files.begin(), match.files.end()), match.files.end());
@@ -93,6 +86,11 @@ class AssetSearch {
  private:
   static constexpr std::size_t max_pattern_size = 200;
   static constexpr std::size_t max_entries = 1'000'000;
+#ifdef __GLIBCXX__  // matches in linear time; backtracking takes a power of the name's length
+  static constexpr auto syntax = std::regex_constants::ECMAScript | std::regex_constants::__polynomial;
+#else
+  static constexpr auto syntax = std::regex_constants::ECMAScript;
+#endif
 
   [[nodiscard]] static std::filesystem::path normal(const std::filesystem::path& path) {
     std::error_code error;
@@ -100,50 +98,18 @@ class AssetSearch {
     return whole.has_filename() ? whole : whole.parent_path();
   }
 
-  /// An ECMAScript pattern as an extended one of POSIX, which the C library matches in linear time. Empty if it is not
-  /// supported, such as counts in braces that multiply each other.
-  [[nodiscard]] static std::string posix_extended(std::string_view pattern) {
-    if (pattern.size() > max_pattern_size) return {};
-    std::string out;
+  /// True if the number of states of a pattern is bounded: counts in braces multiply them.
+  [[nodiscard]] static bool is_simple(std::string_view pattern) {
     std::size_t counts = 0;
-    bool in_set = false, repeats = false;
     for (std::size_t i = 0; i < pattern.size(); ++i) {
-      const char c = pattern[i];
-      const std::string_view rest = pattern.substr(i + 1);
-      const bool repeated = std::exchange(repeats, !in_set && (c == '*' || c == '+' || c == '?' || c == '}'));
-      std::size_t copied = 1;
-      if (c == '\\' && !rest.empty()) {
-        const char escaped = rest.front(), lower = static_cast<char>(escaped | 0x20);
-        const char* const set = lower == 'd' ? "0-9" : lower == 'w' ? "_[:alnum:]" : lower == 's' ? "[:space:]" : "";
-        const bool literal = !((lower >= 'a' && lower <= 'z') || (escaped >= '0' && escaped <= '9'));
-        if (!literal && (*set == '\0' || (in_set && escaped != lower))) return {};
-        if (literal)
-          out += in_set ? std::string("[.") + escaped + ".]" : std::string("\\") + escaped;
-        else
-          out += in_set ? set : (escaped == lower ? "[" : "[^") + std::string(set) + "]";
-        ++i;
-        continue;
+      if (pattern[i] == '\\') {
+        if (++i < pattern.size() && pattern[i] >= '1' && pattern[i] <= '9') return false;  // back-reference
+      } else if (pattern[i] == '{') {
+        ++counts;
+        if (i > 0 && pattern[i - 1] == ')') return false;
       }
-      if (in_set && c == '[' && rest.starts_with(':')) {
-        copied = std::min(rest.find(":]"), rest.size()) + 3;
-      } else if (in_set) {
-        in_set = c != ']';
-      } else if (c == '[') {
-        in_set = true;
-        if (rest.starts_with(']') || rest.starts_with("^]")) return {};
-      } else if (c == '(' && rest.starts_with('?')) {
-        if (!rest.starts_with("?:")) return {};  // lookahead
-        i += 2;
-      } else if (c == '{') {
-        const std::size_t end = rest.find('}'), comma = std::min(rest.find(','), end);
-        if (++counts > 4 || repeated || (i > 0 && pattern[i - 1] == ')') || comma > 3 || end - comma > 4) return {};
-      } else if (c == '?' && repeated) {
-        continue;  // the shortest match: of a whole name, all are alike
-      }
-      out.append(copied == 1 ? std::string_view(&c, 1) : pattern.substr(i, copied));
-      i += copied - 1;
     }
-    return out;
+    return pattern.size() <= max_pattern_size && counts <= 4;
   }
 
   /// Candidate paths of a name: those inside the folders, then those outside.
