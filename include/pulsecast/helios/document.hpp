@@ -4,8 +4,6 @@
 #define PULSECAST_HELIOS_DOCUMENT_HPP
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/settings.hpp>

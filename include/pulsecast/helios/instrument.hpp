@@ -4,10 +4,6 @@
 #define PULSECAST_HELIOS_INSTRUMENT_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
@@ -90,7 +86,6 @@ template <EchoWidth Width = NoWidth>
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
-#include <cmath>
 
 #include <pulsecast/base/require.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
 #include <functional>
-#include <memory>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>

@@ -3,15 +3,9 @@
 #ifndef PULSECAST_HELIOS_SCENE_HPP
 #define PULSECAST_HELIOS_SCENE_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>

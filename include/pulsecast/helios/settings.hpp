@@ -3,15 +3,7 @@
 #ifndef PULSECAST_HELIOS_SETTINGS_HPP
 #define PULSECAST_HELIOS_SETTINGS_HPP
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_HELIOS_SIMULATION_HPP
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include <pulsecast/any_survey.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_HELIOS_SURVEY_HPP
 #define PULSECAST_HELIOS_SURVEY_HPP
 
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/survey_options.hpp>
@@ -46,9 +41,7 @@ struct CompiledSurvey {
 
 #if PULSECAST_DEFINES(HELIOS_SURVEY)
 #include <algorithm>
-#include <cmath>
 #include <unordered_set>
-#include <utility>
 
 #include <pulsecast/helios/detail/leg_paths.hpp>
 #include <pulsecast/helios/detail/optics.hpp>

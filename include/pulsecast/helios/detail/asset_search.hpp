@@ -4,11 +4,8 @@
 #define PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 
 #include <algorithm>
-#include <cstddef>
 #include <filesystem>
 #include <regex>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

@@ -7,13 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>

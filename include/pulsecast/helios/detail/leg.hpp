@@ -4,14 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_LEG_HPP
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>

@@ -4,17 +4,8 @@
 #define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <limits>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>

@@ -4,16 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>

@@ -4,14 +4,8 @@
 #define PULSECAST_HELIOS_DETAIL_MOTION_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>

@@ -4,13 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/deflector/aim.hpp>

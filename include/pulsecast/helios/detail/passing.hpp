@@ -4,10 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_PASSING_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <vector>
 
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>

@@ -4,13 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/detector/band_limited_receiver.hpp>

@@ -4,16 +4,9 @@
 #define PULSECAST_HELIOS_DETAIL_SCENE_BUILDER_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <map>
 #include <numeric>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/scene.hpp>

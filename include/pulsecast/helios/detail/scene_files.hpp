@@ -4,13 +4,9 @@
 #define PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>

@@ -4,17 +4,9 @@
 #define PULSECAST_HELIOS_DETAIL_SOURCE_READERS_HPP
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>

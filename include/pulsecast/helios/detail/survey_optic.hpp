@@ -4,8 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIC_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <memory>
 #include <variant>
 

@@ -3,15 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/concepts.hpp>
 

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
 
-#include <cstddef>
-#include <span>
-#include <utility>
 #include <variant>
 
 #include <pulsecast/concepts.hpp>

@@ -3,16 +3,11 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_FIELDS_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_FIELDS_HPP
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>

@@ -4,10 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_PART_SOURCE_HPP
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <limits>
-#include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 

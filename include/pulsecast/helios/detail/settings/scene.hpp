@@ -3,12 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>

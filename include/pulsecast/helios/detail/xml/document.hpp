@@ -4,12 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 
 #include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>

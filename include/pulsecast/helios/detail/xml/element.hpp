@@ -5,17 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>

@@ -4,12 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>

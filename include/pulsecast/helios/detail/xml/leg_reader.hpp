@@ -4,13 +4,8 @@
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <functional>
-#include <optional>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include <pugixml.hpp>
 

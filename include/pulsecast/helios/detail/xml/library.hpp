@@ -3,13 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
 
-#include <cstddef>
-#include <filesystem>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>

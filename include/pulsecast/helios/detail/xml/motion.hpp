@@ -3,10 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
 #include <variant>
 
 #include <pulsecast/base/vector.hpp>

@@ -6,13 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
-#include <optional>
-#include <string>
-#include <string_view>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>

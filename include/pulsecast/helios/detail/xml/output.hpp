@@ -3,14 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <pugixml.hpp>

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_PLATFORM_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_PLATFORM_HPP
 
-#include <array>
-#include <cstddef>
-#include <optional>
-
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 

@@ -4,14 +4,9 @@
 #define PULSECAST_HELIOS_DETAIL_XML_SCANNER_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <numbers>
 #include <stdexcept>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>

@@ -4,15 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_XML_SCENE_HPP
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include <pugixml.hpp>
 

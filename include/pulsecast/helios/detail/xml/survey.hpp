@@ -4,15 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <pugixml.hpp>
 

@@ -3,13 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_WRITER_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_WRITER_HPP
 
-#include <cstddef>
-#include <filesystem>
-#include <optional>
 #include <sstream>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include <pugixml.hpp>
 
