@@ -16,7 +16,6 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>

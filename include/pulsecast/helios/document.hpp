@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/helios/detail/xml/faults.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
