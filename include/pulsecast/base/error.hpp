@@ -55,9 +55,9 @@ class SettingError : public std::invalid_argument {
 
   /// Name, as in `Scanner::pulse_rate`.
   [[nodiscard]] const std::string& field() const noexcept { return field_; }
-  [[nodiscard]] double value() const noexcept { return value_; }                  ///< or NaN
-  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI, or none
-  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< in words
+  [[nodiscard]] double value() const noexcept { return value_; }            ///< refused, in `unit()`; NaN if none
+  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }  ///< SI symbol; empty for a pure number
+  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit,
@@ -93,7 +93,7 @@ class FileError : public std::runtime_error {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< name of the file
   /// As in "line 12"; empty for the whole file.
   [[nodiscard]] const std::string& place() const noexcept { return place_; }
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< in words
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< defect and expectation
 
  private:
   std::string path_, place_, problem_;

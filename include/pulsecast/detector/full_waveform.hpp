@@ -60,7 +60,7 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
       : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
 
-  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as it
+  static constexpr bool runs_without_reflections = Receiver::runs_without_reflections;  ///< as the receiver
 
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }

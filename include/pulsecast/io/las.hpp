@@ -40,7 +40,7 @@ class LasRecords {
   }
 
   void finish(OutputFile& /*file*/, const LasEncoder& /*encoder*/) {}
-  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }  ///< once finished
+  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }  ///< those of LAZ and COPC
 
  private:
   std::uint64_t begin_ = 0;  // [byte]

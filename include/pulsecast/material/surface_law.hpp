@@ -73,8 +73,8 @@ class SurfaceLaw {
   }
   /// Law of the backscatter; null for `reflectance * (cosine_share * cosine + even_share)`.
   [[nodiscard]] const Model* model() const noexcept { return model_.get(); }
-  [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1, or 0
-  [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 0, or 1
+  [[nodiscard]] double cosine_share() const noexcept { return cosine_; }  ///< 1 for Lambert's law, or 0
+  [[nodiscard]] double even_share() const noexcept { return even_; }      ///< 1 for `DirectionIndependent`, or 0
   /// True of a law that `ScattersBetween`.
   [[nodiscard]] bool scatters_between() const noexcept { return !model_ || model_->scatters_between; }
   /// True of a law that `ReflectsInterface`.

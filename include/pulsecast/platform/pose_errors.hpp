@@ -56,7 +56,7 @@ class WithPoseErrors {
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
-  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }  ///< exact
+  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }  ///< without errors
 
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);

@@ -77,7 +77,7 @@ class Channels {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }
 
-  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }  ///< in turn
+  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }  ///< in firing order
 
  private:
   /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last

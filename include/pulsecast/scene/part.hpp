@@ -185,7 +185,7 @@ constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<
 
 /// Named number of a part, such as age, species or diameter.
 struct Attribute {
-  std::string name{};  ///< as of a column
+  std::string name{};  ///< as columns have it
   double value = 0;    ///< in units of the user's
 
   friend bool operator==(const Attribute&, const Attribute&) = default;

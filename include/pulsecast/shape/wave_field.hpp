@@ -138,7 +138,7 @@ class WaveField {
     rest_ = std::move(rest);
   }
 
-  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< if flat
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }      ///< true if flat
   [[nodiscard]] double highest() const noexcept { return highest_; }    ///< bound of heights [m]
   [[nodiscard]] double steepest() const noexcept { return steepest_; }  ///< bound of slopes
   [[nodiscard]] std::size_t memory() const noexcept { return columns_.memory() + rest_.memory(); }
