@@ -32,9 +32,9 @@ for compiler in "${@:-g++}"; do
   row 'include concepts.hpp' -fsyntax-only "$folder/contract.cpp"
   row 'include pulsecast.hpp' -fsyntax-only "$folder/pulsecast.cpp"
   row 'include every header of the core' -fsyntax-only "$folder/core.cpp"
-  row 'compile examples/embed.cpp with -O2' -O2 -c examples/embed.cpp -o "$folder/embed.o"
   for library in '' -DPULSECAST_COMPILED; do
     with=${library:+, pulsecast::compiled}
+    row "compile examples/embed.cpp with -O2$with" -O2 $library -c examples/embed.cpp -o "$folder/embed.o"
     row "compile bench/obj_to_las.cpp with -O2$with" -O2 -DTINYOBJLOADER_USE_DOUBLE $library -c bench/obj_to_las.cpp -o "$folder/obj_to_las.o"
     row "compile examples/survey.cpp with -O2$with" -O2 -DTINYOBJLOADER_USE_DOUBLE -I/usr/include/eigen3 $library -c examples/survey.cpp \
       -o "$folder/survey.o"
