@@ -94,9 +94,8 @@ class FieldColumns {
     for (std::size_t k = 0; k < all_.size(); ++k) {
       const std::size_t size = size_of(layout_.fields[k].type), begin = all_[k].size();
       all_[k].resize(begin + count * size);
-      const std::byte* const from = records.data() + layout_.fields[k].offset;
-      for (std::size_t i = 0; i < count; ++i)
-        std::memcpy(all_[k].data() + begin + i * size, from + i * layout_.size, size);
+      for (std::size_t i = 0; i < count; ++i)  // of no records, there is no pointer to add to
+        std::memcpy(all_[k].data() + begin + i * size, &records[i * layout_.size + layout_.fields[k].offset], size);
     }
   }
 
