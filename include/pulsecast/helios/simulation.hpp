@@ -10,10 +10,11 @@
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/material/material.hpp>
+#include <pulsecast/run.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
-/// Surveys of XML documents, ready to run: `make_simulation` makes them, `run` runs them.
+/// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;

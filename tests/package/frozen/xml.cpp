@@ -11,7 +11,6 @@
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
-#include <pulsecast/run.hpp>
 
 using namespace pulsecast;
 
