@@ -46,7 +46,7 @@ struct RunOptions {
 
   void validate() const {
     require_within("RunOptions::threads", threads, 0, max_threads, "");
-    require_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
+    require_within("RunOptions::stride", stride, 1, 1e18, "");
   }
 
   /// Threads of the run, as a builder takes them.

@@ -48,7 +48,7 @@ class AnalyticWaveform {
 
   /// Refuses pulses that a record or fitted width does not resolve. @throws SettingError
   void validate(const Laser& laser) const {
-    if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
+    if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, detail::infinity);
   }
 
   [[nodiscard]] double pulse_width(const Laser& laser) const {
@@ -60,7 +60,7 @@ class AnalyticWaveform {
     } else if constexpr (by_moments) {
       EdgeAgeMoments pulse;
       pulse.add(1);
-      return shape.tau * width_.width(pulse.until(infinity));
+      return shape.tau * width_.width(pulse.until(detail::infinity));
     } else {
       return 0;
     }
@@ -126,7 +126,6 @@ class AnalyticWaveform {
   static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t max_samples = 4096;  ///< of one echo; longer ones get a coarser grid
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Appends the only echo of a group, if it reaches the threshold.
   void detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
@@ -175,8 +174,8 @@ class AnalyticWaveform {
       const double per_metre = 2 / (speed_of_light * shape.tau);
       for (std::size_t k = 0; k < reflections.size(); ++k) {
         ages.add(reflections[k].power);
-        const double next =
-            k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
+        const double next = k + 1 == reflections.size() ? detail::infinity
+                                                        : (reflections[k + 1].range - reflections[k].range) * per_metre;
         if (next == 0) continue;
         const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
         double x = 0;  // time since the edge [tau]
@@ -198,7 +197,7 @@ class AnalyticWaveform {
         since += rest;
         ages.advance(rest);
       }
-      finish(infinity);
+      finish(detail::infinity);
     }
 
     /// Reflections and continuous returns at a time.
@@ -241,14 +240,14 @@ class AnalyticWaveform {
       const double to_edge = PulseShape::peak * shape.tau;
       std::size_t next = 0;
       const auto next_edge = [&] {
-        return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity;
+        return next < reflections.size() ? arrival(reflections[next]) - to_edge : detail::infinity;
       };
       double time = std::fmin(next_edge(), rises.next());
       const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // before any reflection
       if (only_rises > time && next_edge() > only_rises + to_edge) time = only_rises;
       double rising_until = time;
       Sum sum{{}, detail::ContinuousSum(continuous, shape), time};
-      while (time < infinity) {
+      while (time < detail::infinity) {
         for (; next_edge() <= time; ++next) {
           sum.ages.add(reflections[next].power);
           rising_until = time + to_edge;
@@ -257,7 +256,7 @@ class AnalyticWaveform {
         const bool falls = !rising && time > rising_until && time >= rises.until();
         const double soon = std::fmin(next_edge(), rises.next()),
                      to = falls ? soon : std::fmin(soon, time + 0.25 * shape.tau);
-        if (!(to < infinity)) break;
+        if (!(to < detail::infinity)) break;
         Sum then = sum;
         then.advance(to, shape.tau);
         if (!falls && !rising && then.slope() > 0)
@@ -271,8 +270,8 @@ class AnalyticWaveform {
         sum = then;
         time = to;
       }
-      if constexpr (by_moments) m.add(sum.ages.until(infinity), since);
-      finish(infinity);
+      if constexpr (by_moments) m.add(sum.ages.until(detail::infinity), since);
+      finish(detail::infinity);
     }
   };
 

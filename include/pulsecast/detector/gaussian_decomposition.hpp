@@ -57,7 +57,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       const std::span<const Echo> group = d.echoes.subspan(first, last - first);
       const std::size_t room = w.echoes.capacity() - w.echoes.size() - (d.echoes.size() - first);
       const Section most{first > 0 ? time_of(d.echoes[first - 1]) + (*wave)->fall() : d.waveform_start,
-                         last < d.echoes.size() ? time_of(d.echoes[last]) + (*wave)->rise() : infinity};
+                         last < d.echoes.size() ? time_of(d.echoes[last]) + (*wave)->rise() : detail::infinity};
       if (!decompose(d, input, group, most, **wave, room > 0, w.echoes))
         w.echoes.insert(w.echoes.end(), group.begin(), group.end());
     }
@@ -70,7 +70,6 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   using Sum = detail::WaveformSum;
   static constexpr int widenings = 5;
   static constexpr double better = 0.1;  ///< squared residuals, by those of a simpler fit
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] static double time_of(const Echo& echo) noexcept { return 2 * echo.range / speed_of_light; }
 

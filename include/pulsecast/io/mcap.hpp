@@ -23,9 +23,7 @@ struct McapSettings {
   std::size_t chunk_size = std::size_t{1} << 20;
 
   /// @throws SettingError for settings out of range
-  void validate() const {
-    require_within("McapSettings::chunk_size", static_cast<double>(chunk_size), 1, 1 << 30, "byte");
-  }
+  void validate() const { require_within("McapSettings::chunk_size", chunk_size, 1, 1 << 30, "byte"); }
 };
 
 /// Channel of an MCAP file: messages of one type on one topic. By default those of ROS 2.
@@ -123,7 +121,7 @@ class McapWriter {
 
   /// Adds a channel, and returns its number. @throws SettingError beyond 65,535 @throws FileError
   [[nodiscard]] std::uint16_t add_channel(McapChannel channel) {
-    require_within("McapWriter::add_channel (channels so far)", static_cast<double>(channels_.size()), 0, 65'534, "");
+    require_within("McapWriter::add_channel (channels so far)", channels_.size(), 0, 65'534, "");
     const auto id = static_cast<std::uint16_t>(channels_.size());
     channels_.push_back({std::move(channel), {}, 0, 0});
     Channel& added = channels_.back();

@@ -48,7 +48,7 @@ struct PointLayout {
 
   /// @throws SettingError for fields that overlap or leave the record
   void validate() const {
-    require_within("PointLayout::fields (number)", static_cast<double>(fields.size()), 0, 1000, "");
+    require_within("PointLayout::fields (number)", fields.size(), 0, 1000, "");
     require_positive("PointLayout::size", size, "byte");
     std::uint32_t end = 0;
     for (const PointField& field : fields) {

@@ -23,8 +23,7 @@ struct VelodyneFormat {
 
   static void validate(const SpinningSensor& sensor) {
     const std::size_t lasers = sensor.lasers.size();
-    if (lasers != 16)
-      require_within("SpinningSensor::lasers (number other than 16)", static_cast<double>(lasers), 32, 32, "");
+    if (lasers != 16) require_within("SpinningSensor::lasers (number other than 16)", lasers, 32, 32, "");
     require_within("SpinningSensor::exit_radius", sensor.exit_radius, 0, 0, "m");
   }
 

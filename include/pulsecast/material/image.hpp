@@ -56,7 +56,7 @@ struct Image {
     require_within("Image::height", height, 1, 65536, "pixel");
     require_within("Image::channels", channels, 1, 4, "");
     const double count = static_cast<double>(width) * height * channels;
-    require_within("Image::samples (number)", static_cast<double>(samples.size()), count, count, "");
+    require_within("Image::samples (number)", samples.size(), count, count, "");
   }
 
   /// True if pixels have an opacity, as their last channel.

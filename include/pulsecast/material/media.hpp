@@ -43,7 +43,7 @@ struct MediumRegion {
     require_finite("MediumRegion::bounds (size, with densities)", size.x + size.y + size.z, "m");
     double count = 1;
     for (const std::size_t along : cells) count *= static_cast<double>(along);
-    require_within("MediumRegion::densities (number)", static_cast<double>(densities.size()), count, count, "");
+    require_within("MediumRegion::densities (number)", densities.size(), count, count, "");
     for (const float density : densities) require_not_negative("MediumRegion::densities", density, "");
   }
 };

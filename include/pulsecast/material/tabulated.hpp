@@ -26,7 +26,7 @@ struct Tabulated {
   SharedArray<BackscatterAtIncidence> rows{};
 
   void validate() const {
-    require_within("Tabulated::rows (number)", static_cast<double>(rows.size()), 1, 1e6, "");
+    require_within("Tabulated::rows (number)", rows.size(), 1, 1e6, "");
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double at = rows[i].incidence;
       require_within("Tabulated::rows (incidence)", at, 0, pi / 2 * (1 + 1e-6), "rad");

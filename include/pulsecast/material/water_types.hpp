@@ -142,7 +142,7 @@ inline constexpr double particles_backward = 0.018;
 [[nodiscard]] inline double water_attenuation(JerlovType type, double wavelength) {
   using namespace detail;
   const auto column = static_cast<std::size_t>(type);
-  require_within("water_attenuation (type)", static_cast<double>(column), 0, jerlov_type_count - 1, "");
+  require_within("water_attenuation (type)", column, 0, jerlov_type_count - 1, "");
   require_within("water_attenuation (wavelength)", wavelength, jerlov_shortest, 1.1e-6, "m");
   if (wavelength <= jerlov_longest) return tabulated_attenuation(column, wavelength);
   return pure_water_absorption(wavelength) + tabulated_attenuation(column, jerlov_longest) -

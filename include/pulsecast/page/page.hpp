@@ -66,7 +66,7 @@ struct PageSettings {
   io::PointSettings points{};             ///< values of columns; colours if these have any
 
   void validate() const {
-    require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
+    require_within("PageSettings::points_max", points_max, 2, 134'217'728, "");
     encoding().validate();
   }
   /// Settings of the encoding of points.

@@ -208,7 +208,6 @@ class FootingFinder {
  private:
   /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g.
   static constexpr double tilt_max = 1.7;
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Lengths for messages, rounded to the centimetre.
   [[nodiscard]] static std::string brief(double x) { return text::to_text(std::round(x * 100) / 100); }

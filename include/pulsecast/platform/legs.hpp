@@ -98,7 +98,7 @@ class Legs {
     for (std::size_t first = 0; first + table.size() <= size; ++first)
       if (std::equal(table.begin(), table.end(), emitters_.begin() + static_cast<std::ptrdiff_t>(first)))
         return static_cast<std::uint16_t>(first);
-    require_within("Legs::legs (emitters)", static_cast<double>(size + table.size()), 0, max_emitters, "");
+    require_within("Legs::legs (emitters)", size + table.size(), 0, max_emitters, "");
     for (const Emitter& emitter : table) emitters_.push_back(emitter);
     return static_cast<std::uint16_t>(size);
   }

@@ -195,7 +195,7 @@ class PartMotion {
 
   void add(const MotionSequence& sequence, const std::string& field, bool last, SoFar& so_far) {
     if (sequence.motions.empty()) throw SettingError(field + ".motions (number)", 0, "", "at least 1");
-    require_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
+    require_within(field + ".times", sequence.times, 1, 1e15, "");
     const auto times = static_cast<std::int64_t>(sequence.times);
     detail::MotionRun run{so_far.change, so_far.time, {}, 0, times, timeline_.pieces.size(), 0};
     for (std::size_t k = 0; k < sequence.motions.size(); ++k) {

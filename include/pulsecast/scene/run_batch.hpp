@@ -42,7 +42,7 @@ requires(RayTarget<Target> ||
                                               std::span<const Ray> rays, std::span<float> ranges,
                                               const Workers& workers = {}) {
   const std::size_t asked = poses.size() * rays.size();
-  require_within("run_batch: ranges (number)", ranges.size(), static_cast<double>(asked), static_cast<double>(asked), "");
+  require_within("run_batch: ranges (number)", ranges.size(), asked, asked, "");
   for (std::size_t p = 0; p < poses.size(); ++p)
     if (!poses[p].rigid())
       throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)",

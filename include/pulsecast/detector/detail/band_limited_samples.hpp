@@ -120,7 +120,6 @@ class BandLimitedSamples {
   [[nodiscard]] auto continuous() const noexcept { return continuous_.sources(pulses_.pulse.peak()); }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double margin = 2;         ///< samples beside a pulse, for its peaks
   static constexpr double samples_max = 1e7;  ///< of a gate
   static constexpr std::size_t fallen = 4;    ///< falling samples after a maximum
@@ -142,7 +141,7 @@ class BandLimitedSamples {
   /// Number of the first sample of the next section; infinite if there is none.
   [[nodiscard]] double first_of_section() const noexcept {
     const double rise = before(std::ceil(continuous_.next() / interval_));
-    const double solid = next_ < reflections_.size() ? first_of(next_) : infinity;
+    const double solid = next_ < reflections_.size() ? first_of(next_) : detail::infinity;
     const double late = before(std::floor(continuous_.first_peak() / interval_));
     return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }

@@ -193,8 +193,6 @@ class ContinuousRises {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   [[nodiscard]] static double time_of(double range) noexcept { return 2 / speed_of_light * range; }
   /// True if a return continues the one before without a rise.
   [[nodiscard]] static bool goes_on(const ContinuousReturn& before, const ContinuousReturn& r) noexcept {

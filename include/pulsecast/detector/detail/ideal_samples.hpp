@@ -32,7 +32,7 @@ class IdealSamples {
     if (reflections.empty() && continuous_.empty()) return;
     died_away_ = SampledSum::negligible * shape_.tau;
     tail_ = noisy() || record_size_ > 0 ? died_away_ : std::fmax(3 * interval_, width_tail * shape_.tau);
-    start_ = std::fmin(reflections.empty() ? infinity : first_sample(0), before(rises_.start()));
+    start_ = std::fmin(reflections.empty() ? detail::infinity : first_sample(0), before(rises_.start()));
     if ((noisy() || record_size_ > 0) && !continuous_.empty()) heard_until_ = rises_.end();
     peaks_only_ = !noisy() && record_size_ == 0 && width_tail == 0 && s.timing <= EchoTiming::peak;
   }
@@ -49,10 +49,10 @@ class IdealSamples {
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
-    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_);
+    const double solid = next_ == reflections_.size() ? detail::infinity : first_sample(next_);
     const double rise = before(rises_.next()), late = before(rises_.first_peak());
     const double first = std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
-    if (!(first < infinity)) return false;
+    if (!(first < detail::infinity)) return false;
     sum_.emplace(reflections_, shape_, interval_, next_, first);
     falling_ = 0;
     return true;
@@ -84,7 +84,6 @@ class IdealSamples {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr int fallen = 4;  ///< falling samples after a maximum
 
   /// Adds the continuous returns at a time [s]; true if samples are needed after it.

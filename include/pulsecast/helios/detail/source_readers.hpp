@@ -219,7 +219,7 @@ PULSECAST_INLINE SceneBuilder::GroundMaterials SceneBuilder::ground_materials(co
     if (!source.material.file.empty())
       for (const auto& [name, one] : io::read_mtl(source.material.file, options_.spectra).materials)
         by_class.try_emplace(one.classification, one);
-    require_within("classes with a material (number)", static_cast<double>(by_class.size()), 0, 255, "");
+    require_within("classes with a material (number)", by_class.size(), 0, 255, "");
     for (const auto& [number, one] : by_class) {
       classes.listed.push_back({static_cast<double>(number), static_cast<std::uint8_t>(classes.materials.size())});
       classes.materials.push_back(one);

@@ -23,7 +23,7 @@ inline void require_packable(const PointLayout& layout, const PointSettings& poi
   layout.validate();
   points.validate();
   for (const PointField& field : layout.fields) {
-    require_within("PointField::name (length)", static_cast<double>(field.name.size()), 1, 100, "");
+    require_within("PointField::name (length)", field.name.size(), 1, 100, "");
     for (const char c : field.name)
       if (!(c > ' ' && c <= '~' && c != '/'))
         throw SettingError("PointField::name (character code)", static_cast<unsigned char>(c), "",

@@ -86,7 +86,7 @@ class MpiChannel {
   /// Sends bytes, at most 2 GiB, with a tag `kind`. Throws a `SettingError` above that.
   void send(int to, int kind, Bytes bytes) {
     constexpr int most = std::numeric_limits<int>::max();
-    require_within("MPI message size", static_cast<double>(bytes.size()), 0, most, "bytes");
+    require_within("MPI message size", bytes.size(), 0, most, "bytes");
     if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
     ++traffic_.messages;
     traffic_.bytes += bytes.size();

@@ -121,7 +121,7 @@ class PageSample {
       : most_(most),
         kept_(columns_of_page(static_cast<bool>(points.colours), further)),
         encoder_(kept_.layout, points) {
-    require_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, "");
+    require_within("PageSample::most", most, 2, 134'217'728, "");
   }
 
   void operator()(const EchoBatch& batch) {

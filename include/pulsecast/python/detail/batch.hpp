@@ -42,7 +42,7 @@ struct KeptData {
     all.insert(all.end(), columns.fields.begin(), columns.fields.end());
     for (const io::PointField& field : all) {
       const auto same = std::ranges::count(all, field.name, &io::PointField::name);
-      require_within("columns '" + field.name + "' (number)", static_cast<double>(same), 1, 1, "");
+      require_within("columns '" + field.name + "' (number)", same, 1, 1, "");
     }
   }
 };

@@ -239,7 +239,6 @@ class MediaPassage {
   /// Share of light to and fro, by that at a way's begin, below which nothing returns.
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, share_min_ * share_min_); }
 
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double loss_step = 0.08;  ///< between nodes: power is linear to 0.4 %
 
   const TransportInput& light_;

@@ -80,8 +80,6 @@ class PathTracer {
   [[nodiscard]] bool passed_on() const noexcept { return passed_on_; }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     const std::span<Hit> all(hits);

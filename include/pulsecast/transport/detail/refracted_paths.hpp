@@ -43,8 +43,6 @@ class RefractedPaths {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   /// Surface of a body where a path meets it.
   struct Face {
     Vec3 normal{};         ///< towards the path

@@ -172,8 +172,6 @@ class VolumeProfile {
   void forget() noexcept { written_ = {}; }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   struct Part {
     double from, to, at_begin, at_end;
     [[nodiscard]] double power() const noexcept { return 0.5 * (at_begin + at_end) * (to - from); }

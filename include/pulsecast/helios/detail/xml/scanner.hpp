@@ -116,7 +116,7 @@ inline void pulse_rates(XmlInput& io, std::vector<double>& rates) {
 }
 inline void pulse_rates(XmlOutput& io, const std::vector<double>& rates) {
   std::string text;
-  require_within("pulseFreqs_Hz (number)", static_cast<double>(rates.size()), 0, most_rates, "");
+  require_within("pulseFreqs_Hz (number)", rates.size(), 0, most_rates, "");
   for (const double rate : rates) {
     require_within("pulseFreqs_Hz", rate, least_rate, most_rate, "Hz");
     text.append(text.empty() ? "" : ",").append(xml_number(rate));

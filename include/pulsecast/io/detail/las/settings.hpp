@@ -112,7 +112,7 @@ struct LasSettings {
     points.validate();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");
+    require_within("LasSettings::wkt length", wkt.size(), 0, 65534, "bytes");
     if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");

@@ -41,7 +41,7 @@ struct ImageSettings {
     require_within("ImageSettings::field_of_view", field_of_view, eye ? radians(1) : 0, radians(120), "rad");
     if (eye) require_finite("ImageSettings::eye (length)", length(*eye), "m");
     require_within("ImageSettings::point_size", point_size, 0, 64, "px");
-    require_within("ImageSettings::points_max", static_cast<double>(points_max), 2, 1e8, "");
+    require_within("ImageSettings::points_max", points_max, 2, 1e8, "");
   }
 };
 

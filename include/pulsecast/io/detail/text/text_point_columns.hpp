@@ -27,8 +27,7 @@ struct TextPointColumns {
         throw SettingError("TextPointColumns::separators (character code)", static_cast<unsigned char>(c), "",
                            "that of a character outside numbers, comments and line ends");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
-      for (const std::size_t column : columns)
-        require_within("TextPointColumns::column", static_cast<double>(column), 0, max_column, "");
+      for (const std::size_t column : columns) require_within("TextPointColumns::column", column, 0, max_column, "");
   }
 };
 
