@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// Prints what the readers do with the items of their formats, as the rows of docs/formats.md.
+
+#include <array>
+#include <iostream>
+#include <span>
+#include <string_view>
+
+#include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+
+using namespace pulsecast::io;
+
+namespace {
+void print(std::string_view format, std::span<const FormatRule> rules) {
+  constexpr std::array<std::string_view, 3> uses{"read", "noted", "refused"};
+  for (const FormatRule& rule : rules)
+    std::cout << "| " << format << " | `" << rule.name << "` | " << uses[static_cast<std::size_t>(rule.use)] << " | "
+              << rule.meaning << " |\n";
+}
+}  // namespace
+
+int main() { print("glTF", detail::gltf_rules); }
