@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -90,6 +91,22 @@ TEST_CASE("a label is the object, modulo 65536, above the class by the table, wh
          std::vector<std::uint32_t>{0x0007'0048, 0xFFFF'0032, 0x0005'00FC}));
   CHECK((numbers<std::uint32_t>(folder / "00/labels/000001.label") == std::vector<std::uint32_t>{0x0001'0000}));
   CHECK(content(folder / "00/labels/000002.label").empty());
+}
+
+TEST_CASE("points of classes without an entry are counted by class, and classes can be the labels as they are") {
+  const TemporaryFolder folder;
+  ThreeScans scans;
+  scans.echoes[0].classification = 1;
+  KittiWriter by_table(folder / "00", {.points = {.sensor = facing_west}});
+  by_table(scans.batch());
+  by_table.close();
+  CHECK((by_table.unlabelled() == std::map<std::uint16_t, std::uint64_t>{{64, 1}, {65, 1}}));
+  KittiWriter own(folder / "01", {.own_classes = true, .points = {.sensor = facing_west}});
+  own(scans.batch());
+  own.close();
+  CHECK(own.unlabelled().empty());
+  CHECK((numbers<std::uint32_t>(folder / "01/labels/000000.label") ==
+         std::vector<std::uint32_t>{0x0007'0001, 0xFFFF'0006, 0x0005'0040}));
 }
 
 TEST_CASE("times count from the first scan, and poses are of the starts of scans in the frame of the first") {

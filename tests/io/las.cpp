@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -536,6 +537,10 @@ TEST_CASE("points of legacy formats hold what they can, and headers say which th
     LasWriter writer(folder / "many.las", {.format = format});
     writer(survey.batch());
     CHECK(writer.pulses_cut() == 1);
+    for (std::size_t n = 0; n < 3; ++n) survey.echoes[n].classification = static_cast<std::uint16_t>(30 + n);
+    LasWriter classes(folder / "classes.las", {.format = format});
+    classes(survey.batch());
+    CHECK(classes.classes_cut() == 1);
   }
 }
 
@@ -671,7 +676,11 @@ TEST_CASE("every waveform reads back, and position plus location times direction
     const LasFile file = read_las(folder / "points.las");
     const support::WdpFile packets = support::read_wdp(folder / "points.wdp");
     REQUIRE(file.points.size() == survey.echoes.size());
-    CHECK(file.descriptors.size() == 253);
+    std::set<unsigned> used, described;
+    for (const LasPoint& p : file.points)
+      if (p.wave.descriptor != 0) used.insert(p.wave.descriptor);
+    for (const support::LasWaveDescriptor& d : file.descriptors) described.insert(d.index);
+    CHECK((used == described && file.descriptors.size() == used.size()));
     for (const support::LasWaveDescriptor& d : file.descriptors) CHECK((d.bits == 16 && d.spacing_ps == 250));
     std::size_t i = 0;
     std::uint64_t used = 60;

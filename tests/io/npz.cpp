@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <string>
@@ -88,6 +89,45 @@ PointLayout every_type() {
   for (const char* const name : {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"})
     fields.push_back({name, static_cast<NumberType>(fields.size() + 1), column("range")});
   return PointLayout::packed(fields);
+}
+
+TEST_CASE("waveforms are arrays of all samples, and of the place of those of each pulse") {
+  std::vector<Shot> shots(3);
+  shots[0] = {.index = 4, .tick = {2, 0.5}, .origin = {1, 2, 3}, .direction = {0, 0, -1}};
+  shots[1] = shots[0];
+  shots[0].samples = 2;
+  shots[0].waveform_start = 1e-9;
+  shots[1].samples = 0;
+  shots[2] = shots[1];
+  shots[2].index = 9;
+  shots[2].first_sample = 2;
+  shots[2].samples = 3;
+  const std::vector<float> samples{1, 2, 3, 4, 5};
+  const TemporaryFolder folder;
+  WaveformNpzWriter writer(folder / "a.npz", 1000);
+  writer(EchoBatch{shots, {}, samples, 2e-9});
+  writer.close();
+  const std::map<std::string, std::string> all = members(content(folder / "a.npz"));
+  CHECK(all.size() == 9);
+  const auto numbers = [&]<class Number>(const char* name, const char* type, const std::vector<Number>& expected) {
+    CAPTURE(name);
+    const std::string data = array_content(all.at(std::string(name) + ".npy"), type, expected.size());
+    REQUIRE(data.size() == expected.size() * sizeof(Number));
+    for (std::size_t i = 0; i < expected.size(); ++i) CHECK(number_at<Number>(data, i * sizeof(Number)) == expected[i]);
+  };
+  numbers("samples", "<f4", samples);
+  numbers("first", "<i8", std::vector<std::int64_t>{0, 2});
+  numbers("count", "<i4", std::vector<std::int32_t>{2, 3});
+  numbers("pulse", "<i8", std::vector<std::int64_t>{4, 9});
+  numbers("time", "<f8", std::vector<double>{1002.5, 1002.5});
+  numbers("start", "<f8", std::vector<double>{1e-9, 0});
+  numbers("interval", "<f8", std::vector<double>{2e-9, 2e-9});
+  const std::string& origin = all.at("origin.npy");
+  CHECK(origin.find("'shape': (2,3), }") != origin.npos);
+  CHECK(number_at<double>(origin, origin.size() - 8) == 3);
+  CHECK(number_at<double>(all.at("direction.npy"), all.at("direction.npy").size() - 8) == -1);
+  CHECK_THROWS_AS(WaveformNpzWriter(folder / "b.npz", std::numeric_limits<double>::infinity()), SettingError);
+  CHECK_FALSE(std::filesystem::exists(folder / "a.npz.samples.part"));
 }
 
 TEST_CASE("each field is an array of its name and type, with the numbers of all points") {

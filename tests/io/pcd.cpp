@@ -284,9 +284,11 @@ TEST_CASE("a cloud without points has a header that says so") {
 TEST_CASE("coordinates count from the origin of the settings, so that single precision keeps them") {
   TwoEchoes two;
   two.shots[0].origin = {477'000.125, 5'429'000.25, 300};
-  const PcdFile file(pcd(two.batch(), {.points = {.origin = {477'000, 5'429'000, 0}}}));
+  const std::string bytes = pcd(two.batch(), {.points = {.origin = {477'000, 5'429'000, 0}}});
+  const PcdFile file(bytes);
   CHECK((file.columns()[0] == std::vector<double>{10.125, 20.125}));
   CHECK((file.columns()[1] == std::vector<double>{0.25, 0.25}));
+  CHECK(bytes.find("\n# origin of x, y, z [m]: 477000 5429000 0\nVERSION") != bytes.npos);
 }
 
 TEST_CASE("without close there is no file, and a former one stays") {

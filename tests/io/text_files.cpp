@@ -304,6 +304,25 @@ TEST_CASE(
         "0.499999986 0.000000000 -0.249999993\n");
 }
 
+TEST_CASE("rows of as many samples as asked for end with zeros or are cut, and their last time is of the last sample") {
+  std::vector<Shot> shots(2);
+  for (Shot& shot : shots) shot.direction = {0, 0, -1};
+  shots[0].samples = 1;
+  shots[1] = shots[0];
+  shots[1].first_sample = 1;
+  shots[1].samples = 3;
+  const std::vector<float> samples{1e-9F, 2e-9F, 3e-9F, 4e-9F};
+  const std::string head = "0 0.0000 0.0000 0.0000 0.000000000 0.000000000 -1.000000000 0.000000 1.000000 0.000000000 ";
+  const TemporaryFolder folder;
+  WaveformTextWriter writer(folder / "a.txt", {.waveform_samples = 2});
+  writer(EchoBatch{shots, {}, samples, 2e-9});
+  writer.close();
+  CHECK(content(folder / "a.txt") ==
+        head + "0.999999972 0.000000000\n" + head + "1.999999943 3.000000026\n");  // to a float's digits
+  CHECK((writer.waveforms_cut() == 1 && writer.samples_max() == 3));
+  CHECK_THROWS_AS(WaveformTextWriter(folder / "b.txt", {.waveform_samples = 2'000'000}), SettingError);
+}
+
 TEST_CASE("each sample is found at the range that its column says, and keeps its power") {
   support::Generator random(1);
   constexpr double interval = 0.25e-9;

@@ -200,6 +200,8 @@ class LasReader {
         file_.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in_.whole(body, 1)),
                                      in_.whole(body + 2, 4), in_.whole(body + 6, 4), in_.real(body + 10),
                                      in_.real(body + 18)});
+      } else if (user == "LASF_Spec" && id == 7) {
+        las_expect(waves_, "room for descriptors");
       } else {
         las_expect(false, "unknown record " + user);
       }

@@ -16,7 +16,8 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Classes of SemanticKITTI by those of echoes. Classes without an entry are 0, unlabeled.
+/// Classes of SemanticKITTI by those of echoes. Classes without an entry are 0, unlabeled, and
+/// counted by `KittiWriter::unlabelled` but for 0 and 1, which LAS has for unclassified.
 using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 
 /// Table for the classes of LAS that have a counterpart; those from 64 on are the user's. Source:
@@ -38,6 +39,7 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
   KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
+  bool own_classes = false;                ///< classes of the echoes are labels, without the table
   PointSettings points{};                  ///< pose of the sensor (required), and distortion
 
   void validate() const {
@@ -63,6 +65,7 @@ class KittiWriter {
   KittiWriter(std::filesystem::path folder, const KittiSettings& settings)
       : folder_(std::move(folder)),
         classes_(settings.classes),
+        own_classes_(settings.own_classes),
         splitter_(PointBuffer(layout(), in_format(validated(settings).points)), settings.scan_rate,
                   [this](const PointBuffer& scan) { write(scan); }),
         times_(OutputFile(new_folder() / "times.txt")),
@@ -71,6 +74,9 @@ class KittiWriter {
   KittiWriter& operator=(const KittiWriter&) = delete;
 
   void operator()(const EchoBatch& batch) { splitter_(batch); }
+
+  /// Numbers of points of the classes without an entry, by class.
+  [[nodiscard]] const std::map<std::uint16_t, std::uint64_t>& unlabelled() const noexcept { return unlabelled_; }
 
   /// Completes the last scan and the sequence. Throws a `FileError`.
   void close() {
@@ -119,9 +125,8 @@ class KittiWriter {
       std::memcpy(point.data(), scan.records().data() + i * scan.layout().size, sizeof point);
       point[3] = point[3] > 0 ? std::min(point[3], 1.0F) : 0;
       points.write(std::as_bytes(std::span(point)));
-      const auto known = classes_.find(static_cast<std::uint16_t>(scan.number(i, fields[4])));
-      const auto instance = static_cast<std::uint32_t>(scan.number(i, fields[5]));
-      const std::uint32_t label = instance << 16 | (known == classes_.end() ? 0 : known->second);
+      const std::uint32_t class_label = label_of(static_cast<std::uint16_t>(scan.number(i, fields[4])));
+      const std::uint32_t label = static_cast<std::uint32_t>(scan.number(i, fields[5])) << 16 | class_label;
       labels.write(std::as_bytes(std::span(&label, 1)));
     }
     points.commit();
@@ -130,6 +135,14 @@ class KittiWriter {
     if (!first_start_) first_start_ = start;
     times_.reals(9, start - *first_start_).end_row();
     write_pose(scan.settings().sensor(scan.scan_start()));
+  }
+
+  [[nodiscard]] std::uint16_t label_of(std::uint16_t of_echo) {
+    if (own_classes_) return of_echo;
+    const auto known = classes_.find(of_echo);
+    if (known != classes_.end()) return known->second;
+    if (of_echo > 1) ++unlabelled_[of_echo];
+    return 0;
   }
 
   void write_pose(const Pose<frame::Instrument, frame::World>& sensor) {
@@ -146,6 +159,8 @@ class KittiWriter {
 
   std::filesystem::path folder_;
   KittiClasses classes_;
+  bool own_classes_;
+  std::map<std::uint16_t, std::uint64_t> unlabelled_;
   ScanSplitter splitter_;
   TextOutput times_, poses_;
   std::size_t scans_ = 0;

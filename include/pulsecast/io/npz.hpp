@@ -39,14 +39,27 @@ class StoredZip {
   StoredZip& operator=(const StoredZip&) = delete;
 
   void add(const std::string& name, std::string_view head, std::span<const std::byte> body) {
+    begin(name, head, body.size());
+    put(body);
+  }
+
+  /// Begins an entry of a head and `size` bytes, to be passed to `put`.
+  void begin(const std::string& name, std::string_view head, std::uint64_t size) {
     archive_entry_clear(entry_.get());
     archive_entry_set_pathname(entry_.get(), name.c_str());
     archive_entry_set_filetype(entry_.get(), AE_IFREG);
     archive_entry_set_perm(entry_.get(), 0644);
-    archive_entry_set_size(entry_.get(), static_cast<la_int64_t>(head.size() + body.size()));
+    archive_entry_set_size(entry_.get(), static_cast<la_int64_t>(head.size() + size));
     check(archive_write_header(archive_.get(), entry_.get()));
     put(std::as_bytes(std::span(head)));
-    put(body);
+  }
+
+  void put(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {  // the library takes 2 GiB at a time
+      const la_ssize_t written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
+      if (written <= 0) check(ARCHIVE_FATAL);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
   }
 
   void close() { check(archive_write_close(archive_.get())); }
@@ -69,14 +82,6 @@ class StoredZip {
     }
   }
 
-  void put(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {  // the library takes 2 GiB at a time
-      const la_ssize_t written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
-      if (written <= 0) check(ARCHIVE_FATAL);
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-  }
-
   /// Throws the error of the file, or else a `FileError` with that of the library.
   void check(int result) {
     if (result == ARCHIVE_OK) return;
@@ -93,12 +98,14 @@ class StoredZip {
   std::unique_ptr<archive_entry, Free> entry_{archive_entry_new()};
 };
 
-/// Header of an array of one dimension, padded to 64 bytes. Source: NumPy, numpy.lib.format, 1.0.
-[[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count) {
+/// Header of an array of `count` elements, or rows of `columns` of them, padded to 64 bytes.
+/// Source: NumPy, numpy.lib.format, 1.0.
+[[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count, unsigned columns = 0) {
   constexpr std::array<std::string_view, 11> types{"",    "|i1", "|u1", "<i2", "<u2", "<i4",
                                                    "<u4", "<f4", "<f8", "<i8", "<u8"};
-  std::string text = text::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
-                                   "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
+  std::string text =
+      text::joined({"{'descr': '", types[static_cast<std::size_t>(type)], "', 'fortran_order': False, 'shape': (",
+                    std::to_string(count), ",", columns > 0 ? std::to_string(columns) : "", "), }"});
   constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
   text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
   text.back() = '\n';
@@ -145,6 +152,74 @@ class NpzWriter {
   OutputFile file_;
 };
 static_assert(EchoSink<NpzWriter>);
+
+/// Writes waveforms as NPZ, with or without echoes: pulse k has `samples[first[k]:][:count[k]]`.
+/// Arrays: `samples` [W] of all pulses; of each pulse, `first` and `count` of its samples, `pulse`,
+/// its slot, `time` of emission by the clock [s], `start`, the two-way time of its first sample, and
+/// `interval` of samples [s], `origin` [m] and unit `direction` as rows of three. Samples are on the
+/// disk until `close()`, the rest in memory, 96 bytes a pulse. `close()` completes the file: see
+/// `OutputFile`. Source: as `NpzWriter`.
+class WaveformNpzWriter {
+ public:
+  /// `start_time` is the clock time at tick 0 [s]. @throws SettingError @throws FileError
+  explicit WaveformNpzWriter(const std::filesystem::path& path, double start_time = 0)
+      : start_time_(start_time), file_(path), samples_(path.string() + ".samples") {
+    require_finite("WaveformNpzWriter::start_time", start_time, "s");
+    samples_.forget_name();
+  }
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots) {
+      if (shot.samples == 0) continue;
+      first_.push_back(static_cast<std::int64_t>(samples_.position() / sizeof(float)));
+      count_.push_back(static_cast<std::int32_t>(shot.samples));
+      pulse_.push_back(static_cast<std::int64_t>(shot.index));
+      time_.push_back(start_time_ + shot.tick.seconds());
+      start_.push_back(shot.waveform_start);
+      interval_.push_back(batch.sample_interval);
+      origin_.push_back(shot.origin);
+      direction_.push_back(shot.direction);
+      samples_.write(std::as_bytes(batch.waveform_of(shot)));
+    }
+  }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
+
+  /// Writes the arrays, and gives the file its name. @throws FileError
+  void close() {
+    detail::StoredZip zip(file_);
+    const auto add = [&](const char* name, NumberType type, const auto& values, unsigned columns = 0) {
+      zip.add(text::joined({name, ".npy"}), detail::npy_header(type, values.size(), columns),
+              std::as_bytes(std::span(values)));
+    };
+    add("first", NumberType::int64, first_);
+    add("count", NumberType::int32, count_);
+    add("pulse", NumberType::int64, pulse_);
+    add("time", NumberType::float64, time_);
+    add("start", NumberType::float64, start_);
+    add("interval", NumberType::float64, interval_);
+    add("origin", NumberType::float64, origin_, 3);
+    add("direction", NumberType::float64, direction_, 3);
+    const std::uint64_t size = samples_.position();
+    zip.begin("samples.npy", detail::npy_header(NumberType::float32, size / sizeof(float)), size);
+    std::vector<std::byte> some;
+    for (std::uint64_t at = 0; at < size; at += some.size()) {
+      some.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size - at, std::uint64_t{1} << 20)));
+      samples_.read(at, some);
+      zip.put(some);
+    }
+    zip.close();
+    file_.commit();
+  }
+
+ private:
+  double start_time_;
+  OutputFile file_, samples_;
+  std::vector<std::int64_t> first_, pulse_;
+  std::vector<std::int32_t> count_;
+  std::vector<double> time_, start_, interval_;
+  std::vector<Vec3> origin_, direction_;
+};
+static_assert(EchoSink<WaveformNpzWriter>);
 
 }  // namespace PULSECAST_NAMESPACE::io
 

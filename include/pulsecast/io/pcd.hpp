@@ -59,14 +59,15 @@ static_assert(lzf_room(lzf_size_max) <= std::numeric_limits<std::uint32_t>::max(
 /// Writes points as PCD, the format of PCL, as an unorganized cloud; 64-bit integers, which not all
 /// readers take, become `float64`. Memory does not grow with the number of points, unless
 /// compressed: then the file takes up to four times the memory of its points until `close()`, and
-/// at most 4.1 GB before compression. Times since a scan's start count from tick 0, but in `add`.
-/// `close()` completes the file: see `OutputFile`. Source: PCL, PCD file format 0.7.
+/// at most 4.1 GB before compression. A comment names an origin other than 0. Times since a scan's start count from
+/// tick 0, but in `add`. `close()` completes the file: see `OutputFile`. Source: PCL, PCD file format 0.7.
 class PcdWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PcdWriter(std::filesystem::path path, const PcdSettings& settings = {})
       : points_(validated(settings).layout.without_int64(), settings.points),
         encoding_(settings.encoding),
+        origin_(comment(settings.points.origin)),
         columns_(points_.layout()),
         file_(std::move(path)) {
     file_.write(header());
@@ -122,6 +123,11 @@ class PcdWriter {
                                   " bytes; without compression, there is no limit"}));
   }
 
+  [[nodiscard]] static std::string comment(const Vec3& origin) {
+    if (origin == Vec3{}) return "";
+    return text::message("\n# origin of x, y, z [m]: ", origin.x, " ", origin.y, " ", origin.z);
+  }
+
   /// Header for the points so far, of equal length for any number.
   [[nodiscard]] std::string header() const {
     constexpr std::array<std::string_view, 9> types{"", "I", "U", "I", "U", "I", "U", "F", "F"};
@@ -134,7 +140,7 @@ class PcdWriter {
       counts.append(" 1");
     }
     const detail::CountText points(count_);
-    return text::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks,
+    return text::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks, origin_,
                          "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT", counts,
                          "\nWIDTH ", points.digits, "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ", points.digits,
                          "\nDATA ", encodings[static_cast<std::size_t>(encoding_)], "\n"});
@@ -142,6 +148,7 @@ class PcdWriter {
 
   detail::PackedPoints points_;
   PcdEncoding encoding_;
+  std::string origin_;            // comment in the header
   detail::FieldColumns columns_;  // of a compressed file
   OutputFile file_;
   TextRow row_;

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_TEXT_FILES_HPP
 #define PULSECAST_IO_TEXT_FILES_HPP
 
+#include <algorithm>
 #include <cmath>
 
 #include <pulsecast/concepts.hpp>
@@ -16,8 +17,13 @@ namespace PULSECAST_NAMESPACE::io {
 /// Settings of a text file.
 struct TextFileSettings {
   double start_time = 0;  ///< clock time at tick 0 [s]
+  /// Samples of each waveform: shorter ones end with zeros, longer ones are cut; 0: as they are
+  std::uint32_t waveform_samples = 0;
 
-  void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
+  void validate() const {
+    require_finite("TextFileSettings::start_time", start_time, "s");
+    require_within("TextFileSettings::waveform_samples", waveform_samples, 0, 1e6, "");
+  }
 };
 
 namespace detail {
@@ -173,8 +179,8 @@ static_assert(EchoSink<SubrayTextWriter>);
 /// fullwaveIndex: slot of the pulse; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit
 /// direction, 9; tmin, tmax: one-way times of the first and last sample [ns], 6; gpsTime: departure
 /// [s], 9; w: samples of received power [nW], 9. These are the columns of HELIOS++. Sample i is
-/// from the range `c (tmin + (tmax - tmin) i / (n - 1))`. `close()` completes the file: see
-/// `OutputFile`.
+/// from the range `c (tmin + (tmax - tmin) i / (n - 1))`. With `waveform_samples`, all rows have
+/// that many, and tmax is of the last. `close()` completes the file: see `OutputFile`.
 class WaveformTextWriter : public detail::TextFileWriter {
  public:
   using TextFileWriter::TextFileWriter;
@@ -186,15 +192,25 @@ class WaveformTextWriter : public detail::TextFileWriter {
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
+  [[nodiscard]] std::uint64_t waveforms_cut() const noexcept { return cut_; }        ///< longer ones
+  [[nodiscard]] std::uint32_t samples_max() const noexcept { return samples_max_; }  ///< of a waveform
+
  private:
   void write(const Shot& shot, const EchoBatch& batch) {
     constexpr double nano = 1e9, one_way = 0.5;
-    const double last = shot.waveform_start + (shot.samples - 1) * batch.sample_interval;
+    const std::uint32_t samples = settings_.waveform_samples != 0 ? settings_.waveform_samples : shot.samples;
+    const double last = shot.waveform_start + (samples - 1) * batch.sample_interval;
     text_.wholes(shot.index).beam(shot);
     text_.reals(6, shot.waveform_start * one_way * nano, last * one_way * nano).reals(9, clock(shot));
-    for (const float sample : batch.waveform_of(shot)) text_.reals(9, double{sample} * nano);
+    const std::span<const float> waveform = batch.waveform_of(shot);
+    for (std::uint32_t i = 0; i < samples; ++i) text_.reals(9, i < shot.samples ? double{waveform[i]} * nano : 0.0);
     text_.end_row();
+    cut_ += shot.samples > samples ? 1 : 0;
+    samples_max_ = std::max(samples_max_, shot.samples);
   }
+
+  std::uint64_t cut_ = 0;
+  std::uint32_t samples_max_ = 0;
 };
 static_assert(EchoSink<WaveformTextWriter>);
 

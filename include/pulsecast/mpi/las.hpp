@@ -140,6 +140,7 @@ class MpiLas final : public MpiOutput {
   }
 
   [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
+  [[nodiscard]] std::uint64_t classes_cut() const noexcept override { return whole_ ? whole_->classes_cut() : 0; }
 
   void close() override {
     points_file_.close();

@@ -109,6 +109,7 @@ class MpiLaz final : public MpiOutput {
   [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > max_waiting; }
 
   [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
+  [[nodiscard]] std::uint64_t classes_cut() const noexcept override { return whole_ ? whole_->classes_cut() : 0; }
 
   void close() override {
     if (group().first())

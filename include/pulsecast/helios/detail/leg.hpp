@@ -108,6 +108,10 @@ class SurveyLeg {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
+  /// Pose of the scanner, without its head and the noise.
+  [[nodiscard]] Pose<frame::Instrument, frame::World> instrument_at(Tick t) const noexcept {
+    return truth_.instrument_at(t);
+  }
   [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the known path
 
  private:

@@ -208,6 +208,7 @@ class MpiOutput {
   virtual void close() = 0;
   /// As of `LasWriter`, once closed, on the first process; 0 for other files.
   [[nodiscard]] virtual std::uint64_t pulses_cut() const noexcept { return 0; }
+  [[nodiscard]] virtual std::uint64_t classes_cut() const noexcept { return 0; }  ///< points, as above
 
   std::optional<std::uint16_t> channel{};  ///< only emitter whose pulses are wanted; all if empty
 

@@ -35,7 +35,7 @@ struct Descriptor {
   double gain, offset;
 };
 Descriptor descriptor(const LasPackets& packets, unsigned index) {
-  const std::vector<std::byte> all = packets.descriptors();
+  const std::vector<std::byte> all = packets.descriptors(LasPackets::Used().set());
   const std::string bytes(reinterpret_cast<const char*>(all.data()), all.size());
   for (std::size_t at = 0; at < bytes.size(); at += 80) {
     if (whole(bytes, at + 18, 2) != index + 99U) continue;
@@ -75,7 +75,8 @@ TEST_CASE("a file of two packets, byte by byte") {
 TEST_CASE("there are 253 descriptors, of 23 sizes and 11 gains, each of its own") {
   const TemporaryFolder folder;
   const LasPackets packets(folder / "a.wdp");
-  CHECK(packets.descriptors().size() == 253 * 80);
+  CHECK(packets.descriptors(LasPackets::Used().set()).size() == 253 * 80);
+  CHECK(LasPackets::records(LasPackets::Used().set()) == 253);
   std::uint64_t before = 0;
   for (unsigned size = 0; size < 23; ++size) {
     const Descriptor first = descriptor(packets, 1 + 11 * size);
@@ -90,6 +91,27 @@ TEST_CASE("there are 253 descriptors, of 23 sizes and 11 gains, each of its own"
     }
   }
   CHECK(before == 32768);
+}
+
+TEST_CASE("a file has the descriptors that are used, and a superseded record in the room of the others") {
+  const TemporaryFolder folder;
+  const LasPackets packets(folder / "a.wdp");
+  for (const std::vector<std::size_t>& used : {std::vector<std::size_t>{}, {7}, {1, 12, 253}}) {
+    LasPackets::Used numbers;
+    for (const std::size_t number : used) numbers.set(number);
+    const std::vector<std::byte> all = packets.descriptors(numbers);
+    const std::string bytes(reinterpret_cast<const char*>(all.data()), all.size());
+    CHECK(bytes.size() == 253 * 80);
+    CHECK(LasPackets::records(numbers) == used.size() + 1);
+    std::size_t at = 0;
+    for (const std::size_t number : used) {
+      CHECK((whole(bytes, at + 18, 2) == 99 + number && whole(bytes, at + 20, 2) == 26));
+      at += 80;
+    }
+    CHECK(whole(bytes, at + 18, 2) == 7);
+    CHECK(at + 54 + whole(bytes, at + 20, 2) == bytes.size());
+    CHECK(bytes.find_first_not_of('\0', at + 54) == bytes.npos);
+  }
 }
 
 TEST_CASE("samples come back within a 7680th of the peak, whatever the power and the length, and so do negative ones") {

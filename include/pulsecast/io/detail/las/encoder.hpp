@@ -26,6 +26,8 @@ struct LasTally {
   std::array<std::uint64_t, 15> points_by_return{};  ///< number of points by return number, from 1
   float max_amplitude = -200;                        ///< highest amplitude [dB]
   std::uint64_t pulses_cut = 0;                      ///< pulses with too many returns
+  std::uint64_t classes_cut = 0;                     ///< points of a class beyond the greatest
+  LasPackets::Used descriptors{};                    ///< those of the waveforms
 
   void add(const LasTally& other) noexcept {
     if (other.points == 0) return;
@@ -37,6 +39,8 @@ struct LasTally {
     for (std::size_t i = 0; i < 15; ++i) points_by_return[i] += other.points_by_return[i];
     max_amplitude = std::max(max_amplitude, other.max_amplitude);
     pulses_cut += other.pulses_cut;
+    classes_cut += other.classes_cut;
+    descriptors |= other.descriptors;
   }
 };
 
@@ -81,12 +85,14 @@ class LasEncoder {
       record.put(22, time);
     }
     if (packet) put_packet(record, shot, *packet);
+    if (packet) tally_.descriptors.set(packet->descriptor);
     for (const Echo& echo : batch.echoes_of(shot)) {
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
       const auto classification = std::min<std::uint32_t>(echo.classification, layout_.max_class);
       record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(classification));
+      if (echo.classification > classification) ++tally_.classes_cut;
       const double delay = 2 / speed_of_light * echo.range - shot.waveform_start;
       if (packet) record.put(layout_.packet + 13, static_cast<float>(delay * 1e12));
       const PointView view{shot, echo, columns_.settings(), columns_.scan_start()};

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <initializer_list>
 
@@ -26,8 +27,8 @@ struct LasPacket {
 /// zero power, so noise may be negative. Each packet has the smallest gain that its samples fit, of
 /// eleven powers of 16 from 2^-52 to 2^-12 W. The error is at most 1/7680 of the packet's peak, or
 /// 2^-53 W, unless noise reaches 1/15 of the peak. Samples above 15 W are clipped. Packets are
-/// padded with zero power to one of 23 sizes, two an octave, from 16 to 32768 samples. Every file
-/// has all 253 descriptors, so that none need be known before the first packet.
+/// padded with zero power to one of 23 sizes, two an octave, from 16 to 32768 samples. So there are
+/// 253 descriptors; a file has those that its packets use, in room for all of them.
 class LasPackets {
  public:
   /// Throws a `FileError` if the file cannot be made.
@@ -66,11 +67,16 @@ class LasPackets {
     return {index_of(size_class, gain_class), file_.position() - size, size};
   }
 
-  /// Descriptor records with headers, for the LAS file, whose bodies change with packets.
-  [[nodiscard]] std::vector<std::byte> descriptors() const {
+  /// Descriptors by their number, `LasPacket::descriptor`.
+  using Used = std::bitset<256>;
+
+  /// Records for the LAS file, with headers: the descriptors in use, and one that fills their room,
+  /// always `descriptors_size` bytes. Source: LAS 1.4 R15, Superseded, which tells to ignore it.
+  [[nodiscard]] std::vector<std::byte> descriptors(const Used& used) const {
     std::vector<std::byte> bytes;
     for (unsigned size_class = 0; size_class < size_classes; ++size_class)
       for (unsigned gain_class = 0; gain_class < gain_classes; ++gain_class) {
+        if (!used[index_of(size_class, gain_class)]) continue;
         const auto record = static_cast<std::uint16_t>(99 + index_of(size_class, gain_class));
         const auto head = detail::las_vlr_header("LASF_Spec", record, descriptor_size, "Waveform Packet Descriptor");
         detail::LasBytes<descriptor_size> d{};
@@ -82,7 +88,16 @@ class LasPackets {
         bytes.insert(bytes.end(), head.begin(), head.end());
         bytes.insert(bytes.end(), d.begin(), d.end());
       }
+    if (const std::size_t rest = descriptors_size - bytes.size(); rest > 0) {
+      const auto head = detail::las_vlr_header("LASF_Spec", 7, rest - 54, "room for descriptors");
+      bytes.insert(bytes.end(), head.begin(), head.end());
+    }
+    bytes.resize(descriptors_size);
     return bytes;
+  }
+  /// Number of these records.
+  [[nodiscard]] static std::uint32_t records(const Used& used) noexcept {
+    return static_cast<std::uint32_t>(std::min<std::size_t>(used.count() + 1, descriptor_count));
   }
 
   /// Finishes the file and gives it its name.
@@ -94,6 +109,7 @@ class LasPackets {
   static constexpr double max_samples = 32768;  ///< samples of a waveform, at most
   static constexpr unsigned size_classes = 23, gain_classes = 11;
   static constexpr unsigned descriptor_count = size_classes * gain_classes;
+  static constexpr std::size_t descriptors_size = std::size_t{descriptor_count} * (54 + 26);  ///< [byte]
 
  private:
   static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]

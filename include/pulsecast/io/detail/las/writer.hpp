@@ -43,8 +43,8 @@ struct LasExtendedRecords {
 /// - coordinates are rounded to nearest; one beyond 32 bits, or not finite, is a `FileError`;
 /// - intensity is linear in `LasIntensity`; Amplitude, Reflectance are levels [dB], -200 for zero;
 /// - returns end at 15, or 5, by format: later ones are written as the last, see `pulses_cut`;
-/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the
-/// channel, at most 255, and scanner channel its lowest two bits;
+/// - classes end at 255, or 31: greater ones are written as the last, see `classes_cut`; point source id is the leg
+/// plus 1, at most 65535; user data is the channel, at most 255, and scanner channel its lowest two bits;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
 /// - a reference system given by its code alone, other than UTM, becomes GeoTIFF keys, with the WKT
 /// bit clear, though formats 6 to 9 should have text. Legacy formats take any code as keys;
@@ -71,6 +71,8 @@ class LasFileWriter {
 
   /// Pulses with more than 15 returns, or 5, by format: later returns have the number of the last.
   [[nodiscard]] std::uint64_t pulses_cut() const noexcept { return encoder_.tally().pulses_cut; }
+  /// Points of a class above 255, or 31, by format.
+  [[nodiscard]] std::uint64_t classes_cut() const noexcept { return encoder_.tally().classes_cut; }
 
   [[nodiscard]] Records& records() noexcept { return records_; }
 
@@ -239,8 +241,8 @@ LasFileWriter<Records>::LasFileWriter(std::filesystem::path path, LasSettings ho
   if (by_keys()) write_keys_record();
   descriptors_at_ = file_.position();
   if (packets_) {
-    file_.write(packets_->descriptors());
-    variable_records_ += LasPackets::descriptor_count;
+    file_.write(packets_->descriptors({}));
+    variable_records_ += LasPackets::records({});
   }
   write_descriptor(Records::descriptor(layout()));
   if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // as `LasLayout`
@@ -262,9 +264,11 @@ void LasFileWriter<Records>::close() {
   if (encoder_.automatic_intensity())
     records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
   records_.finish(file_, encoder_);
+  const LasPackets::Used& used = encoder_.tally().descriptors;
+  if (packets_) variable_records_ += LasPackets::records(used) - LasPackets::records({});
   write_header();
   if (packets_) {
-    file_.overwrite(descriptors_at_, packets_->descriptors());
+    file_.overwrite(descriptors_at_, packets_->descriptors(used));
     packets_->close();
   }
   file_.commit();
