@@ -204,7 +204,7 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& loa
     return false;
   }
   Options all = options;
-  take_columns(all, *simulation);
+  take_columns(all, file.survey, *simulation);
   const Forecasts found = forecasts_of(*simulation, file.survey, all, loading.settings.seed, loading_time);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();

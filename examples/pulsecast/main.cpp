@@ -41,6 +41,7 @@
 #include "options.hpp"
 #include "outputs.hpp"
 #include "pages.hpp"
+#include "point_formats.hpp"
 #include "ranks.hpp"
 #include "run_folder.hpp"
 #include "survey_files.hpp"
@@ -153,10 +154,7 @@ class Session {
     const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
-    if (pulses_cut_ > 0)
-      notes_.note(
-          std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
-          " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
+    note_left_out();
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
       notes_.warn("no points from leg " + empty_legs_ +
                   ": a leg without pulses, as the last of a platform that moves, may be inactive");
@@ -185,6 +183,34 @@ class Session {
     else
       notes_.note("no run to resume: the newest one, " + newest.string() + ", is complete");
     return {.is_complete = !newest.empty()};
+  }
+
+  /// Notes what the files do not hold of the results.
+  void note_left_out() {
+    const auto number = [](std::uint64_t count) { return std::to_string(count); };
+    if (left_out_.pulses_cut > 0)
+      notes_.note(
+          number(left_out_.pulses_cut) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
+          " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
+    if (left_out_.classes_cut > 0)
+      notes_.note(number(left_out_.classes_cut) + " points have a class above " + (options_.las_1_0 ? "31" : "255") +
+                  ", the greatest in LAS, which they have, too: --columns classification keeps theirs");
+    if (left_out_.echoes > 0)
+      notes_.note(number(left_out_.echoes) +
+                  " points have no place in PTX, which has the first return of a pulse in "
+                  "the grid: --format npz or laz has all");
+    if (left_out_.waveforms_cut > 0)
+      notes_.note(number(left_out_.waveforms_cut) + " waveforms have more samples than --waveformBins, up to " +
+                  number(left_out_.samples_max) + ": the rest is left out");
+    std::string classes;
+    std::uint64_t points = 0;
+    for (const auto& [of, count] : left_out_.unlabelled) {
+      classes += (classes.empty() ? "" : ", ") + std::to_string(of);
+      points += count;
+    }
+    if (points > 0)
+      notes_.note(number(points) + " points have label 0, as no label is known of their classes (" + classes +
+                  "): --kittiClasses gives labels");
   }
 
   [[nodiscard]] std::unique_ptr<Simulation> loaded(const std::shared_ptr<SurveyInputs>& inputs) {
@@ -260,7 +286,7 @@ class Session {
         if (note_inputs(inputs)) log_.write(folder);
         print_notes(*simulation);
       }
-      take_columns(options_, *simulation);
+      take_columns(options_, survey_, *simulation);
       all.add(play(*simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
@@ -337,6 +363,11 @@ class Session {
         << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
     for (const std::string& column : options_.columns) out << " column=" << column;
+    if (point_format(options_.format).in_scans) out << " scans=" << text::to_text(options_.scan_rate);
+    if (options_.kitti_classes == "own") out << " classes=own";
+    if (!options_.kitti_classes.empty() && options_.kitti_classes != "own")
+      for (const auto& [of, label] : read_kitti_classes(options_.kitti_classes)) out << " class=" << of << ':' << label;
+    if (options_.waveform_bins > 0) out << " bins=" << options_.waveform_bins;
     if (options_.misses_at) out << " misses=" << text::to_text(*options_.misses_at);
     return out.str();
   }
@@ -398,7 +429,7 @@ class Session {
 
   void close(LegRun& files) {
     files.close();
-    pulses_cut_ += files.pulses_cut();
+    left_out_.add(files.left_out());
   }
 
   RunSummary play(const Simulation& simulation, const fs::path& folder, bool again) {
@@ -465,7 +496,7 @@ class Session {
   const SurveySettings& survey_;
   Ranks& ranks_;
   Pages pages_;
-  std::uint64_t pulses_cut_ = 0;  // see `LegRun`; of all legs
+  LeftOut left_out_;  // of all legs
   RunLog log_;
   std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;
@@ -573,6 +604,13 @@ int work(const Options& options, Ranks& ranks) {
       if (ranks.first())
         notes.note("--page and --live have no effect under mpirun: they need all points in one process");
     }
+    const auto shared = [](const PointFormat& format) { return format.shared; };
+    if (ranks.count() > 1 && options.format != "copc.laz" && !shared(point_format(options.format)))
+      throw std::invalid_argument("--format " + options.format +
+                                  " needs all points in one process: expected --format " + names_of_formats(shared) +
+                                  " under mpirun, or no mpirun");
+    if (ranks.count() > 1 && options.waveform_bins > 0)
+      throw std::invalid_argument("--waveformBins needs all waveforms in one process: expected no mpirun");
     if (ranks.count() > 1 && options.format == "copc.laz") {
       settled.format = "laz";
       if (ranks.first()) notes.note("--format copc.laz needs all points in one process: under mpirun, laz is written");

@@ -19,6 +19,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/version.hpp>
 
+#include "point_formats.hpp"
 #include "quantity.hpp"
 
 namespace {
@@ -158,9 +159,24 @@ class CommandLine {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app_.add_option("-o,--output", o_.output, "Folder for the results")->type_name("DIR")->capture_default_str();
-    app_.add_option("--format", o_.format, "Format of the points: las, laz, copc.laz, xyz or xyz.gz; default: xyz")
+    const auto any = [](const PointFormat&) { return true; };
+    std::vector<std::string> names;
+    for (const PointFormat& format : point_formats) names.emplace_back(format.name);
+    app_.add_option("--format", o_.format, "Format of the points: " + names_of_formats(any) + "; default: " + names[0])
         ->type_name("FORMAT")
-        ->transform(CLI::IsMember({"las", "laz", "copc.laz", "xyz", "xyz.gz"}, CLI::ignore_case));
+        ->transform(CLI::IsMember(names, CLI::ignore_case));
+    app_.add_option(both("scanRate"), scan_rate_, "Scans per second in KITTI and MCAP [Hz]; default: 10")
+        ->type_name("HZ")
+        ->check(
+            number_check<double>([](double rate) { return rate >= 1e-3 && rate <= 1e6; }, "rate from 0.001 to 1e6 Hz"));
+    app_.add_option(
+            both("kittiClasses"), o_.kitti_classes,
+            "Labels in KITTI: a file of rows of class and label, or 'own' for the classes; default: by those of LAS")
+        ->type_name("FILE")
+        ->check([](const std::string& given) {
+          return given == "own" || fs::is_regular_file(given) ? std::string()
+                                                              : "'" + given + "': expected a file, or own";
+        });
     app_.add_option("--seed", seed_, "Seed of all random numbers; default: the survey's own, or a new one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
@@ -194,6 +210,11 @@ class CommandLine {
 
   void add_results() {
     app_.add_flag(both("writeWaveform"), o_.write_waveform, "Write waveforms, too");
+    app_.add_option(both("waveformBins"), waveform_bins_,
+                    "Samples of each waveform in text: zeros follow, later ones are cut")
+        ->type_name("N")
+        ->check(number_check<std::uint32_t>([](std::uint32_t bins) { return bins > 0 && bins <= 1'000'000; },
+                                            "whole number from 1 to 1000000"));
     app_.add_flag(both("writePulse"), o_.write_pulse, "Write a table of all pulses, too");
     app_.add_flag(both("writeMisses"), o_.write_misses, "Write a table of the pulses without echoes, too");
     app_.add_option(both("missesAt"), misses_at_, "Write a point for each pulse without echoes, at this range [m]")
@@ -205,7 +226,7 @@ class CommandLine {
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
     app_.add_flag(both("libraryPhysics"), o_.library_physics, "Physics of the library in place of that of HELIOS++");
     app_.add_flag(both("lightPaths"), o_.light_paths, "Follow light from mirrors, glass and water");
-    app_.add_flag("--colours", o_.colours, "Points in LAS with the colours of their surfaces");
+    app_.add_flag("--colours", o_.colours, "Points with the colours of their surfaces; not in text, KITTI and PTX");
     app_.add_flag(both("nearInfrared"), o_.near_infrared, "Colours with near infrared, by the spectra of surfaces");
     app_.add_option("--columns", o_.columns,
                     "Further columns of points, in every format and on the page: attributes of objects, or of " +
@@ -310,6 +331,31 @@ class CommandLine {
     return knows_why ? "" : "--apply needs a limit: expected --range-error, --intensity-error, --time or --memory";
   }
 
+  /// Problem of the format with other options; empty if there is none.
+  [[nodiscard]] std::string problem_of_format(const PointFormat& format) {
+    const std::string name = "--format " + o_.format;
+    const auto expected = [](const auto& has) { return ": expected --format " + names_of_formats(has); };
+    if (!format.missing.empty()) return name + " is left out of this build, missing: " + std::string(format.missing);
+    if (o_.las_1_0 && format.kind != PointKind::las) return "--las10 and " + name + ": expected --format las";
+    if (o_.colours && !format.colours)
+      return "--colours and " + name + ": it has no colours" + expected([](const auto& f) { return f.colours; });
+    if (!o_.columns.empty() && format.kind == PointKind::fixed)
+      return "--columns and " + name + ": it has no further columns" +
+             expected([](const auto& f) { return f.kind != PointKind::fixed; });
+    if (!scan_rate_.empty() && !format.in_scans)
+      return "--scanRate and " + name + ": it is not in scans" + expected([](const auto& f) { return f.in_scans; });
+    if (!scan_rate_.empty()) o_.scan_rate = *text::number_in<double>(scan_rate_);
+    if (!o_.kitti_classes.empty() && o_.format != "kitti") return "--kittiClasses needs --format kitti";
+    if (!waveform_bins_.empty() && !o_.write_waveform) return "--waveformBins needs --writeWaveform";
+    if (!waveform_bins_.empty() && format.waveform_arrays)
+      return "--waveformBins and " + name + ": its waveforms are arrays; another format has text";
+    if (!waveform_bins_.empty()) o_.waveform_bins = *text::number_in<std::uint32_t>(waveform_bins_);
+    if (o_.command == "forecast" && o_.format == "ptx")
+      return "forecast and --format ptx: the file has a line for each pulse, a size that is not forecast: expected "
+             "another format";
+    return "";
+  }
+
   /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is
   /// none.
   [[nodiscard]] std::string settle() {
@@ -327,9 +373,10 @@ class CommandLine {
     if (o_.las_1_0 && zip_ && o_.format == "las")
       o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     o_.colours = o_.colours || o_.near_infrared;
-    const bool is_las_file = o_.format == "las" || o_.format.ends_with("laz");
-    if (o_.colours && (!is_las_file || o_.las_1_0))
-      return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
+    const PointFormat& format = point_format(o_.format);
+    const bool is_las_file = format.kind == PointKind::las;
+    if (const std::string problem = problem_of_format(format); !problem.empty()) return problem;
+    if (o_.colours && o_.las_1_0) return "--colours need LAS 1.4, or another format than LAS";
     if (o_.colours && o_.format == "las" && o_.write_waveform)
       return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
@@ -360,7 +407,8 @@ class CommandLine {
       "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
-  std::string seed_, epsg_, misses_at_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;
+  std::string seed_, epsg_, misses_at_, scan_rate_, waveform_bins_, range_error_, intensity_error_, time_, memory_,
+      apply_to_, swallowed_;
   bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false,
        no_scene_writing_ = false;
   std::vector<CLI::Option*> of_forecast_, unused_;

@@ -4,12 +4,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <pulsecast/io/point_layout.hpp>
+#include <pulsecast/io/ptx.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
 
@@ -37,7 +40,10 @@ struct Options {
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< those given, then those of the program
   std::filesystem::path output = "output";
-  std::string format{};  ///< las, laz, copc.laz, xyz or xyz.gz
+  std::string format{};             ///< name in `point_formats`
+  std::string kitti_classes{};      ///< file of the labels of classes; "own": classes are labels; empty: default table
+  double scan_rate = 10;            ///< of formats in scans [Hz]
+  std::uint32_t waveform_bins = 0;  ///< samples in a row of waveforms; 0: as they are
   std::optional<std::uint64_t> seed{};
   unsigned threads = 0;  ///< 0: all
   std::string gps_start_time{};
@@ -60,6 +66,10 @@ struct Options {
   ForecastLimits forecast{};
   std::vector<std::string> notes{};  ///< accepted options without effect
 
+  using Sensor = std::function<pulsecast::Pose<pulsecast::frame::Instrument, pulsecast::frame::World>(pulsecast::Tick)>;
+  std::map<std::string, Sensor> sensors{};  ///< poses of the scanner by prefixes of files, once the scene is loaded
+  std::map<std::string, std::vector<pulsecast::io::PtxScan>> ptx_scans{};  ///< by such prefixes, for PTX
+  pulsecast::Vec3 origin{};                                                ///< of coordinates in single precision [m]
   bool adjusted_time = false;               ///< times are adjusted standard GPS time; else seconds of a GPS week
   pulsecast::PointColours point_colours{};  ///< of the scene, once it is loaded; empty unless `colours`
   std::vector<pulsecast::io::PointField> fields{};                  ///< `columns`, once the scene is loaded

@@ -16,9 +16,12 @@
 #include <pulsecast/shape/raster.hpp>
 
 #include "options.hpp"
+#include "point_files.hpp"
 
-/// Adds the data of a loaded scene that the writers need.
-void take_columns(Options& options, const pulsecast::helios::Simulation& simulation);
+/// Adds the data of a loaded survey that the writers need. Throws std::invalid_argument for a survey that the format
+/// cannot hold.
+void take_columns(Options& options, const pulsecast::helios::SurveySettings& survey,
+                  const pulsecast::helios::Simulation& simulation);
 
 /// Ids of the channels that have point files of their own; empty for one file.
 std::vector<std::string> file_channels(const Options& options, const pulsecast::helios::SurveySettings& survey);
@@ -37,6 +40,9 @@ std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder
 /// Settings for LAS, LAZ and COPC files.
 pulsecast::io::LasSettings las_settings(const Options& options, double start_time);
 
+/// Columns of formats of any columns.
+pulsecast::io::PointLayout point_layout(const Options& options);
+
 /// Further columns of text files.
 pulsecast::io::PointTextColumns text_columns(const Options& options);
 
@@ -54,7 +60,7 @@ class LegFiles {
   [[nodiscard]] bool reads_empty_shots() const noexcept;  ///< as the concept ChoosesShots describes
   void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
-  [[nodiscard]] std::uint64_t pulses_cut() const;  ///< see `LasWriter`; 0 for text
+  [[nodiscard]] LeftOut left_out() const;
 
  private:
   struct Inside;

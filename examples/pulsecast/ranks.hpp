@@ -13,6 +13,7 @@
 #include <pulsecast/run.hpp>
 
 #include "options.hpp"
+#include "point_files.hpp"
 #include "scene_sharing.hpp"
 
 /// Run of one leg, or of all legs of a strip: simulates them and writes `LegFiles`.
@@ -23,8 +24,8 @@ class LegRun {
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
   virtual pulsecast::RunSummary run(const pulsecast::AnySurvey& survey, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
-  /// Pulses with more returns than LAS numbers, once closed, on the first process.
-  [[nodiscard]] virtual std::uint64_t pulses_cut() const = 0;
+  /// What its files do not hold, once closed, on the first process.
+  [[nodiscard]] virtual LeftOut left_out() const = 0;
 };
 
 /// Processes of a survey: one, or those of `mpirun`. All do the same. The first one alone does unique tasks, such as

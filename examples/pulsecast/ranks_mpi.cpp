@@ -91,9 +91,10 @@ class SharedLegRun final : public LegRun {
     for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->close();
   }
 
-  [[nodiscard]] std::uint64_t pulses_cut() const override {
-    std::uint64_t sum = 0;
-    for (const auto& output : outputs_) sum += output->pulses_cut();
+  [[nodiscard]] LeftOut left_out() const override {
+    LeftOut sum;
+    for (const auto& output : outputs_)
+      sum.add({.pulses_cut = output->pulses_cut(), .classes_cut = output->classes_cut()});
     return sum;
   }
 

@@ -35,7 +35,7 @@ class OneLegRun final : public LegRun {
     return files_.reads_empty_shots();
   }  ///< as the concept ChoosesShots describes
   void close() override { files_.close(); }
-  [[nodiscard]] std::uint64_t pulses_cut() const override { return files_.pulses_cut(); }
+  [[nodiscard]] LeftOut left_out() const override { return files_.left_out(); }
 
  private:
   LegFiles files_;

@@ -59,6 +59,15 @@ bool is_run_name(std::string_view text) {
 
 std::string reason_of(int error) { return std::generic_category().message(error); }
 
+/// Size of a result: of a file, or of all files in a folder [byte].
+std::uintmax_t result_size(const fs::path& path) {
+  if (!fs::is_directory(path)) return fs::file_size(path);
+  std::uintmax_t sum = 0;
+  for (const auto& file : fs::recursive_directory_iterator(path))
+    if (file.is_regular_file()) sum += file.file_size();
+  return sum;
+}
+
 /// True if run `a` is later. Runs of the same second are numbered: the longer name is the later.
 bool is_later(const fs::path& a, const fs::path& b) {
   const auto key = [](const fs::path& path) {
@@ -204,7 +213,7 @@ void RunLog::add_files(const fs::path& folder, const std::vector<fs::path>& whol
   std::string lines;
   for (const fs::path& path : whole) {
     const std::string file = path.filename().string();
-    files[file] = fs::file_size(path);
+    files[file] = result_size(path);
     lines += "file " + std::to_string(files[file]) + ' ' + file + '\n';
   }
   const fs::path path = folder / name;
@@ -221,7 +230,8 @@ std::vector<fs::path> RunLog::damaged(const std::vector<fs::path>& results) cons
     const auto noted = files.find(path.filename().string());
     if (noted == files.end()) continue;
     std::error_code error;
-    const bool is_whole = fs::is_regular_file(path, error) && fs::file_size(path, error) == noted->second;
+    const bool is_whole =
+        (fs::is_regular_file(path, error) || fs::is_directory(path, error)) && result_size(path) == noted->second;
     if (!is_whole || error) all.push_back(path);
   }
   return all;

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "point_files.hpp"
+
+#include <algorithm>
+#include <concepts>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/copc.hpp>
+#include <pulsecast/io/gzip.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/kitti.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/laz.hpp>
+#include <pulsecast/io/ply.hpp>
+#include <pulsecast/io/ptx.hpp>
+#include <pulsecast/io/text_files.hpp>
+#ifdef PULSECAST_PCD
+#include <pulsecast/io/pcd.hpp>
+#endif
+#ifdef PULSECAST_NPZ
+#include <pulsecast/io/npz.hpp>
+#endif
+#ifdef PULSECAST_ROS
+#include <pulsecast/io/mcap.hpp>
+#include <pulsecast/io/point_cloud2.hpp>
+#include <pulsecast/io/scan_splitter.hpp>
+#endif
+
+#include "outputs.hpp"
+
+namespace fs = std::filesystem;
+using namespace pulsecast;
+
+void LeftOut::add(const LeftOut& other) {
+  pulses_cut += other.pulses_cut;
+  classes_cut += other.classes_cut;
+  echoes += other.echoes;
+  waveforms_cut += other.waveforms_cut;
+  samples_max = std::max(samples_max, other.samples_max);
+  for (const auto& [number, points] : other.unlabelled) unlabelled[number] += points;
+}
+
+namespace {
+
+template <class Writer>
+void count_left_out(const Writer& /*writer*/, LeftOut& /*sum*/) {}
+template <class Writer>
+concept WritesLas =
+    std::same_as<Writer, io::LasWriter> || std::same_as<Writer, io::LazWriter> || std::same_as<Writer, io::CopcWriter>;
+template <WritesLas Writer>
+void count_left_out(const Writer& writer, LeftOut& sum) {
+  sum.add({.pulses_cut = writer.pulses_cut(), .classes_cut = writer.classes_cut()});
+}
+void count_left_out(const io::KittiWriter& writer, LeftOut& sum) { sum.add({.unlabelled = writer.unlabelled()}); }
+void count_left_out(const io::PtxWriter& writer, LeftOut& sum) { sum.add({.echoes = writer.echoes_left_out()}); }
+
+/// Point file by a writer of the library.
+template <class Writer>
+class WrittenPoints final : public PointFile {
+ public:
+  template <class... Arguments>
+  explicit WrittenPoints(Arguments&&... arguments) : writer_(std::forward<Arguments>(arguments)...) {}
+  void operator()(const EchoBatch& batch) override { writer_(batch); }
+  void close() override { writer_.close(); }
+  void count(LeftOut& sum) const override { count_left_out(writer_, sum); }
+
+ private:
+  Writer writer_;
+};
+
+template <class Writer, class... Arguments>
+std::unique_ptr<PointFile> written(Arguments&&... arguments) {
+  return std::make_unique<WrittenPoints<Writer>>(std::forward<Arguments>(arguments)...);
+}
+
+/// Settings of points in the frame of the scanner, in scans.
+io::PointSettings in_scans(const Options& o, const std::string& prefix, double start_time) {
+  io::PointSettings points = o.points;
+  points.start_time = start_time;
+  points.sensor = o.sensors.at(prefix);
+  return points;
+}
+
+#ifdef PULSECAST_ROS
+/// Scans as messages of ROS 2 on the topic /points.
+class ScanMessages {
+ public:
+  ScanMessages(const fs::path& path, const Options& o, io::PointSettings points)
+      : bag_(path),
+        channel_(bag_.add_channel(
+            {.topic = "/points", .schema_name = io::point_cloud2_type, .schema = io::point_cloud2_definition})),
+        scans_(io::PointBuffer(point_layout(o), turned(std::move(points))), o.scan_rate,
+               [this](const io::PointBuffer& scan) {
+                 io::serialize_point_cloud2(scan, "scanner", message_);
+                 bag_.write(channel_, io::stamp_ns(scan), io::stamp_ns(scan), message_);
+               }) {}
+  void operator()(const EchoBatch& batch) { scans_(batch); }
+  void close() {
+    scans_.close();
+    bag_.close();
+  }
+
+ private:
+  static io::PointSettings turned(io::PointSettings points) {
+    points.axes = io::PointAxes::forward_left_up;
+    return points;
+  }
+
+  io::McapWriter bag_;
+  std::uint16_t channel_;
+  std::vector<std::byte> message_;
+  io::ScanSplitter scans_;
+};
+#endif
+
+/// Folder of a KITTI sequence in place of what a run before left.
+io::KittiSettings kitti_settings(const fs::path& path, const std::string& prefix, const Options& o, double start_time) {
+  std::error_code error;
+  fs::remove_all(path, error);
+  io::KittiSettings settings{.scan_rate = o.scan_rate, .points = in_scans(o, prefix, start_time)};
+  settings.points.distortion = io::MotionDistortion::removed;
+  settings.own_classes = o.kitti_classes == "own";
+  if (!o.kitti_classes.empty() && !settings.own_classes) settings.classes = read_kitti_classes(o.kitti_classes);
+  return settings;
+}
+
+}  // namespace
+
+std::unique_ptr<PointFile> point_file(const fs::path& path, const std::string& prefix, const Options& o,
+                                      double start_time) {
+  if (o.format == "copc.laz") return written<io::CopcWriter>(path, las_settings(o, start_time), o.threads);
+  if (o.format == "laz") return written<io::LazWriter>(path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return written<io::LasWriter>(path, las_settings(o, start_time));
+  if (o.format == "kitti") return written<io::KittiWriter>(path, kitti_settings(path, prefix, o, start_time));
+  if (o.format == "ptx") return written<io::PtxWriter>(path, o.ptx_scans.at(prefix));
+  io::PointSettings points = o.points;
+  points.start_time = start_time;
+  if (o.format == "ply")
+    return written<io::PlyWriter>(path, io::PlySettings{.layout = point_layout(o), .points = points});
+#ifdef PULSECAST_NPZ
+  if (o.format == "npz")
+    return written<io::NpzWriter>(path, io::NpzSettings{.layout = point_layout(o), .points = points});
+#endif
+#ifdef PULSECAST_PCD
+  points.origin = o.origin;
+  if (o.format == "pcd")
+    return written<io::PcdWriter>(path, io::PcdSettings{.layout = point_layout(o), .points = points});
+#endif
+#ifdef PULSECAST_ROS
+  if (o.format == "mcap") return written<ScanMessages>(path, o, in_scans(o, prefix, start_time));
+#endif
+  const io::TextFileSettings text{.start_time = start_time};
+  if (o.format == "xyz.gz") return written<io::XyzWriter>(io::gzip_file(path), text, text_columns(o));
+  return written<io::XyzWriter>(path, text, text_columns(o));
+}
+
+io::KittiClasses read_kitti_classes(const fs::path& path) {
+  io::KittiClasses classes;
+  io::InputFile file(path, "rows of a class and its label");
+  while (const std::optional<std::string_view> line = file.take_line()) {
+    std::vector<std::string_view> words;
+    for (std::string_view rest = line->substr(0, line->find('#')); !rest.empty();) {
+      const std::size_t begin = rest.find_first_not_of(" \t\r,:");
+      if (begin == rest.npos) break;
+      const std::size_t end = std::min(rest.find_first_of(" \t\r,:", begin), rest.size());
+      words.push_back(rest.substr(begin, end - begin));
+      rest.remove_prefix(end);
+    }
+    if (words.empty()) continue;
+    const auto number = [&](std::size_t k) { return text::number_in<std::uint16_t>(std::string(words[k])); };
+    if (words.size() != 2 || !number(0) || !number(1))
+      file.fail_at_line("has ", text::quoted(*line), ": expected a class and its label, from 0 to 65535");
+    classes[*number(0)] = *number(1);
+  }
+  return classes;
+}
