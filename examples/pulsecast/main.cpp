@@ -150,6 +150,7 @@ class Session {
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
     print_notes(*simulation);
+    take_columns(options_, survey_, *simulation);  // may refuse the format, before there is a folder
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
@@ -245,6 +246,9 @@ class Session {
     const double begin = log_.start_time,
                  end = begin + simulation.repetitions() * simulation.compiled().source.duration().seconds();
     options_.adjusted_time = simulation.compiled().clock_start && !(begin >= 0 && begin <= week);
+    if (options_.format == "mcap" && !(begin >= 0 && end <= 2'147'483'647))
+      throw std::invalid_argument("--format mcap: times from " + text::to_text(begin) + " to " + text::to_text(end) +
+                                  " s: expected seconds from 0 to 2^31 - 1, as ROS has; other formats have any");
     if (!options_.format.starts_with("las") && !options_.format.ends_with("laz")) return;
     std::ostringstream text;
     text << std::fixed << "times from " << begin << " to " << end << " s ";
@@ -285,8 +289,8 @@ class Session {
         simulation = simulation->repetition(r);
         if (note_inputs(inputs)) log_.write(folder);
         print_notes(*simulation);
+        take_columns(options_, survey_, *simulation);
       }
-      take_columns(options_, survey_, *simulation);
       all.add(play(*simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <concepts>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -123,8 +125,7 @@ io::KittiSettings kitti_settings(const fs::path& path, const std::string& prefix
   fs::remove_all(path, error);
   io::KittiSettings settings{.scan_rate = o.scan_rate, .points = in_scans(o, prefix, start_time)};
   settings.points.distortion = io::MotionDistortion::removed;
-  settings.own_classes = o.kitti_classes == "own";
-  if (!o.kitti_classes.empty() && !settings.own_classes) settings.classes = read_kitti_classes(o.kitti_classes);
+  if (!o.kitti_classes.empty()) settings.classes = read_kitti_classes(o.kitti_classes);
   return settings;
 }
 
@@ -160,6 +161,11 @@ std::unique_ptr<PointFile> point_file(const fs::path& path, const std::string& p
 
 io::KittiClasses read_kitti_classes(const fs::path& path) {
   io::KittiClasses classes;
+  if (path == "own") {
+    for (std::uint32_t number = 0; number <= std::numeric_limits<std::uint16_t>::max(); ++number)
+      classes.emplace_hint(classes.end(), static_cast<std::uint16_t>(number), static_cast<std::uint16_t>(number));
+    return classes;
+  }
   io::InputFile file(path, "rows of a class and its label");
   while (const std::optional<std::string_view> line = file.take_line()) {
     std::vector<std::string_view> words;

@@ -38,5 +38,5 @@ class PointFile {
 std::unique_ptr<PointFile> point_file(const std::filesystem::path& path, const std::string& prefix,
                                       const Options& options, double start_time);
 
-/// Table of a text file: class and label in each row. Throws a `FileError`.
+/// Table of a text file, class and label in each row; or of all classes as they are, for "own". Throws a `FileError`.
 pulsecast::io::KittiClasses read_kitti_classes(const std::filesystem::path& path);

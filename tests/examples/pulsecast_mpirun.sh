@@ -47,6 +47,13 @@ same 2 1 xyz --writeWaveform --writeMisses --missesAt 50
 same 3 1 xyz.gz --splitByChannel
 grep -q 'of its own' notes && fail "the scene is not shared: $(cat notes)"
 
+# Formats that one process writes are refused by name, before there is a folder.
+for format in ply pcd npz kitti mcap ptx; do
+  "${launch[@]}" -n 2 "$program" "$survey" --format $format --output refused > told 2>&1 && fail "$format was written by two processes"
+  grep -q "format $format needs all points in one process: expected --format xyz, xyz.gz, las or laz under mpirun" told || fail "$format: $(cat told)"
+done
+[ -e refused ] && fail "what was refused left a folder"
+
 # What is wrong is said once.
 "${launch[@]}" -n 3 "$program" nowhere.xml > told 2>&1 && fail "a survey that is not there was simulated"
 [ "$(grep -c 'error: nowhere.xml' told)" = 1 ] || fail "an error should be told once: $(cat told)"

@@ -73,6 +73,17 @@ find interrupted -name '*_points.xyz' -exec awk 'NF != columns && columns { exit
 run interrupted xyz --resume || fail "a run that was interrupted could not be resumed"
 [ "$(sums interrupted)" = "${expected[xyz]}" ] || fail "an interrupted run is not what it should be when resumed"
 
+# Formats that are folders, or that end with a summary, are resumed as well.
+for format in kitti npz mcap; do
+  run whole_$format $format || fail "the run that is let alone failed"
+  for ((n = 0; n < 20; ++n)); do
+    killed $((RANDOM % duration + 1)) killed_$format $format && [ -n "$(find killed_$format -name unfinished.txt 2> /dev/null)" ] && break
+    rm -rf killed_$format
+  done
+  run killed_$format $format --resume || fail "$format could not be resumed"
+  [ "$(sums killed_$format)" = "$(sums whole_$format)" ] || fail "resumed, $format is not what it should be"
+done
+
 # What would go wrong if the state were, and that these comparisons would tell.
 # One state is needed: a run killed as it goes from one survey to the next may leave two.
 until killed $((RANDOM % duration + 1)) broken las && state=$(find broken -name unfinished.txt) && [ "$(grep -c . <<< "$state")" = 1 ]; do

@@ -101,7 +101,9 @@ TEST_CASE("points of classes without an entry are counted by class, and classes 
   by_table(scans.batch());
   by_table.close();
   CHECK((by_table.unlabelled() == std::map<std::uint16_t, std::uint64_t>{{64, 1}, {65, 1}}));
-  KittiWriter own(folder / "01", {.own_classes = true, .points = {.sensor = facing_west}});
+  KittiSettings settings{.points = {.sensor = facing_west}};
+  for (std::uint16_t own = 0; own < 100; ++own) settings.classes[own] = own;
+  KittiWriter own(folder / "01", settings);
   own(scans.batch());
   own.close();
   CHECK(own.unlabelled().empty());

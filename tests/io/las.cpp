@@ -676,11 +676,11 @@ TEST_CASE("every waveform reads back, and position plus location times direction
     const LasFile file = read_las(folder / "points.las");
     const support::WdpFile packets = support::read_wdp(folder / "points.wdp");
     REQUIRE(file.points.size() == survey.echoes.size());
-    std::set<unsigned> used, described;
+    std::set<unsigned> in_points, described;
     for (const LasPoint& p : file.points)
-      if (p.wave.descriptor != 0) used.insert(p.wave.descriptor);
+      if (p.wave.descriptor != 0) in_points.insert(p.wave.descriptor);
     for (const support::LasWaveDescriptor& d : file.descriptors) described.insert(d.index);
-    CHECK((used == described && file.descriptors.size() == used.size()));
+    CHECK((in_points == described && file.descriptors.size() == in_points.size()));
     for (const support::LasWaveDescriptor& d : file.descriptors) CHECK((d.bits == 16 && d.spacing_ps == 250));
     std::size_t i = 0;
     std::uint64_t used = 60;

@@ -39,7 +39,6 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
   KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
-  bool own_classes = false;                ///< classes of the echoes are labels, without the table
   PointSettings points{};                  ///< pose of the sensor (required), and distortion
 
   void validate() const {
@@ -65,7 +64,6 @@ class KittiWriter {
   KittiWriter(std::filesystem::path folder, const KittiSettings& settings)
       : folder_(std::move(folder)),
         classes_(settings.classes),
-        own_classes_(settings.own_classes),
         splitter_(PointBuffer(layout(), in_format(validated(settings).points)), settings.scan_rate,
                   [this](const PointBuffer& scan) { write(scan); }),
         times_(OutputFile(new_folder() / "times.txt")),
@@ -125,8 +123,11 @@ class KittiWriter {
       std::memcpy(point.data(), scan.records().data() + i * scan.layout().size, sizeof point);
       point[3] = point[3] > 0 ? std::min(point[3], 1.0F) : 0;
       points.write(std::as_bytes(std::span(point)));
-      const std::uint32_t class_label = label_of(static_cast<std::uint16_t>(scan.number(i, fields[4])));
-      const std::uint32_t label = static_cast<std::uint32_t>(scan.number(i, fields[5])) << 16 | class_label;
+      const auto of_echo = static_cast<std::uint16_t>(scan.number(i, fields[4]));
+      const auto known = classes_.find(of_echo);
+      if (known == classes_.end() && of_echo > 1) ++unlabelled_[of_echo];
+      const auto instance = static_cast<std::uint32_t>(scan.number(i, fields[5]));
+      const std::uint32_t label = instance << 16 | (known == classes_.end() ? 0 : known->second);
       labels.write(std::as_bytes(std::span(&label, 1)));
     }
     points.commit();
@@ -135,14 +136,6 @@ class KittiWriter {
     if (!first_start_) first_start_ = start;
     times_.reals(9, start - *first_start_).end_row();
     write_pose(scan.settings().sensor(scan.scan_start()));
-  }
-
-  [[nodiscard]] std::uint16_t label_of(std::uint16_t of_echo) {
-    if (own_classes_) return of_echo;
-    const auto known = classes_.find(of_echo);
-    if (known != classes_.end()) return known->second;
-    if (of_echo > 1) ++unlabelled_[of_echo];
-    return 0;
   }
 
   void write_pose(const Pose<frame::Instrument, frame::World>& sensor) {
@@ -159,7 +152,6 @@ class KittiWriter {
 
   std::filesystem::path folder_;
   KittiClasses classes_;
-  bool own_classes_;
   std::map<std::uint16_t, std::uint64_t> unlabelled_;
   ScanSplitter splitter_;
   TextOutput times_, poses_;

@@ -25,6 +25,20 @@ struct NpzSettings {
 
 namespace detail {
 
+/// Header of an array of one dimension, padded to 64 bytes. Source: NumPy, numpy.lib.format, 1.0.
+[[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count) {
+  constexpr std::array<std::string_view, 11> types{"",    "|i1", "|u1", "<i2", "<u2", "<i4",
+                                                   "<u4", "<f4", "<f8", "<i8", "<u8"};
+  std::string text = text::joined({"{'descr': '", types[static_cast<std::size_t>(type)],
+                                   "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
+  constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
+  text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
+  text.back() = '\n';
+  const auto length = static_cast<std::uint16_t>(text.size());
+  const std::array end{static_cast<char>(length & 0xFF), static_cast<char>(length >> 8)};
+  return text::joined({{"\x93NUMPY\x01\x00", 8}, {end.data(), 2}, text});
+}
+
 /// Zip file without compression and without times, so that equal content gives equal bytes.
 class StoredZip {
  public:
@@ -37,11 +51,6 @@ class StoredZip {
   }
   StoredZip(const StoredZip&) = delete;
   StoredZip& operator=(const StoredZip&) = delete;
-
-  void add(const std::string& name, std::string_view head, std::span<const std::byte> body) {
-    begin(name, head, body.size());
-    put(body);
-  }
 
   /// Begins an entry of a head and `size` bytes, to be passed to `put`.
   void begin(const std::string& name, std::string_view head, std::uint64_t size) {
@@ -59,6 +68,16 @@ class StoredZip {
       const la_ssize_t written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
       if (written <= 0) check(ARCHIVE_FATAL);
       bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  }
+
+  /// Adds an array for each column.
+  void add(const PointLayout& layout, const FieldColumns& columns) {
+    for (std::size_t k = 0; k < layout.fields.size(); ++k) {
+      const auto& [name, type, column, scale, offset] = layout.fields[k];
+      const std::vector<std::byte>& numbers = columns.all()[k];
+      begin(name + ".npy", npy_header(type, numbers.size() / size_of(type)), numbers.size());
+      put(numbers);
     }
   }
 
@@ -98,22 +117,6 @@ class StoredZip {
   std::unique_ptr<archive_entry, Free> entry_{archive_entry_new()};
 };
 
-/// Header of an array of `count` elements, or rows of `columns` of them, padded to 64 bytes.
-/// Source: NumPy, numpy.lib.format, 1.0.
-[[nodiscard]] inline std::string npy_header(NumberType type, std::uint64_t count, unsigned columns = 0) {
-  constexpr std::array<std::string_view, 11> types{"",    "|i1", "|u1", "<i2", "<u2", "<i4",
-                                                   "<u4", "<f4", "<f8", "<i8", "<u8"};
-  std::string text =
-      text::joined({"{'descr': '", types[static_cast<std::size_t>(type)], "', 'fortran_order': False, 'shape': (",
-                    std::to_string(count), ",", columns > 0 ? std::to_string(columns) : "", "), }"});
-  constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
-  text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
-  text.back() = '\n';
-  const auto length = static_cast<std::uint16_t>(text.size());
-  const std::array end{static_cast<char>(length & 0xFF), static_cast<char>(length >> 8)};
-  return text::joined({{"\x93NUMPY\x01\x00", 8}, {end.data(), 2}, text});
-}
-
 }  // namespace detail
 
 /// Writes points as NPZ for NumPy: for each field an array of one dimension, `name.npy`, in a zip
@@ -136,12 +139,7 @@ class NpzWriter {
   /// Writes the arrays, and gives the file its name. Throws a `FileError`.
   void close() {
     detail::StoredZip zip(file_);
-    for (std::size_t k = 0; k < points_.layout().fields.size(); ++k) {
-      const PointField& field = points_.layout().fields[k];
-      const std::vector<std::byte>& column = columns_.all()[k];
-      const std::size_t count = column.size() / size_of(field.type);
-      zip.add(field.name + ".npy", detail::npy_header(field.type, count), column);
-    }
+    zip.add(points_.layout(), columns_);
     zip.close();
     file_.commit();
   }
@@ -153,12 +151,11 @@ class NpzWriter {
 };
 static_assert(EchoSink<NpzWriter>);
 
-/// Writes waveforms as NPZ, with or without echoes: pulse k has `samples[first[k]:][:count[k]]`.
-/// Arrays: `samples` [W] of all pulses; of each pulse, `first` and `count` of its samples, `pulse`,
-/// its slot, `time` of emission by the clock [s], `start`, the two-way time of its first sample, and
-/// `interval` of samples [s], `origin` [m] and unit `direction` as rows of three. Samples are on the
-/// disk until `close()`, the rest in memory, 96 bytes a pulse. `close()` completes the file: see
-/// `OutputFile`. Source: as `NpzWriter`.
+/// Writes waveforms as NPZ, with or without echoes: pulse k has `samples[first[k]:][:count[k]]` [W].
+/// Further arrays of a number a pulse: `pulse`, its slot; `time` of emission by the clock, `start`,
+/// the two-way time of its first sample, and `interval` of samples [s]; `origin_x`, y, z [m]; unit
+/// `direction_x`, y, z. Samples are on the disk until `close()`, the rest in memory, 100 bytes a
+/// pulse. `close()` completes the file: see `OutputFile`. Source: as `NpzWriter`.
 class WaveformNpzWriter {
  public:
   /// `start_time` is the clock time at tick 0 [s]. @throws SettingError @throws FileError
@@ -171,14 +168,23 @@ class WaveformNpzWriter {
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
       if (shot.samples == 0) continue;
-      first_.push_back(static_cast<std::int64_t>(samples_.position() / sizeof(float)));
-      count_.push_back(static_cast<std::int32_t>(shot.samples));
-      pulse_.push_back(static_cast<std::int64_t>(shot.index));
-      time_.push_back(start_time_ + shot.tick.seconds());
-      start_.push_back(shot.waveform_start);
-      interval_.push_back(batch.sample_interval);
-      origin_.push_back(shot.origin);
-      direction_.push_back(shot.direction);
+      const Vec3 &at = shot.origin, &to = shot.direction;
+      const auto first = static_cast<double>(samples_.position() / sizeof(float));
+      const std::array numbers{first,
+                               static_cast<double>(shot.samples),
+                               static_cast<double>(shot.index),
+                               start_time_ + shot.tick.seconds(),
+                               shot.waveform_start,
+                               batch.sample_interval,
+                               at.x,
+                               at.y,
+                               at.z,
+                               to.x,
+                               to.y,
+                               to.z};
+      for (std::size_t k = 0; k < numbers.size(); ++k)
+        (k < 3 ? detail::store_number<std::int64_t> : detail::store_number<double>)(numbers[k], record_.data() + 8 * k);
+      columns_.add(record_);
       samples_.write(std::as_bytes(batch.waveform_of(shot)));
     }
   }
@@ -187,18 +193,7 @@ class WaveformNpzWriter {
   /// Writes the arrays, and gives the file its name. @throws FileError
   void close() {
     detail::StoredZip zip(file_);
-    const auto add = [&](const char* name, NumberType type, const auto& values, unsigned columns = 0) {
-      zip.add(text::joined({name, ".npy"}), detail::npy_header(type, values.size(), columns),
-              std::as_bytes(std::span(values)));
-    };
-    add("first", NumberType::int64, first_);
-    add("count", NumberType::int32, count_);
-    add("pulse", NumberType::int64, pulse_);
-    add("time", NumberType::float64, time_);
-    add("start", NumberType::float64, start_);
-    add("interval", NumberType::float64, interval_);
-    add("origin", NumberType::float64, origin_, 3);
-    add("direction", NumberType::float64, direction_, 3);
+    zip.add(layout_, columns_);
     const std::uint64_t size = samples_.position();
     zip.begin("samples.npy", detail::npy_header(NumberType::float32, size / sizeof(float)), size);
     std::vector<std::byte> some;
@@ -212,12 +207,19 @@ class WaveformNpzWriter {
   }
 
  private:
+  [[nodiscard]] static PointLayout layout() {
+    std::vector<PointField> fields;
+    for (const char* name : {"first", "count", "pulse", "time", "start", "interval", "origin_x", "origin_y", "origin_z",
+                             "direction_x", "direction_y", "direction_z"})
+      fields.push_back({name, fields.size() < 3 ? NumberType::int64 : NumberType::float64});
+    return PointLayout::packed(fields);
+  }
+
   double start_time_;
   OutputFile file_, samples_;
-  std::vector<std::int64_t> first_, pulse_;
-  std::vector<std::int32_t> count_;
-  std::vector<double> time_, start_, interval_;
-  std::vector<Vec3> origin_, direction_;
+  PointLayout layout_ = layout();
+  detail::FieldColumns columns_{layout_};
+  std::vector<std::byte> record_ = std::vector<std::byte>(layout_.size);  // of a pulse
 };
 static_assert(EchoSink<WaveformNpzWriter>);
 

@@ -67,7 +67,7 @@ class PcdWriter {
   explicit PcdWriter(std::filesystem::path path, const PcdSettings& settings = {})
       : points_(validated(settings).layout.without_int64(), settings.points),
         encoding_(settings.encoding),
-        origin_(comment(settings.points.origin)),
+        origin_(settings.points.origin),
         columns_(points_.layout()),
         file_(std::move(path)) {
     file_.write(header());
@@ -123,11 +123,6 @@ class PcdWriter {
                                   " bytes; without compression, there is no limit"}));
   }
 
-  [[nodiscard]] static std::string comment(const Vec3& origin) {
-    if (origin == Vec3{}) return "";
-    return text::message("\n# origin of x, y, z [m]: ", origin.x, " ", origin.y, " ", origin.z);
-  }
-
   /// Header for the points so far, of equal length for any number.
   [[nodiscard]] std::string header() const {
     constexpr std::array<std::string_view, 9> types{"", "I", "U", "I", "U", "I", "U", "F", "F"};
@@ -140,15 +135,17 @@ class PcdWriter {
       counts.append(" 1");
     }
     const detail::CountText points(count_);
-    return text::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks, origin_,
-                         "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE", letters, "\nCOUNT", counts,
-                         "\nWIDTH ", points.digits, "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ", points.digits,
-                         "\nDATA ", encodings[static_cast<std::size_t>(encoding_)], "\n"});
+    const std::string at = text::message("\n# origin of x, y, z [m]: ", origin_.x, " ", origin_.y, " ", origin_.z);
+    return text::joined({"# .PCD v0.7 - Point Cloud Data file format", points.blanks, points.blanks,
+                         origin_ == Vec3{} ? "" : at, "\nVERSION 0.7\nFIELDS", names, "\nSIZE", sizes, "\nTYPE",
+                         letters, "\nCOUNT", counts, "\nWIDTH ", points.digits,
+                         "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS ", points.digits, "\nDATA ",
+                         encodings[static_cast<std::size_t>(encoding_)], "\n"});
   }
 
   detail::PackedPoints points_;
   PcdEncoding encoding_;
-  std::string origin_;            // comment in the header
+  Vec3 origin_;
   detail::FieldColumns columns_;  // of a compressed file
   OutputFile file_;
   TextRow row_;

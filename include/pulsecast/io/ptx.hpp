@@ -4,6 +4,7 @@
 #define PULSECAST_IO_PTX_HPP
 
 #include <algorithm>
+#include <array>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>
@@ -37,37 +38,35 @@ struct PtxScan {
 /// row of each column: x y z [m] in the frame of the scanner, and reflectance up to 1, with 6
 /// decimals. The point is the first echo of the slot; without one the line is `0 0 0 0.5`. Echoes of
 /// slots without a place, and further ones of a slot, are counted and left out.
-/// `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: 12 lines of header;
+/// `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: ten lines of header;
 /// rows of the 4 by 4 matrix are the images of the axes, and the translation.
 class PtxWriter {
  public:
   /// Scans are in ascending order of slots. @throws SettingError, also for others @throws FileError
   PtxWriter(std::filesystem::path path, std::vector<PtxScan> scans)
       : scans_(std::move(scans)), text_(OutputFile(std::move(path))) {
-    PulseIndex end = 0;
-    for (const PtxScan& scan : scans_) {
+    for (PulseIndex end = 0; const PtxScan& scan : scans_) {
       require_within("PtxScan::first", static_cast<double>(validated(scan).first), static_cast<double>(end), 1e18, "");
       end = scan.end;
     }
+    begin_scan();
   }
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
       while (scan_ < scans_.size() && shot.index >= scans_[scan_].end) end_scan();
-      const std::uint64_t cell = scan_ < scans_.size() ? cell_of(shot.index) : none;
-      if (cell == none) {
-        left_out_ += shot.echoes;
-        continue;
-      }
-      fill(cell);
+      left_out_ += shot.echoes;
+      if (scan_ == scans_.size() || shot.index < scans_[scan_].first) continue;
+      const PtxScan& scan = scans_[scan_];
+      const std::uint64_t at = shot.index - scan.first + scan.before, row = at % scan.line_slots;
+      if (row >= scan.rows) continue;
+      fill(at / scan.line_slots * scan.rows + row);
       const Echo& echo = batch.echoes_of(shot).front();
-      const double reflectance = echo.reflectance;
-      text_.vector("the position of an echo", scanner_from_world_.point(point_of(shot, echo)), 6);
-      text_.reals(6, reflectance > 0 ? std::min(reflectance, 1.0) : 0.0);
-      text_.end_row();
-      ++written_;
-      left_out_ += shot.echoes - 1;
+      text_.vector("the position of an echo", scan.scanner.inverse().point(point_of(shot, echo)), 6);
+      text_.reals(6, echo.reflectance > 0 ? std::min(double{echo.reflectance}, 1.0) : 0.0).end_row();
+      ++lines_;
+      --left_out_;
     }
   }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
@@ -82,52 +81,37 @@ class PtxWriter {
   }
 
  private:
-  static constexpr std::uint64_t none = ~std::uint64_t{0};
-
-  /// Number of the text line of a slot of this scan; `none` outside its rows.
-  [[nodiscard]] std::uint64_t cell_of(PulseIndex slot) const noexcept {
-    const PtxScan& scan = scans_[scan_];
-    if (slot < scan.first) return none;
-    const std::uint64_t at = slot - scan.first + scan.before, row = at % scan.line_slots;
-    return row < scan.rows ? at / scan.line_slots * scan.rows + row : none;
-  }
-
-  /// Begins the scan, and writes lines without a point up to a cell.
-  void fill(std::uint64_t cell) {
-    if (!begun_) begin_scan();
-    for (; written_ < cell; ++written_) {
-      text_.wholes(0, 0, 0).word("0.5");
-      text_.end_row();
-    }
-  }
-
+  /// Writes the header of the scan, if there is one.
   void begin_scan() {
+    if (scan_ == scans_.size()) return;
     const PtxScan& scan = scans_[scan_];
-    const Vec3 &position = scan.scanner.position, x = scan.scanner.direction(axis::right);
-    const Vec3 y = scan.scanner.direction(axis::forward), z = scan.scanner.direction(axis::up);
-    const auto row = [&](const Vec3& v) -> TextOutput& { return text_.reals(9, v.x, v.y, v.z); };
     text_.wholes(scan.columns()).end_row();
     text_.wholes(scan.rows).end_row();
-    for (const Vec3& v : {position, x, y, z}) row(v).end_row();
-    for (const Vec3& v : {x, y, z}) row(v).wholes(0).end_row();
-    row(position).wholes(1).end_row();
-    scanner_from_world_ = scan.scanner.inverse();
-    begun_ = true;
+    const auto row = [&](const Vec3& v) -> TextOutput& { return text_.reals(9, v.x, v.y, v.z); };
+    const std::array axes{scan.scanner.direction(axis::right), scan.scanner.direction(axis::forward),
+                          scan.scanner.direction(axis::up)};
+    row(scan.scanner.position).end_row();
+    for (const Vec3& v : axes) row(v).end_row();
+    for (const Vec3& v : axes) row(v).wholes(0).end_row();
+    row(scan.scanner.position).wholes(1).end_row();
+  }
+
+  /// Writes lines without a point up to a number of lines.
+  void fill(std::uint64_t lines) {
+    for (; lines_ < lines; ++lines_) text_.wholes(0, 0, 0).word("0.5").end_row();
   }
 
   void end_scan() {
     fill(scans_[scan_].columns() * scans_[scan_].rows);
     ++scan_;
-    written_ = 0;
-    begun_ = false;
+    lines_ = 0;
+    begin_scan();
   }
 
   std::vector<PtxScan> scans_;
   TextOutput text_;
-  Pose<frame::World, frame::Instrument> scanner_from_world_{};
-  std::size_t scan_ = 0;                      // number of the scan
-  std::uint64_t written_ = 0, left_out_ = 0;  // lines of the scan; echoes
-  bool begun_ = false;                        // true if the scan has its header
+  std::size_t scan_ = 0;                    // number of the scan
+  std::uint64_t lines_ = 0, left_out_ = 0;  // lines of the scan; echoes
 };
 static_assert(EchoSink<PtxWriter>);
 

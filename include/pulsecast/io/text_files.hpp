@@ -20,10 +20,7 @@ struct TextFileSettings {
   /// Samples of each waveform: shorter ones end with zeros, longer ones are cut; 0: as they are
   std::uint32_t waveform_samples = 0;
 
-  void validate() const {
-    require_finite("TextFileSettings::start_time", start_time, "s");
-    require_within("TextFileSettings::waveform_samples", waveform_samples, 0, 1e6, "");
-  }
+  void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
 namespace detail {

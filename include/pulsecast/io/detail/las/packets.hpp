@@ -95,10 +95,6 @@ class LasPackets {
     bytes.resize(descriptors_size);
     return bytes;
   }
-  /// Number of these records.
-  [[nodiscard]] static std::uint32_t records(const Used& used) noexcept {
-    return static_cast<std::uint32_t>(std::min<std::size_t>(used.count() + 1, descriptor_count));
-  }
 
   /// Finishes the file and gives it its name.
   void close() {

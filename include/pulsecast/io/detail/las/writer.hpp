@@ -242,7 +242,7 @@ LasFileWriter<Records>::LasFileWriter(std::filesystem::path path, LasSettings ho
   descriptors_at_ = file_.position();
   if (packets_) {
     file_.write(packets_->descriptors({}));
-    variable_records_ += LasPackets::records({});
+    ++variable_records_;
   }
   write_descriptor(Records::descriptor(layout()));
   if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // as `LasLayout`
@@ -265,7 +265,9 @@ void LasFileWriter<Records>::close() {
     records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
   records_.finish(file_, encoder_);
   const LasPackets::Used& used = encoder_.tally().descriptors;
-  if (packets_) variable_records_ += LasPackets::records(used) - LasPackets::records({});
+  if (packets_)  // without the one in the room of the others, if there are none
+    variable_records_ +=
+        static_cast<std::uint32_t>(std::min<std::size_t>(used.count(), LasPackets::descriptor_count - 1));
   write_header();
   if (packets_) {
     file_.overwrite(descriptors_at_, packets_->descriptors(used));
