@@ -3,42 +3,28 @@
 #ifndef PULSECAST_IO_REFERENCE_HPP
 #define PULSECAST_IO_REFERENCE_HPP
 
+#include <cmath>
 #include <memory>
 
-#include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/error.hpp>
+#include <proj.h>
+
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 
 /// Reference systems by PROJ, without network. Each call has a context of its own.
 namespace PULSECAST_NAMESPACE::io {
 
-/// Completes a reference by its text, or else by its codes, which may be that of a compound system: units, codes, and
-/// WKT 1 as LAS files take it, which holds the vertical system, too. Heights are in metres unless there is one.
-/// Source: OGC 01-009; LAS 1.4 R15, Coordinate Reference System Representation; PROJ 9, `PJ_WKT1_GDAL`.
-/// `name` is that of a text in messages, such as its file.
+/// Reference by a text, or else by codes, also of a compound system, with its units, codes and WKT 1 for LAS. Heights
+/// are in metres without a vertical system. `name` is that of a text in messages, such as its file. Source: OGC 01-009.
 /// @throws FileError for a system that PROJ does not know, that is not projected, whose axes do not go east and north
 /// or whose heights go down, and that WKT 1 cannot express; if PROJ finds no database
 [[nodiscard]] SpatialReference complete_reference(const SpatialReference& given, const std::string& name = {});
 
-/// Projector from a geographic system of two axes to the horizontal system of `to`, both by EPSG codes; `from` 0 is the
-/// geographic system that `to` stands on. The operation is chosen for the first point. Copies share it, so that each
-/// thread needs a projector of its own.
-/// @throws FileError for other systems, a ballpark operation, one that errs by more than 0.1 m, or whose grid is
-/// missing; the projector also throws for a point outside the area of the operation
+/// Projector from latitude and longitude in `from`, or for 0 in the datum of `to`, to the map `to`, by EPSG codes. The
+/// first point chooses the operation. Copies share it: each thread needs a projector of its own.
+/// @throws FileError for other systems. So does the projector outside the area of the operation, and for one that is
+/// ballpark, errs by more than 0.1 m or lacks its grid
 [[nodiscard]] MapProjector map_projector(std::uint16_t from, std::uint16_t to);
-
-}  // namespace PULSECAST_NAMESPACE::io
-
-#if PULSECAST_DEFINES(IO_REFERENCE)
-#include <array>
-#include <cmath>
-
-#include <proj.h>
-
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/units.hpp>
-
-namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -64,14 +50,13 @@ class Proj {
 
   [[noreturn]] void fail(const auto&... problem) const { throw FileError(name_, "", text::message(problem...)); }
 
-  /// System of a definition, as in "EPSG:25832+7837", or of a well-known text.
   [[nodiscard]] ProjObject system(const std::string& definition, std::string_view otherwise) const {
     ProjObject found(proj_create(*this, definition.c_str()));
     if (!found || proj_is_crs(found.get()) == 0) fail(otherwise);
     return found;
   }
 
-  /// Horizontal or vertical system, 0 or 1, of a compound one, or the system itself; without its way to WGS 84.
+  /// Horizontal or vertical system, 0 or 1, of a compound one, or the system; without its way to WGS 84.
   [[nodiscard]] ProjObject part(const PJ* whole, int index) const {
     ProjObject found(proj_get_type(whole) == PJ_TYPE_COMPOUND_CRS ? proj_crs_get_sub_crs(*this, whole, index)
                                                                   : proj_clone(*this, whole));
@@ -108,12 +93,11 @@ class Proj {
       fail("is in degrees (a geographic reference system): expected a projected one");
     if (type != PJ_TYPE_PROJECTED_CRS)
       fail("is not a projected reference system, alone or with a vertical one: expected such a one");
-    const std::array axes{axis(system.get(), 0), axis(system.get(), 1)};
-    const auto along = [](const Axis& one) { return one.direction == "east" || one.direction == "north"; };
-    const bool is_polar = axes[0].direction == axes[1].direction && axes[0].direction != "west";  // along two meridians
-    if (!is_polar && !(along(axes[0]) && along(axes[1])))
-      fail("has axes to the ", axes[0].direction, " and ", axes[1].direction,
-           ": expected a system to the east and north");
+    const std::string first = axis(system.get(), 0).direction, second = axis(system.get(), 1).direction;
+    const bool is_polar = first == second && first != "west";  // along two meridians
+    const auto is_usual = [](const std::string& way) { return way == "east" || way == "north"; };
+    if (!is_polar && !(is_usual(first) && is_usual(second)))
+      fail("has axes to the ", first, " and ", second, ": expected a system to the east and north");
     return system;
   }
 
@@ -181,7 +165,7 @@ class ProjProjector {
                                                         longitude + nearby, latitude + nearby);
     const std::unique_ptr<PJ_OBJ_LIST, ProjDeleter> all(
         proj_create_operations(proj_, from_.get(), to_.get(), search.get()));
-    std::string why;
+    std::string why, grid;
     for (int i = 0; all && i < proj_list_get_count(all.get()); ++i) {
       ProjObject one(proj_list_get(proj_, all.get(), i));
       const double error = proj_coordoperation_get_accuracy(proj_, one.get());  // below 0: unknown
@@ -195,14 +179,13 @@ class ProjProjector {
         if (east_ < west_) east_ += 360;
         return;
       }
-      if (why.empty() || is_exact)
-        why = is_exact ? text::message("; PROJ finds no grid ", missing, " in its folders")
-                       : text::message("; '", proj_get_name(one.get()), "' errs by ",
-                                       error < 0 ? "an unknown length" : text::message(error, " m"));
-      if (is_exact) break;
+      if (is_exact && grid.empty()) grid = text::message("; PROJ finds no grid ", missing, " in its folders");
+      if (why.empty())
+        why = text::message("; '", proj_get_name(one.get()), "' errs by ",
+                            error < 0 ? "an unknown length" : text::message(error, " m"));
     }
     proj_.fail("cannot be projected to ", proj_get_name(to_.get()), " to 0.1 m: expected latitude and longitude in ",
-               base_, why);
+               base_, grid.empty() ? why : grid);
   }
 
   [[nodiscard]] std::string missing_grid(const PJ* operation) const {
@@ -225,7 +208,7 @@ class ProjProjector {
 
 }  // namespace detail
 
-PULSECAST_INLINE SpatialReference complete_reference(const SpatialReference& given, const std::string& name) {
+inline SpatialReference complete_reference(const SpatialReference& given, const std::string& name) {
   const bool by_text = !given.wkt.empty();
   const std::string codes = detail::epsg_name(given.epsg, given.vertical_epsg);
   const detail::Proj proj(!by_text ? codes : name.empty() ? "the well-known text" : name);
@@ -248,13 +231,11 @@ PULSECAST_INLINE SpatialReference complete_reference(const SpatialReference& giv
   return found;
 }
 
-PULSECAST_INLINE MapProjector map_projector(std::uint16_t from, std::uint16_t to) {
+inline MapProjector map_projector(std::uint16_t from, std::uint16_t to) {
   const auto shared = std::make_shared<detail::ProjProjector>(from, to);
   return [shared](double longitude, double latitude) { return (*shared)(longitude, latitude); };
 }
 
 }  // namespace PULSECAST_NAMESPACE::io
-
-#endif
 
 #endif
