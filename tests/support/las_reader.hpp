@@ -55,7 +55,7 @@ struct LasPoint {
 struct LasFile {
   unsigned minor = 0, format = 0, global_encoding = 0, day = 0, year = 0;
   std::string system, software, wkt;
-  unsigned epsg = 0;  ///< of GeoTIFF keys
+  unsigned epsg = 0;                    ///< of GeoTIFF keys
   std::map<unsigned, unsigned> keys{};  ///< GeoTIFF keys
   std::array<double, 3> scale{}, offset{}, min{}, max{};
   std::uint64_t points_at = 0;  ///< byte at which the points begin
