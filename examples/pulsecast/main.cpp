@@ -43,6 +43,7 @@
 #include "pages.hpp"
 #include "point_formats.hpp"
 #include "ranks.hpp"
+#include "reference_systems.hpp"
 #include "run_folder.hpp"
 #include "survey_files.hpp"
 #include "survey_inputs.hpp"
@@ -111,7 +112,8 @@ Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed)
                        .assets = o.assets,
                        .leg_places = file.leg_places,
                        .place = file.place,
-                       .threads = o.threads},
+                       .threads = o.threads,
+                       .projector = projector_of(o)},
           .scene_text = file.scene_text,
           .store = o.store};
 }
@@ -360,11 +362,17 @@ class Session {
     std::ostringstream out;
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec
         << " format=" << options_.format << " scale=" << text::to_text(options_.las_scale)
-        << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
-        << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
-        << options_.waveform_noise << options_.fixed_incidence << options_.library_physics << options_.light_paths
-        << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses
-        << options_.geojson;
+        << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse
+        << options_.echo_width << options_.waveform_noise << options_.fixed_incidence << options_.library_physics
+        << options_.light_paths << options_.split_by_channel << options_.platform_noise << options_.leg_noise
+        << options_.write_misses << options_.geojson;
+    if (const io::SpatialReference& in = *options_.reference; in != io::SpatialReference{}) {
+      io::Digest wkt;
+      wkt.add(std::string_view(in.wkt));
+      out << " reference=" << in.epsg << '+' << in.vertical_epsg << ',' << text::to_text(in.unit) << ','
+          << text::to_text(in.vertical_unit) << ',' << hex(wkt.value());
+    }
+    if (options_.project_to != 0) out << " project=" << options_.project_from << ':' << options_.project_to;
     if (options_.colours) out << " colours=" << options_.near_infrared;
     for (const std::string& column : options_.columns) out << " column=" << column;
     if (point_format(options_.format).in_scans) out << " scans=" << text::to_text(options_.scan_rate);
@@ -567,9 +575,9 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
 }
 
 /// Options of a run, with what the survey adds to them.
-Options settled_by(const SurveyFile& file, Options options) {
+Options settled_by(const SurveyFile& file, Options options, Notes& notes) {
   const bool has_reference = options.geojson || options.format == "las" || options.format.ends_with("laz");
-  if (!options.epsg && has_reference) options.epsg = reference_system_of(file.survey.scene);
+  options.reference = has_reference ? reference_system_of(options, file.survey.scene, notes) : io::SpatialReference{};
   options.light_paths = options.light_paths || file.survey.scene.follows_light();
   return options;
 }
@@ -590,7 +598,7 @@ int work(const Options& options, Ranks& ranks) {
   else if (!seed)
     seed = std::random_device{}();
   if (options.command == "check") {
-    notes.warn(helios::check_without_scene(file.survey, file.leg_places));
+    notes.warn(helios::check_without_scene(file.survey, file.leg_places, projector_of(options)));
     notes.require_none();
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
@@ -598,11 +606,13 @@ int work(const Options& options, Ranks& ranks) {
   } else if (options.command == "preview") {
     preview(options, file, *seed, notes);
   } else if (options.command == "forecast") {
-    (void)helios::check_without_scene(file.survey, file.leg_places);
-    return forecast(settled_by(file, options), file, loading_of(options, file, *seed), notes) ? success : bad_input;
+    (void)helios::check_without_scene(file.survey, file.leg_places, projector_of(options));
+    return forecast(settled_by(file, options, notes), file, loading_of(options, file, *seed), notes) ? success
+                                                                                                     : bad_input;
   } else {
-    (void)helios::check_without_scene(file.survey, file.leg_places);  // before expensive work
-    Options settled = settled_by(file, options);
+    (void)helios::check_without_scene(file.survey, file.leg_places, projector_of(options));  // before expensive work
+    Options settled = settled_by(file, options, notes);
+    notes.require_none();
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
       if (ranks.first())

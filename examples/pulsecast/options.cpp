@@ -85,6 +85,20 @@ auto number_check(const Holds& holds, const std::string& problem) {
   };
 }
 
+/// Codes of a horizontal and a vertical reference system, as in 25832+7837; empty if the text is none.
+std::optional<pulsecast::io::SpatialReference> codes_in(const std::string& text) {
+  const std::size_t plus = text.find('+');
+  const auto code = [](const std::string& word) {
+    const auto number = text::number_in<std::uint16_t>(word);
+    return number && *number >= 1024 && *number <= 32766 ? number : std::nullopt;  // source: OGC GeoTIFF 1.1
+  };
+  if (text == "0") return pulsecast::io::SpatialReference{};
+  const auto horizontal = code(text.substr(0, plus)),
+             vertical = plus == std::string::npos ? std::uint16_t{0} : code(text.substr(plus + 1));
+  if (!horizontal || !vertical) return std::nullopt;
+  return pulsecast::io::SpatialReference{.epsg = *horizontal, .vertical_epsg = *vertical};
+}
+
 /// Option of HELIOS++ without a meaning here.
 struct Unused {
   const char* name;
@@ -195,16 +209,26 @@ class CommandLine {
   void add_las() {
     app_.add_flag(both("lasOutput"), las_, "Points as LAS 1.4: --format las");
     app_.add_flag("--las10", o_.las_1_0, "Points as LAS 1.0, for old readers");
-    app_.add_option(both("lasScale"), o_.las_scale, "Step of the coordinates in LAS [m]")
+    app_.add_option(both("lasScale"), o_.las_scale, "Step of the coordinates in LAS [m, or the unit of --epsg]")
         ->type_name("M")
         ->check(number_check<double>([](double step) { return step >= 1e-9 && step <= 1e3; },
                                      "length from 1e-9 to 1000 m"));
-    app_.add_option("--epsg", epsg_,
-                    "EPSG code of the coordinates in LAS, 0 for none; default: that of the scene's GeoTIFF")
-        ->type_name("CODE")
-        ->check(
-            number_check<std::uint16_t>([](std::uint16_t code) { return code == 0 || (code >= 1024 && code <= 32766); },
-                                        "code from 1024 to 32766, or 0"));
+    app_.add_option(
+            "--epsg", epsg_,
+            "EPSG code of the coordinates in LAS, as in 25832, or with that of the heights, as in 25832+7837; 0 "
+            "for none; default: those of the scene's GeoTIFF")
+        ->type_name("CODE[+CODE]")
+        ->check([](const std::string& text) {
+          return codes_in(text) ? std::string()
+                                : "'" + text + "': expected a code from 1024 to 32766, two of them as 25832+7837, or 0";
+        });
+    app_.add_option("--wkt", o_.wkt, "File with the text (WKT) of the reference system, in place of --epsg")
+        ->type_name("FILE")
+        ->check(CLI::ExistingFile);
+    app_.add_option("--project", project_,
+                    "EPSG code of the map of the survey, to which trajectories in degrees are projected; before it, "
+                    "that of the degrees, as in 4258:25832")
+        ->type_name("[CODE:]CODE");
     app_.add_flag(both("zipOutput"), zip_, "Points compressed: --format xyz.gz; with --lasOutput, --format laz");
   }
 
@@ -356,6 +380,24 @@ class CommandLine {
     return "";
   }
 
+  /// Reads --project, whose map is that of --epsg unless given. Returns a problem; empty if there is none.
+  [[nodiscard]] std::string settle_projection() {
+    if (project_.empty()) return "";
+    const std::size_t colon = project_.find(':');
+    const auto from = codes_in(colon == std::string::npos ? "0" : project_.substr(0, colon)),
+               to = codes_in(colon == std::string::npos ? project_ : project_.substr(colon + 1));
+    if (!from || !to || to->epsg == 0 || from->vertical_epsg != 0)
+      return "--project: '" + project_ + "': expected a code from 1024 to 32766, or two of them as 4258:25832";
+    if (to->vertical_epsg != 0)
+      return "--project: '" + project_ + "': expected no vertical system, as heights are kept: --epsg names it";
+    o_.project_from = from->epsg;
+    o_.project_to = to->epsg;
+    if (!o_.reference && o_.wkt.empty()) o_.reference = to;
+    if (o_.reference && o_.wkt.empty() && o_.reference->epsg != to->epsg && o_.reference->epsg != 0)
+      return "--project " + project_ + " and --epsg " + epsg_ + ": expected the same map";
+    return "";
+  }
+
   /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is
   /// none.
   [[nodiscard]] std::string settle() {
@@ -379,7 +421,9 @@ class CommandLine {
     if (o_.colours && o_.las_1_0) return "--colours need LAS 1.4, or another format than LAS";
     if (o_.colours && o_.format == "las" && o_.write_waveform)
       return "--colours and --writeWaveform: LAS has no points of both here";
-    if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
+    if (!epsg_.empty()) o_.reference = codes_in(epsg_);
+    if (const std::string problem = settle_projection(); !problem.empty()) return problem;
+    if (!epsg_.empty() && !o_.wkt.empty()) return "--epsg and --wkt: expected one of them";
     if (!misses_at_.empty()) o_.misses_at = text::number_in<double>(misses_at_);
     const double farthest =
         o_.las_scale * (1 << 30);  // so that two points on opposite sides fit 32 bits. Source: LAS 1.4 R15, table 7
@@ -407,8 +451,8 @@ class CommandLine {
       "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
-  std::string seed_, epsg_, misses_at_, scan_rate_, waveform_bins_, range_error_, intensity_error_, time_, memory_,
-      apply_to_, swallowed_;
+  std::string seed_, epsg_, project_, misses_at_, scan_rate_, waveform_bins_, range_error_, intensity_error_, time_,
+      memory_, apply_to_, swallowed_;
   bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false,
        no_scene_writing_ = false;
   std::vector<CLI::Option*> of_forecast_, unused_;

@@ -13,6 +13,7 @@
 
 #include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/io/ptx.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
 
@@ -47,9 +48,12 @@ struct Options {
   std::optional<std::uint64_t> seed{};
   unsigned threads = 0;  ///< 0: all
   std::string gps_start_time{};
-  double las_scale = 1e-4;              ///< [m]
-  std::optional<std::uint16_t> epsg{};  ///< of the coordinates in LAS, 0 for none; default: that of the scene's rasters
-  bool las_1_0 = false;                 ///< write LAS 1.0
+  double las_scale = 1e-4;  ///< [unit of the coordinates]
+  /// System of the results, unknown for none; default: that of the scene's rasters
+  std::optional<pulsecast::io::SpatialReference> reference{};
+  std::filesystem::path wkt{};                     ///< file of its text; empty: by `reference`
+  std::uint16_t project_from = 0, project_to = 0;  ///< systems of --project; 0: that of the datum; none
+  bool las_1_0 = false;                            ///< write LAS 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
        library_physics = false, light_paths = false;
   bool colours = false, near_infrared = false;  ///< columns of points in LAS

@@ -180,7 +180,7 @@ io::LasSettings las_settings(const Options& o, double start_time) {
   io::LasSettings settings{.scale = o.las_scale,
                            .gps_time = o.adjusted_time ? io::GpsTime::adjusted_standard : io::GpsTime::week,
                            .start_time = start_time};
-  settings.epsg = o.epsg.value_or(0);
+  settings.reference = o.reference.value_or(io::SpatialReference{});
   settings.light_kinds = o.light_paths;
   settings.colours = o.point_colours;
   settings.near_infrared = o.near_infrared && o.point_colours;
@@ -223,8 +223,11 @@ LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Opti
   if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
   if (o.write_misses) inside_->misses.emplace(folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time});
   if (o.misses_at) inside_->miss_points.emplace(io::MissSettings{.range = *o.misses_at});
-  if (o.geojson)
-    inside_->map.emplace(folder / (prefix + "_map.geojson"), io::GeoJsonSettings{.epsg = o.epsg.value_or(0)});
+  if (o.geojson) {
+    const io::SpatialReference in = o.reference.value_or(io::SpatialReference{});
+    inside_->map.emplace(folder / (prefix + "_map.geojson"),
+                         io::GeoJsonSettings{.epsg = in.epsg, .unit = in.unit, .vertical_unit = in.vertical_unit});
+  }
 }
 LegFiles::~LegFiles() = default;
 

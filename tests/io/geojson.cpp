@@ -95,6 +95,15 @@ TEST_CASE(
                               "[0.000,1.000,5.000]]}")));
 }
 
+TEST_CASE("coordinates are in units of the reference system, and areas in square metres") {
+  Run run;
+  run.pulse(0, 0, {10, 20, 30}, {5}).pulse(0, 1, {30, 20, 30}, {5}).pulse(0, 2, {10, 40, 30}, {5});
+  const std::string file = geojson(run, {.unit = 2, .vertical_unit = 0.5});
+  CHECK(file.find("[5.000,10.000,60.000]") != file.npos);
+  CHECK(file.find("[15.000,10.000]") != file.npos);  // of the footprint
+  CHECK(file.find("\"area\":200}") != file.npos);
+}
+
 TEST_CASE("a run without pulses is a collection without features") { CHECK(geojson({}) == collection("")); }
 
 TEST_CASE("a code of EPSG is named") {
@@ -269,6 +278,8 @@ TEST_CASE("settings out of range are refused") {
   CHECK(refused({.epsg = 32'767}) == "GeoJsonSettings::epsg");
   CHECK(refused({.epsg = 32'766}).empty());
   CHECK(refused({.interval = 0}) == "GeoJsonSettings::interval");
+  CHECK(refused({.unit = 0}) == "GeoJsonSettings::unit");
+  CHECK(refused({.vertical_unit = infinite}) == "GeoJsonSettings::unit");
   CHECK(refused({.interval = infinite}) == "GeoJsonSettings::interval");
   CHECK(refused({.footprint_interval = -1}) == "GeoJsonSettings::footprint_interval");
   CHECK(folder.empty());

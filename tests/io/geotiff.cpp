@@ -404,6 +404,7 @@ TEST_CASE("the sample file is where and what it should be") {
   CHECK(raster.pixel == Vec2{10, 10});
   CHECK(found.epsg == 32632);
   CHECK(read_geotiff_epsg(support::data_folder / "terrain.tif") == 32632);
+  CHECK(read_geotiff_reference(support::data_folder / "terrain.tif") == SpatialReference{.epsg = 32632});
   CHECK(found.warnings.empty());
   CHECK(static_cast<double>(raster.heights[0]) == support::relative(118.55, 1e-5));
   const HeightField field(raster);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -334,17 +335,50 @@ TEST_CASE("a code of UTM is written as well-known text, with its zone's meridian
   }
 }
 
-TEST_CASE("any other code is written as GeoTIFF keys, without the WKT bit; well-known text comes first") {
+TEST_CASE("any other code is left out, as formats 6 to 9 have no keys, and the WKT bit is set; text comes first") {
   for (const std::uint16_t epsg :
        {std::uint16_t{2056}, std::uint16_t{25827}, std::uint16_t{25839}, std::uint16_t{32766}}) {
     const LasFile file = Survey::of_points({{1, 2, 3}}).written({.epsg = epsg});
-    CHECK(file.epsg == epsg);
-    CHECK(file.global_encoding == 1);
+    CHECK(file.keys.empty());
+    CHECK(file.global_encoding == 17);
     CHECK(file.wkt.empty());
     CHECK(file.points.size() == 1);
   }
   const LasFile file = Survey::of_points({{1, 2, 3}}).written({.wkt = "LOCAL_CS[]", .epsg = 2056});
-  CHECK((file.wkt == "LOCAL_CS[]" && file.epsg == 0 && file.global_encoding == 17));
+  CHECK((file.wkt == "LOCAL_CS[]" && file.keys.empty() && file.global_encoding == 17));
+}
+
+TEST_CASE("coordinates, scale, offset and bounds are in units of the reference system, ranges in metres") {
+  const double us_foot = 1200.0 / 3937;
+  const SpatialReference in{.epsg = 2263, .unit = us_foot, .vertical_unit = 0.3048, .wkt = "LOCAL_CS[]"};
+  const Vec3 place{1'000'000.5 * us_foot, 200'000.25 * us_foot, 100.125 * 0.3048};
+  const Survey survey = Survey::of_points({place});
+  const LasFile file = survey.written({.scale = 1e-3, .reference = in}), metres = survey.written({});
+  CHECK((file.scale == std::array<double, 3>{1e-3, 1e-3, 1e-3}));
+  CHECK(file.offset[0] == 1'000'000);
+  const std::array<double, 3> expected{1'000'000.5, 200'000.25, 100.125};
+  for (std::size_t axis = 0; axis < 3; ++axis) CHECK(std::fabs(file.points[0].place[axis] - expected[axis]) < 1e-9);
+  CHECK(file.wkt == "LOCAL_CS[]");
+  CHECK(file.points[0].bytes.size() == metres.points[0].bytes.size());  // the rest is the same
+  CHECK(std::equal(file.points[0].bytes.begin() + 12, file.points[0].bytes.end(), metres.points[0].bytes.begin() + 12));
+  CHECK(survey.written({.reference = {.wkt = "LOCAL_CS[]"}}).points[0].stored == metres.points[0].stored);
+}
+
+TEST_CASE("GeoTIFF keys of legacy formats have the units, and the vertical system") {
+  const auto keys = [](const SpatialReference& in) {
+    const LasFile file = Survey::of_points({{1, 2, 3}}).written({.format = LasFormat::las_1_0, .reference = in});
+    return file.keys;
+  };
+  using Keys = std::map<unsigned, unsigned>;
+  CHECK(keys({.epsg = 2056}) == Keys{{1024, 1}, {3072, 2056}, {3076, 9001}});
+  CHECK(keys({.epsg = 25832, .vertical_epsg = 7837, .wkt = "COMPD_CS[]"}) ==
+        Keys{{1024, 1}, {3072, 25832}, {3076, 9001}, {4096, 7837}, {4099, 9001}});
+  CHECK(keys({.epsg = 2263, .unit = 0.304800609601219}) ==
+        Keys{{1024, 1}, {3072, 2263}, {3076, 9003}, {4099, 9001}});  // heights in metres
+  CHECK(keys({.epsg = 2222, .vertical_epsg = 8228, .unit = 0.3048, .vertical_unit = 0.3048}) ==
+        Keys{{1024, 1}, {3072, 2222}, {3076, 9002}, {4096, 8228}, {4099, 9002}});
+  CHECK(keys({.epsg = 2136, .unit = 0.304799710181509}) ==
+        Keys{{1024, 1}, {3072, 2136}, {4099, 9001}});  // the Gold Coast foot
 }
 
 TEST_CASE("coordinates are rounded to the nearest step on both sides of zero") {
@@ -797,6 +831,11 @@ TEST_CASE("settings that cannot be are refused before a file is made") {
                                      {.wkt = std::string(65535, 'x')},
                                      {.epsg = 1023},
                                      {.epsg = 32767},
+                                     {.reference = {.epsg = 1023}},
+                                     {.reference = {.vertical_epsg = 32767}},
+                                     {.reference = {.unit = 0}},
+                                     {.reference = {.vertical_unit = nan}},
+                                     {.reference = {.wkt = std::string(65535, 'x')}},
                                      {.start_time = infinite},
                                      {.intensity_full_scale = 0},
                                      {.amplitude_reference = nan},

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,7 +55,8 @@ struct LasPoint {
 struct LasFile {
   unsigned minor = 0, format = 0, global_encoding = 0, day = 0, year = 0;
   std::string system, software, wkt;
-  unsigned epsg = 0;  ///< of GeoTIFF keys
+  unsigned epsg = 0;                    ///< of GeoTIFF keys
+  std::map<unsigned, unsigned> keys{};  ///< GeoTIFF keys
   std::array<double, 3> scale{}, offset{}, min{}, max{};
   std::uint64_t points_at = 0;  ///< byte at which the points begin
   std::array<std::uint64_t, 15> by_return{};
@@ -215,10 +217,10 @@ class LasReader {
     for (std::size_t k = body + 8; k < body + length; k += 8) {
       las_expect(in_.whole(k + 2, 2) == 0 && in_.whole(k + 4, 2) == 1, "a GeoTIFF key that is not read here");
       las_expect(k == body + 8 || in_.whole(k, 2) > in_.whole(k - 8, 2), "GeoTIFF keys are not in order");
-      if (in_.whole(k, 2) == 3072) file_.epsg = static_cast<unsigned>(in_.whole(k + 6, 2));
+      file_.keys[static_cast<unsigned>(in_.whole(k, 2))] = static_cast<unsigned>(in_.whole(k + 6, 2));
       if (in_.whole(k, 2) == 1024) las_expect(in_.whole(k + 6, 2) == 1, "not a projected reference system");
-      if (in_.whole(k, 2) == 3076) las_expect(in_.whole(k + 6, 2) == 9001, "not in metres");
     }
+    file_.epsg = file_.keys[3072];
   }
 
   void read_extra_fields(std::size_t body, std::size_t length) {
@@ -243,8 +245,8 @@ class LasReader {
     las_expect(at_ == file_.points_at, "points do not begin where the records end");
     las_expect(record_ == expected_record_, "record length");
     const bool wkt_bit = (file_.global_encoding & 16U) != 0;
-    las_expect(wkt_bit == (old_ ? !file_.wkt.empty() : file_.epsg == 0),
-               "the WKT bit belongs to formats 6 to 9, unless there are GeoTIFF keys");
+    las_expect(wkt_bit == (!old_ || !file_.wkt.empty()), "the WKT bit belongs to formats 6 to 10, and to text");
+    las_expect(old_ || file_.keys.empty(), "GeoTIFF keys do not belong to formats 6 to 10");
     const std::uint64_t count = file_.minor == 0 ? in_.whole(107, 4) : in_.whole(247, 8);
     las_expect(!old_ || in_.whole(107, 4) == count, "legacy number of points");
     las_expect(in_.size() >= at_ && (in_.size() - at_) % record_ == 0 && (in_.size() - at_) / record_ == count,

@@ -9,6 +9,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/io/point_columns.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/part.hpp>
@@ -57,6 +58,7 @@ class Simulation {
     std::string place{};                          ///< place of the survey in its document, for messages
     unsigned threads = 0;                         ///< threads that build the scene; 0: all
     CityReader city_models{};                     ///< empty: CityGML files are an error
+    io::MapProjector projector{};                 ///< of trajectories by longitude and latitude
   };
 
   /// Size of a loaded scene.

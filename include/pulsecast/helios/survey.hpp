@@ -35,7 +35,8 @@ struct CompiledSurvey {
 
 /// Checks legs and scanner without the scene; returns warnings. @throws SettingError, FileError
 [[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey,
-                                                           const std::vector<std::string>& leg_places = {});
+                                                           const std::vector<std::string>& leg_places = {},
+                                                           const io::MapProjector& projector = {});
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
@@ -175,9 +176,11 @@ PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, con
 }
 
 PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey,
-                                                              const std::vector<std::string>& leg_places) {
+                                                              const std::vector<std::string>& leg_places,
+                                                              const io::MapProjector& projector) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  std::vector<std::string> warnings =
+      compile_survey(survey, ground, {.leg_places = leg_places, .projector = projector}).warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {
     const Receiver receiver = survey_receiver(channel);
     receiver.validate();

@@ -16,14 +16,17 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a GeoJSON file.
 struct GeoJsonSettings {
-  int epsg = 0;                    ///< EPSG code of a projected system in metres, up to 32766; 0: none
+  int epsg = 0;                    ///< EPSG code of a projected system, up to 32766; 0: none
   double interval = 1;             ///< time between two points of a trajectory [s]
   double footprint_interval = 10;  ///< time that one polygon of a footprint covers [s]
+  double unit = 1;                 ///< unit of x and y in the file [m]
+  double vertical_unit = 1;        ///< unit of z in the file [m]
 
   void validate() const {
     require_within("GeoJsonSettings::epsg", epsg, 0, 32766, "");  // source: OGC GeoTIFF 1.1
     require_positive("GeoJsonSettings::interval", interval, "s");
     require_positive("GeoJsonSettings::footprint_interval", footprint_interval, "s");
+    for (const double one : {unit, vertical_unit}) require_within("GeoJsonSettings::unit", one, 1e-9, 1e6, "m");
   }
 };
 
@@ -117,7 +120,7 @@ class GeoJsonWriter {
   }
 
  private:
-  static constexpr double per_metre = 1000;  // units of the coordinates as written
+  static constexpr double per_unit = 1000;  // steps of the coordinates as written
 
   struct Times {
     double start = 0, end = 0;
@@ -128,7 +131,7 @@ class GeoJsonWriter {
     Times time{};
     std::uint64_t pulses = 0, points = 0;
     double slot = -1;            // number of the interval of the last point
-    std::optional<Vec3> last{};  // origin of the last pulse [mm]
+    std::optional<Vec3> last{};  // origin of the last pulse [steps]
     std::string line{}, end{};   // points so far, and the last of them
     std::size_t line_points = 0;
 
@@ -147,17 +150,17 @@ class GeoJsonWriter {
     std::uint64_t points = 0;
   };
 
-  /// Point in whole millimetres: hulls up to some 90 km are exact. Empty if not finite.
-  [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
-    const Vec3 scaled = point * per_metre;
+  /// Point in whole steps: hulls up to some 90 million of them are exact. Empty if not finite.
+  [[nodiscard]] std::optional<Vec3> rounded(const Vec3& point) const {
+    const Vec3 scaled = point * per_unit / Vec3{settings_.unit, settings_.unit, settings_.vertical_unit};
     if (!finite(scaled)) return std::nullopt;
     return Vec3{std::nearbyint(scaled.x), std::nearbyint(scaled.y), std::nearbyint(scaled.z)};
   }
 
   template <std::size_t N>
-  [[nodiscard]] static std::string position(const double (&millimetres)[N]) {
+  [[nodiscard]] static std::string position(const double (&steps)[N]) {
     TextRow row(',');
-    for (const double value : millimetres) row.add(value / per_metre, 3);
+    for (const double value : steps) row.add(value / per_unit, 3);
     std::string_view text = row.end();
     text.remove_suffix(1);  // the line end
     return text::joined({"[", text, "]"});
@@ -192,7 +195,7 @@ class GeoJsonWriter {
     const Footprint done = *std::exchange(footprint_, std::nullopt);
     const std::vector<Vec2> corners = hull_.take();
     if (corners.size() < 3) return;
-    double twice = 0;  // area [mm^2]
+    double twice = 0;  // area [steps^2]
     std::string ring;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vec2 a = corners[i] - corners[0], b = corners[(i + 1) % corners.size()] - corners[0];
@@ -200,7 +203,7 @@ class GeoJsonWriter {
       ring += position({corners[i].x, corners[i].y}) + ",";
     }
     if (!std::isfinite(twice)) return;
-    const std::string area = text::to_text(twice / (2 * per_metre * per_metre));
+    const std::string area = text::to_text(twice / (2 * per_unit * per_unit) * settings_.unit * settings_.unit);
     const std::string end = position({corners[0].x, corners[0].y});
     feature("footprint", done.time, text::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
             text::joined({R"({"type":"Polygon","coordinates":[[)", ring, end, "]]}"}));

@@ -9,7 +9,7 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -47,6 +47,9 @@ struct GeoTiff {
 
 /// EPSG code of the projected reference system, if any. @throws FileError as `read_geotiff`
 [[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
+
+/// Codes of the horizontal and the vertical reference system, 0 if unknown. @throws FileError as `read_geotiff`
+[[nodiscard]] SpatialReference read_geotiff_reference(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
 
@@ -283,6 +286,13 @@ PULSECAST_INLINE GeoTiff read_geotiff(const std::filesystem::path& path, const G
 PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) {
   detail::TiffFile file(path);
   return detail::projected_epsg(file);
+}
+
+PULSECAST_INLINE SpatialReference read_geotiff_reference(const std::filesystem::path& path) {
+  detail::TiffFile file(path);
+  const std::uint16_t vertical = detail::geo_key(file, detail::geotiff::vertical, 0);
+  return {.epsg = detail::projected_epsg(file).value_or(0),
+          .vertical_epsg = vertical == detail::geotiff::user_defined ? std::uint16_t{0} : vertical};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -3,10 +3,11 @@
 #ifndef PULSECAST_IO_SPATIAL_REFERENCE_HPP
 #define PULSECAST_IO_SPATIAL_REFERENCE_HPP
 
-#include <cstdint>
+#include <functional>
 #include <string>
 
-#include <pulsecast/base/namespace.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -18,8 +19,23 @@ struct SpatialReference {
   double vertical_unit = 1;         ///< unit of z in files [m]
   std::string wkt = {};             ///< OGC well-known text; empty: unknown
 
+  void validate() const {
+    for (const std::uint16_t code : {epsg, vertical_epsg})
+      if (code != 0) require_within("SpatialReference, EPSG code", code, 1024, 32766, "");  // source: OGC GeoTIFF 1.1
+    for (const double one : {unit, vertical_unit}) require_within("SpatialReference::unit", one, 1e-9, 1e6, "m");
+  }
+
   friend bool operator==(const SpatialReference&, const SpatialReference&) = default;
 };
+
+/// Place on a map.
+struct MapPoint {
+  Vec2 place{};            ///< east and north [m]
+  double convergence = 0;  ///< direction of true north, clockwise from grid north [rad]
+};
+
+/// Place on a map of a longitude and a latitude [deg], as by `map_projector`. Heights are kept.
+using MapProjector = std::function<MapPoint(double longitude, double latitude)>;
 
 }  // namespace PULSECAST_NAMESPACE::io
 

@@ -116,6 +116,7 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
   require_finite("write_trajectory start_time", start_time, "s");
   const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
   if (poses.empty()) detail::fail(path, "cannot be written: expected at least one pose");
+  if (columns.has(Quantity::longitude)) detail::fail(path, "cannot be written in degrees: expected columns of metres");
   OutputFile file(path);
   file.write(detail::head_of(format, columns));
   TextRow row(format.separator);

@@ -286,7 +286,8 @@ class LegPaths {
       t->separator = of_file.separator;
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
-        const auto format = trajectory_format(*t, survey_.platform.rotation_spec);
+        io::TrajectoryFormat format = trajectory_format(*t, survey_.platform.rotation_spec);
+        format.projector = options_.projector;
         auto table = naming(leg_name(k), [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
         for (const std::string& warning : table.warnings) warn(warning);
         if (t->position_only) table.poses = with_headings(std::move(table.poses));

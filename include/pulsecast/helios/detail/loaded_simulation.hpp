@@ -168,7 +168,8 @@ struct LoadedRepetition {
     scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = 1});
     const auto ground = [&](const Vec2& at, auto... near) { return scene->ground_height(at, near...); };
     const Simulation::Settings& s = inputs->settings;
-    compiled = compile_survey(inputs->survey, ground, {s.seed, s.platform_noise, s.leg_noise, s.leg_places});
+    compiled =
+        compile_survey(inputs->survey, ground, {s.seed, s.platform_noise, s.leg_noise, s.leg_places, s.projector});
     const double duration = compiled->source.duration().seconds();
     if (std::any_of(parts.begin(), parts.end(), [](const SurveyPart& p) { return p.motion != nullptr; }))
       scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = std::max(1e-3, duration)});

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -17,6 +18,7 @@ struct SurveyBuildOptions {
   /// Place of each leg in its document, as in `survey.xml:12:5`. If empty, as for settings of a
   /// program, the notes of `read_survey` are given with the others.
   std::vector<std::string> leg_places{};
+  io::MapProjector projector{};  ///< of trajectories by longitude and latitude
 
   /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const {

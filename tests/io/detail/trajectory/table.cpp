@@ -39,6 +39,42 @@ bool same(const Rotation& a, const Rotation& b, double allowed = 1e-14) {
 
 const std::string head = "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n";
 
+/// Map whose units are degrees, turned by 30 degrees.
+MapPoint turned(double longitude, double latitude) {
+  if (latitude > 80) throw FileError("map", "", "has no place there: expected less");
+  return {{1000 * longitude, 2000 * latitude}, radians(30)};
+}
+
+TEST_CASE("a longitude and a latitude are projected, heights kept, and true north becomes grid north") {
+  TrajectoryFormat format = csv_format();
+  format.projector = turned;
+  const TrajectoryTable table = read(
+      "time_s,latitude_deg,longitude_deg,height_m,roll_deg,pitch_deg,heading_deg\n1,50.5,9.25,120.5,3,4,40\n", format);
+  CHECK(max_norm(table.poses[0].position - Vec3{9250, 101'000, 120.5}) < 1e-9);
+  const TrajectoryTable expected =
+      read(head + "1,0,0,0,3,4,70\n");  // the grid's north is 30 degrees before the true one
+  CHECK(same(table.poses[0].rotation, expected.poses[0].rotation));
+  CHECK(table.warnings.empty());
+  format.angle_unit = AngleUnit::radian;
+  const TrajectoryTable in_radians = read("time,lon,lat,altitude,heading\n1,0.1,0.2,7,0\n", format);
+  CHECK(max_norm(in_radians.poses[0].position - Vec3{1000 * degrees(0.1), 2000 * degrees(0.2), 7}) < 1e-9);
+}
+
+TEST_CASE("degrees without a map, beyond it, or beside metres are refused or left out") {
+  const std::string degrees = "time_s,lat,lon,height\n1,50,9,100\n2,85,9,100\n";
+  CHECK(contains(error(degrees).what(), "line 2: has a longitude and a latitude: expected east and north"));
+  TrajectoryFormat format = csv_format();
+  format.projector = turned;
+  CHECK(contains(error(degrees, format).what(), "line 3: cannot be projected: map: has no place there"));
+  CHECK(contains(error("time_s,lat,height\n1,50,100\n", format).what(), "do not define one position"));
+  CHECK(contains(error("time_s,lat,east,height\n1,50,1,100\n", format).what(), "do not define one position"));
+  CHECK(contains(error("time_s,lat,lon,x,y,z\n1,50,9,1,2,3\n", format).what(), "do not define one position"));
+  format.more_columns = true;
+  const TrajectoryTable metres = read("time_s,lat,lon,east,north,height\n1,50,9,1,2,3\n", format);
+  CHECK(metres.poses[0].position == Vec3{1, 2, 3});
+  CHECK(contains(metres.warnings.at(0), "unknown columns are left out: 'lat', 'lon'"));
+}
+
 TEST_CASE("a table with named columns is read as it stands") {
   const TrajectoryTable table = read(head + "10,1,2,3,0,0,90\n10.5,1.5,-2,1e2,0,20,0\n");
   CHECK(table.warnings.empty());

@@ -181,7 +181,7 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   }
   if (system != 0)
     file.warn("vertical system ", system, ": ", is_given || unit != geotiff::metre ? "" : "metres are assumed; ",
-              "heights stay in it, and LAS files do not name it");
+              "heights stay in it");
   for (const geotiff::LengthUnit& known : geotiff::length_units)
     if (known.code == unit) return known.metres;
   file.warn("the unit of its heights has the code ", unit, "; metres are assumed");

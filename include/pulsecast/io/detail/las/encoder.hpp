@@ -45,7 +45,8 @@ struct LasTally {
 };
 
 /// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them.
-/// Coordinates come last, so that all else is done before their offset is known.
+/// Coordinates come last, so that all else is done before their offset is known. Points are in
+/// metres, and their coordinates in units of the reference system.
 class LasEncoder {
  public:
   using Record = detail::LasFields<std::vector<std::byte>>;  ///< point record
@@ -55,7 +56,10 @@ class LasEncoder {
       : settings_(std::move(settings)),
         layout_(settings_),
         columns_(layout_.columns, detail::las_points(settings_)),
-        offset_(settings_.offset.value_or(Vec3{})) {}
+        offset_(settings_.offset.value_or(Vec3{})) {
+    const SpatialReference& in = settings_.reference;
+    per_metre_ = {1 / in.unit, 1 / in.unit, 1 / in.vertical_unit};
+  }
 
   /// Size of a point record with these settings [byte].
   [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
@@ -122,17 +126,18 @@ class LasEncoder {
   [[nodiscard]] std::string misfit(const Vec3& point) const {
     std::size_t axis = 0;
     while (axis < 2 && fits(steps_of(point, axis))) ++axis;
+    const std::string_view unit = per_metre_[static_cast<int>(axis)] == 1 ? " m" : " units of the reference system";
     const auto text = [](double value) {
       std::array<char, 32> digits;
       constexpr auto general = std::chars_format::general;
       return std::string(digits.begin(), std::to_chars(digits.begin(), digits.end(), value, general, 12).ptr);
     };
     const int k = static_cast<int>(axis);
-    return text::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
-                         " m, which does not fit 32 bits; expected ", text(offset_[k]), " m +- ",
-                         text(settings_.scale * std::numeric_limits<std::int32_t>::max()),
-                         " m (offset, and 2^31 steps of ", text(settings_.scale),
-                         " m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
+    return text::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k] * per_metre_[k]), unit,
+                         ", which does not fit 32 bits; expected ", text(offset_[k]), unit, " +- ",
+                         text(settings_.scale * std::numeric_limits<std::int32_t>::max()), unit,
+                         " (offset, and 2^31 steps of ", text(settings_.scale), unit,
+                         "; a greater scale, by LasSettings::scale or --lasScale, reaches farther)"});
   }
 
   /// Chooses the offset of the coordinates by the first point, unless set: stored numbers stay
@@ -140,7 +145,7 @@ class LasEncoder {
   void choose_offset(const Vec3& first) noexcept {
     const double unit = settings_.scale * 1e6;
     for (int axis = 0; !settings_.offset && finite(first) && axis < 3; ++axis)
-      offset_[axis] = std::nearbyint(first[axis] / unit) * unit + 0.0;  // + 0.0 avoids -0
+      offset_[axis] = std::nearbyint(first[axis] * per_metre_[axis] / unit) * unit + 0.0;  // + 0.0 avoids -0
   }
 
   /// True if intensities are 0 until `scale_intensities`.
@@ -171,7 +176,7 @@ class LasEncoder {
 
   [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::LasLayout& layout() const noexcept { return layout_; }
-  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }    ///< of coordinates [m]
+  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }    ///< of coordinates [unit of the file]
   [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }  ///< of the points so far
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }              ///< to sum over encoders
 
@@ -206,7 +211,7 @@ class LasEncoder {
     record.put(layout_.packet, packet.descriptor);
     record.put(layout_.packet + 1, packet.offset);
     record.put(layout_.packet + 9, packet.size);
-    const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12);
+    const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12) * per_metre_;
     const std::array<float, 3> b{static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)};
     record.put(layout_.packet + 17, b);
   }
@@ -222,7 +227,7 @@ class LasEncoder {
 
   [[nodiscard]] double steps_of(const Vec3& point, std::size_t axis) const noexcept {
     const int k = static_cast<int>(axis);
-    return std::nearbyint((point[k] - offset_[k]) / settings_.scale);
+    return std::nearbyint((point[k] * per_metre_[k] - offset_[k]) / settings_.scale);
   }
   [[nodiscard]] static bool fits(double steps) noexcept {
     using Limits = std::numeric_limits<std::int32_t>;
@@ -232,7 +237,8 @@ class LasEncoder {
   LasSettings settings_;
   detail::LasLayout layout_;
   PointEncoder columns_;  // colours and extra values
-  Vec3 offset_;
+  Vec3 offset_;           // [unit of the file]
+  Vec3 per_metre_;        // units of the coordinates in a metre
   LasTally tally_;
   Record record_;  // of the point that is encoded
 };

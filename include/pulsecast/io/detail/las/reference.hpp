@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include <pulsecast/base/error.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -45,9 +45,25 @@ namespace PULSECAST_NAMESPACE::io::detail {
        R"(,AUTHORITY["EPSG",")", std::to_string(epsg), R"("]])"});
 }
 
-/// GeoTIFF keys (projected model, its code, metre). Source: OGC GeoTIFF 1.1, 7.1.2, annex B.
-[[nodiscard]] constexpr std::array<std::uint16_t, 16> las_geo_keys(std::uint16_t epsg) noexcept {
-  return {1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 3076, 0, 1, 9001};
+/// GeoTIFF keys: projected model, its code and unit; vertical system and its unit, if it differs. A unit without a code
+/// here follows from that of the system. Source: OGC GeoTIFF 1.1, 7.1.2, annex B; EPSG registry, units.
+[[nodiscard]] inline std::vector<std::uint16_t> las_geo_keys(const SpatialReference& in) {
+  std::vector<std::uint16_t> keys{1, 1, 0, 0};
+  const auto add = [&keys](std::uint16_t key, std::uint16_t value) {
+    if (value == 0) return;
+    keys.insert(keys.end(), {key, 0, 1, value});
+    ++keys[3];
+  };
+  const auto unit = [](double metres) -> std::uint16_t {
+    const auto is = [metres](double other) { return std::fabs(metres / other - 1) < 1e-9; };
+    return is(1) ? 9001 : is(0.3048) ? 9002 : is(1200.0 / 3937) ? 9003 : 0;  // metre, foot, US survey foot
+  };
+  add(1024, 1);
+  add(3072, in.epsg);
+  add(3076, unit(in.unit));
+  add(4096, in.vertical_epsg);
+  if (in.vertical_epsg != 0 || in.vertical_unit != in.unit) add(4099, unit(in.vertical_unit));
+  return keys;
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -11,6 +11,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/point_records.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -90,11 +91,11 @@ struct LasSettings {
   std::vector<PointField> columns = {};  ///< further extra values, see `layouts::columns`
   /// Values of `columns`, but for start time, reference power, colours and attributes of the file.
   PointSettings points = {};
-  double scale = 1e-4;  ///< step of the coordinates [m]
-  /// Origin of the coordinates [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  double scale = 1e-4;  ///< step of the coordinates [m, or unit of `reference`]
+  /// Origin of the coordinates [as `scale`]; if empty, the multiple of 1e6 steps nearest to the first point
   std::optional<Vec3> offset = {};
-  std::string wkt = {};                                ///< OGC well-known text; if empty, by `epsg`
-  std::uint16_t epsg = 0;                              ///< EPSG code of a system in metres; 0: none
+  std::string wkt = {};                                ///< that of `reference`, unless empty
+  std::uint16_t epsg = 0;                              ///< that of `reference`, unless 0
   GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
   double start_time = 0;                               ///< time of the survey's tick 0 [s]
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
@@ -103,6 +104,7 @@ struct LasSettings {
   double intensity_range = 1;                  ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;           ///< reference power of amplitudes in dB [W]
   std::optional<Date> created = std::nullopt;  ///< date in the header; if empty, 0
+  SpatialReference reference = {};             ///< reference system of the file, as by `complete_reference`
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
@@ -112,7 +114,9 @@ struct LasSettings {
     points.validate();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", wkt.size(), 0, 65534, "bytes");
+    for (const std::string& text : {wkt, reference.wkt})
+      require_within("LasSettings::wkt length", text.size(), 0, 65534, "bytes");
+    reference.validate();
     if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     require_positive("LasSettings::intensity_range", intensity_range, "m");

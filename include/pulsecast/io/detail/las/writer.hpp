@@ -46,15 +46,17 @@ struct LasExtendedRecords {
 /// - classes end at 255, or 31: greater ones are written as the last, see `classes_cut`; point source id is the leg
 /// plus 1, at most 65535; user data is the channel, at most 255, and scanner channel its lowest two bits;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
-/// - a reference system given by its code alone, other than UTM, becomes GeoTIFF keys, with the WKT
-/// bit clear, though formats 6 to 9 should have text. Legacy formats take any code as keys;
+/// - coordinates, scale and offset are in the units of the reference system, heights in metres if
+/// their system is unknown; extra values stay in metres;
+/// - a reference system is written as well-known text; by its codes alone, as GeoTIFF keys in legacy
+/// formats; in others, which have no keys, the text of UTM is known, and other codes are left out;
 /// - colours are black, and attributes of objects, which are doubles, NaN if unknown;
 /// - flags, scan direction and edge of flight line are 0, as echoes have no such fields.
 ///
 /// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not without
 /// echoes. The return point waveform location L is the two-way time from the first sample to the
 /// echo [ps]. The vector d points back to the instrument, with half the speed of light as length
-/// [m/ps]. Then `P + L d` is the origin of the first sample, and sample i is from `P + (L - i
+/// [unit of the coordinates/ps]. Then `P + L d` is the origin of the first sample, and sample i is from `P + (L - i
 /// spacing) d`, for point P. `close()` completes the `.wdp` file, then this one: see `OutputFile`.
 template <class Records>
 class LasFileWriter {
@@ -96,8 +98,11 @@ class LasFileWriter {
   [[nodiscard]] const LasLayout& layout() const noexcept { return encoder_.layout(); }
 
   [[nodiscard]] static LasSettings settled(LasSettings settings) {
-    if (settings.format == LasFormat::las_1_0) settings.wkt.clear();
-    if (settings.wkt.empty() && settings.format == LasFormat::las_1_4) settings.wkt = las_utm(settings.epsg);
+    SpatialReference& in = settings.reference;
+    if (!settings.wkt.empty()) in.wkt = settings.wkt;
+    if (settings.epsg != 0) in.epsg = settings.epsg;
+    if (settings.format == LasFormat::las_1_0) in.wkt.clear();
+    if (in.wkt.empty() && settings.format == LasFormat::las_1_4) in.wkt = las_utm(in.epsg);
     return settings;
   }
 
@@ -171,9 +176,10 @@ class LasFileWriter {
   }
 
   /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit
-  /// 4 is set with well-known text, and with formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
+  /// 4 is set with well-known text, and always with formats 6 to 10. Source: LAS 1.4 R15, Global
+  /// Encoding, Coordinate Reference System Representation.
   [[nodiscard]] std::uint16_t global_encoding() const noexcept {
-    const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
+    const bool wkt = !layout().legacy || !wkt_text().empty();
     const auto time = static_cast<unsigned>(settings().gps_time);
     return static_cast<std::uint16_t>(time | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
   }
@@ -209,16 +215,15 @@ class LasFileWriter {
 
   /// Writes the well-known text. Source: LAS 1.4 R15, OGC Coordinate System WKT.
   void write_wkt_record() {
-    write_record_header("LASF_Projection", 2112, settings().wkt.size() + 1, "OGC Coordinate System WKT");
-    file_.write(std::string_view(settings().wkt.c_str(), settings().wkt.size() + 1));
+    write_record_header("LASF_Projection", 2112, wkt_text().size() + 1, "OGC Coordinate System WKT");
+    file_.write(std::string_view(wkt_text().c_str(), wkt_text().size() + 1));
   }
-
-  [[nodiscard]] bool by_keys() const noexcept { return settings().wkt.empty() && settings().epsg != 0; }
+  [[nodiscard]] const std::string& wkt_text() const noexcept { return settings().reference.wkt; }
 
   /// Writes the GeoTIFF keys. Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
   void write_keys_record() {
-    const auto keys = las_geo_keys(settings().epsg);
-    write_record_header("LASF_Projection", 34735, sizeof keys, "GeoTIFF GeoKeyDirectoryTag");
+    const std::vector<std::uint16_t> keys = las_geo_keys(settings().reference);
+    write_record_header("LASF_Projection", 34735, std::span(keys).size_bytes(), "GeoTIFF GeoKeyDirectoryTag");
     file_.write(std::as_bytes(std::span(keys)));
   }
 
@@ -237,8 +242,8 @@ LasFileWriter<Records>::LasFileWriter(std::filesystem::path path, LasSettings ho
   write_header();
   write_descriptor(Records::first_descriptor());
   write_extra_bytes_record();
-  if (!settings().wkt.empty()) write_wkt_record();
-  if (by_keys()) write_keys_record();
+  if (!wkt_text().empty()) write_wkt_record();
+  if (layout().legacy && wkt_text().empty() && settings().reference.epsg != 0) write_keys_record();
   descriptors_at_ = file_.position();
   if (packets_) {
     file_.write(packets_->descriptors({}));

@@ -14,16 +14,17 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 
 /// Columns of trajectory files, their names and units, and formats.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Content of a column of a trajectory file.
-enum class Quantity : std::uint8_t { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw };
+enum class Quantity { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw, longitude, latitude };
 
 /// Value of each quantity in SI units; 0 if not set.
 struct QuantityValues {
-  std::array<double, 15> values{};  ///< [s, m, rad or 1]
+  std::array<double, 17> values{};  ///< [s, m, rad or 1]
 
   [[nodiscard]] double& operator[](Quantity of) noexcept { return values[static_cast<std::size_t>(of)]; }
   [[nodiscard]] double operator[](Quantity of) const noexcept { return values[static_cast<std::size_t>(of)]; }
@@ -41,7 +42,7 @@ struct TrajectoryColumn {
 namespace detail {
 
 /// Names of the columns of each quantity, in the order of `Quantity`; the first is preferred.
-inline constexpr std::array<std::string_view, 15> quantity_names{"time t gps_time gpstime timestamp",
+inline constexpr std::array<std::string_view, 17> quantity_names{"time t gps_time gpstime timestamp",
                                                                  "x",
                                                                  "y",
                                                                  "z",
@@ -55,7 +56,9 @@ inline constexpr std::array<std::string_view, 15> quantity_names{"time t gps_tim
                                                                  "qx",
                                                                  "qy",
                                                                  "qz",
-                                                                 "qw"};
+                                                                 "qw",
+                                                                 "longitude lon",
+                                                                 "latitude lat"};
 
 /// Calls `visit` with each name and its quantity.
 void each_quantity_name(const auto& visit) {
@@ -69,7 +72,7 @@ enum class Dimension : std::uint8_t { time, length, angle, number };
 [[nodiscard]] constexpr Dimension dimension_of(Quantity quantity) noexcept {
   if (quantity == Quantity::time) return Dimension::time;
   if (quantity <= Quantity::down) return Dimension::length;
-  return quantity <= Quantity::yaw ? Dimension::angle : Dimension::number;
+  return quantity <= Quantity::yaw || quantity >= Quantity::longitude ? Dimension::angle : Dimension::number;
 }
 
 struct Unit {
@@ -182,12 +185,16 @@ class TrajectoryColumns {
   /// Requires a time, one whole position, and at most one attitude.
   void require_whole() {
     using enum Quantity;
-    const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}),
-              angles = count({roll, pitch, yaw}), quaternion = count({qx, qy, qz, qw});
+    const int xyz = count({x, y, z}), directions = count({east, north}) + count({longitude, latitude}),
+              vertical = count({up, down}), degrees = count({longitude, latitude}), angles = count({roll, pitch, yaw}),
+              quaternion = count({qx, qy, qz, qw});
     if (!has(time))
       problem_ = "no column is the time: expected one named 'time_s'";
-    else if (!(xyz == 3 && directions + vertical == 0) && !(xyz == 0 && directions == 2 && vertical == 1))
-      problem_ = "the columns do not define one position: expected either x, y, z or east, north and up or down";
+    else if (!(xyz == 3 && directions + vertical == 0) &&
+             !(xyz == 0 && directions == 2 && vertical == 1 && degrees != 1))
+      problem_ =
+          "the columns do not define one position: expected either x, y, z or east, north (or latitude, longitude, to "
+          "be projected) and up or down";
     else if (quaternion > 0 && (quaternion < 4 || angles > 0))
       problem_ =
           "the columns do not define one attitude: expected either angles or qx, qy, qz and qw, the others "
@@ -223,6 +230,7 @@ struct TrajectoryFormat {
   AngleUnit angle_unit = AngleUnit::degree;     ///< unit of angles whose names have none
   AngleConvention angles = heading_pitch_roll;  ///< meaning of roll, pitch and yaw
   Axes axes{};                                  ///< axes of x, y, z and of qx, qy, qz
+  MapProjector projector{};  ///< of longitude and latitude; attitudes to true north become those to grid north
 
   void validate() const {
     angles.validate();

@@ -152,8 +152,15 @@ class TrajectoryReader {
   void leave_out_unknown() {
     std::string unknown;
     std::vector<std::string>& out = format_.left_out;
+    const auto is = [this](const std::string& name, Quantity first, Quantity last) {
+      const std::optional<TrajectoryColumn> column = trajectory_column(name, format_.angle_unit);
+      return column && column->quantity >= first && column->quantity <= last;
+    };
+    using enum Quantity;
+    const bool is_placed = std::ranges::any_of(names_, [&](const std::string& name) { return is(name, x, north); });
     for (const std::string& name : names_) {
-      if (trajectory_column(name, format_.angle_unit) || std::ranges::find(out, name) != out.end()) continue;
+      const bool is_known = is(name, time, is_placed ? qw : latitude);  // degrees may stand beside metres
+      if (is_known || std::ranges::find(out, name) != out.end()) continue;
       out.push_back(name);
       unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
     }
@@ -174,7 +181,26 @@ class TrajectoryReader {
                          ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
     }
-    rows_.push_back({{values[Quantity::time], position(values), rotation(values)}, table_.line()});
+    TimedPose pose{values[Quantity::time], position(values), rotation(values)};
+    if (columns_->has(Quantity::longitude)) project(values, pose);
+    rows_.push_back({pose, table_.line()});
+  }
+
+  /// Moves a pose to the map. Source: Snyder 1987, Map Projections, p. 19 (convergence).
+  void project(const QuantityValues& values, TimedPose& pose) {
+    if (!format_.projector)
+      table_.fail_here(
+          "has a longitude and a latitude: expected east and north, or a map to project to, by "
+          "TrajectoryFormat::projector "
+          "or --project");
+    try {
+      const MapPoint at = format_.projector(degrees(values[Quantity::longitude]), degrees(values[Quantity::latitude]));
+      pose.position.x = at.place.x;
+      pose.position.y = at.place.y;
+      pose.rotation = rotation_about(axis::up, -at.convergence) * pose.rotation;
+    } catch (const FileError& error) {
+      table_.fail_here("cannot be projected: ", error.what());
+    }
   }
 
   [[nodiscard]] Vec3 position(const QuantityValues& values) const {

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include "reference_systems.hpp"
+
+#include <string>
+#include <string_view>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
+#if defined(PULSECAST_REFERENCE)
+#include <pulsecast/io/reference.hpp>
+#else
+#include <pulsecast/io/detail/las/reference.hpp>
+#endif
+
+using namespace pulsecast;
+
+namespace {
+
+/// Text of a file on one line.
+std::string text_of(const std::filesystem::path& path) {
+  const io::MappedFile file(path, "the text (WKT) of a reference system");
+  constexpr std::size_t most = 65'534;  // source: LAS 1.4 R15, size of a variable-length record
+  if (file.text().size() > most) io::detail::fail(path, "has ", file.text().size(), " bytes: expected at most ", most);
+  std::string text(text::trimmed(text::without_byte_order_mark(file.text())));
+  std::erase_if(text, [](char c) { return c == '\n' || c == '\r' || c == '\0'; });
+  if (text.empty()) io::detail::fail(path, "is blank: expected the text (WKT) of a reference system");
+  return text;
+}
+
+#if !defined(PULSECAST_REFERENCE)
+/// Value of the last UNIT in a well-known text, that of its coordinates [m]. Source: OGC 01-009, 7.
+double last_unit(std::string_view text, const std::filesystem::path& path) {
+  const std::size_t at = text.rfind("UNIT["), comma = at == text.npos ? at : text.find(',', at);
+  if (comma == text.npos) io::detail::fail(path, "has no UNIT[name, metres]: expected one");
+  const std::string_view number = text.substr(comma + 1, text.find_first_of(",]", comma + 1) - comma - 1);
+  const std::optional<double> metres = text::finite_number_in(text::trimmed(number));
+  if (!metres || !(*metres > 0)) io::detail::fail(path, "has the unit ", text::quoted(number), ": expected metres");
+  return *metres;
+}
+#endif
+
+}  // namespace
+
+#if defined(PULSECAST_REFERENCE)
+io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& /*notes*/) {
+  io::SpatialReference all = given;
+  if (!wkt.empty()) all.wkt = text_of(wkt);
+  return io::complete_reference(all, wkt.string());
+}
+
+io::MapProjector projector_of(const Options& options) {
+  if (options.project_to == 0) return {};
+  return io::map_projector(options.project_from, options.project_to);
+}
+#else
+io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& notes) {
+  io::SpatialReference all = given;
+  if (!wkt.empty()) {
+    all.wkt = text_of(wkt);
+    if (all.wkt.starts_with("GEOG")) io::detail::fail(wkt, "is in degrees: expected a projected reference system");
+    const std::size_t heights = std::min(all.wkt.find("VERT_CS["), all.wkt.size());
+    all.unit = last_unit(std::string_view(all.wkt).substr(0, heights), wkt);
+    if (heights < all.wkt.size()) all.vertical_unit = last_unit(all.wkt, wkt);
+  } else if (io::detail::las_utm(all.epsg).empty() || all.vertical_epsg != 0) {
+    notes.warn("built without PROJ (Debian package: libproj-dev): LAS 1.4 does not name EPSG:" +
+               std::to_string(all.epsg) + (all.vertical_epsg == 0 ? "" : "+" + std::to_string(all.vertical_epsg)) +
+               ", and metres are assumed; --wkt FILE names it");
+  }
+  return all;
+}
+
+io::MapProjector projector_of(const Options& options) {
+  if (options.project_to == 0) return {};
+  throw FileError("--project", "", "needs PROJ, which this program was built without (Debian package: libproj-dev)");
+}
+#endif
