@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Writes points as NPZ, and their records one after another, for NumPy to read and compare. Usage: files FOLDER.
+// Writes points as NPZ, PLY and PCD, and their records one after another, for NumPy and Open3D to read and compare.
+// Usage: files FOLDER.
 
 #include <filesystem>
 #include <string>
 
 #include <pulsecast/io/npz.hpp>
+#include <pulsecast/io/pcd.hpp>
+#include <pulsecast/io/ply.hpp>
 
 #include "support/random_pulses.hpp"
 
@@ -24,9 +27,16 @@ int main(int count, char** words) {
     const std::string name = std::to_string(pulses);
     PointBuffer points(every_type);
     points(support::RandomPulses(pulses, pulses).batch());
-    NpzWriter writer(folder / (name + ".npz"), {.layout = every_type});
-    writer.add(points);
-    writer.close();
+    const auto write = [&](auto writer) {
+      writer.add(points);
+      writer.close();
+    };
+    write(NpzWriter(folder / (name + ".npz"), {.layout = every_type}));
+    write(PlyWriter(folder / (name + ".ply"), {.layout = every_type}));
+    for (const auto& [encoding, ending] :
+         {std::pair{PcdEncoding::ascii, ".ascii.pcd"}, std::pair{PcdEncoding::binary, ".binary.pcd"},
+          std::pair{PcdEncoding::binary_compressed, ".compressed.pcd"}})
+      write(PcdWriter(folder / (name + ending), {.encoding = encoding, .layout = every_type}));
     OutputFile records(folder / (name + ".bin"));
     records.write(points.records());
     records.commit();
