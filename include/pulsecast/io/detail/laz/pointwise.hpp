@@ -75,7 +75,7 @@ class LazPointwise {
 
   /// Kind of a return's place in its pulse: rows by number of returns, columns by return number.
   [[nodiscard]] static std::size_t kind(unsigned bits) noexcept {
-    static constexpr std::array<std::string_view, 8> kinds{"fedcba98", "e0136aa9", "d1247bba", "c34589cc",
+    static constexpr std::array<std::string_view, 8> kinds{"fedcba98", "e0136aa9", "d1247bba", "c3458ccb",
                                                            "b6789ddc", "aabcdeed", "9abcdefe", "89abcdef"};
     const char digit = kinds[bits >> 3 & 7U][bits & 7U];
     return static_cast<std::size_t>(digit < 'a' ? digit - '0' : digit - 'a' + 10);
