@@ -19,12 +19,12 @@
 
 namespace pulsecast::support {
 
-/// Makes LAZ files of LAS files of `LasBuilder`, of point formats 0 to 3 and 6 to 10, good ones and others. What of wave
-/// packets is compressed must be constant.
+/// Makes LAZ files of LAS files of `LasBuilder`, of point formats 0 to 3 and 6 to 10, good ones and others. What of
+/// wave packets is compressed must be constant.
 struct LazBuilder {
   std::size_t chunk_points = 50000;
-  std::vector<std::size_t> chunks{};  ///< numbers of points of chunks that differ in them; empty for equal ones
-  bool streamed = false;              ///< the position of the chunk table stands at the end
+  std::vector<std::size_t> chunks{};     ///< numbers of points of chunks that differ in them; empty for equal ones
+  bool streamed = false;                 ///< the position of the chunk table stands at the end
   unsigned compressor = 0, version = 0;  ///< 0: by format
   std::string items{};                   ///< types of items, of one byte each; empty: by format
 
@@ -83,9 +83,9 @@ struct LazBuilder {
   }
 
   [[nodiscard]] std::string descriptor_of(unsigned format, std::size_t record) const {
-    static const std::vector<std::string> types{"\x06",         "\x06\x07", "\x06\x08", "\x06\x07\x08", "\x06\x07\x09",
-                                                "\x06\x07\x08\x09", "\x0A",     "\x0A\x0B", "\x0A\x0C",     "\x0A\x0D",
-                                                "\x0A\x0C\x0D"};
+    static const std::vector<std::string> types{"\x06",         "\x06\x07",         "\x06\x08",    "\x06\x07\x08",
+                                                "\x06\x07\x09", "\x06\x07\x08\x09", "\x0A",        "\x0A\x0B",
+                                                "\x0A\x0C",     "\x0A\x0D",         "\x0A\x0C\x0D"};
     static constexpr std::size_t sizes[]{0, 2, 4, 8, 4, 8, 20, 8, 6, 29, 30, 6, 8, 29};
     std::string all = items.empty() ? types.at(format) : items;
     const std::size_t extra = record - standard_size(format);

@@ -67,7 +67,7 @@ class LazIntegers {
       correction = std::numeric_limits<std::int32_t>::min();
     else
       correction = of_length(coder, correction > 0 ? size : (1U << length_) - 1 - size);
-    return laz_step(laz_step(correction, 0), expected);
+    return Coder::encodes ? number : laz_step(laz_step(correction, 0), expected);
   }
 
   /// Bit length of the last correction: a measure of the error to expect of a related number.
