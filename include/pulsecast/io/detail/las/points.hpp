@@ -108,10 +108,6 @@ class LasPoints {
   static_assert(std::endian::native == std::endian::little,
                 "LAS files are little-endian, and are read as the numbers lie in memory");
 
-  [[noreturn]] void fail(std::size_t byte, std::initializer_list<std::string_view> problem) const {
-    file_.fail_at_byte(byte, text::joined(problem));
-  }
-
   void read_header(const LasWants& wants) {
     constexpr std::array<std::size_t, 5> header_sizes{227, 227, 227, 235, 375};  // by minor version
     constexpr std::array<std::size_t, 11> sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -123,85 +119,87 @@ class LasPoints {
     const auto major = detail::las_number<std::uint8_t>(bytes, 24);
     minor_ = detail::las_number<std::uint8_t>(bytes, 25);
     if (major != 1 || minor_ > 4)
-      fail(24, {"is LAS ", std::to_string(major), ".", std::to_string(minor_), ": expected a version from 1.0 to 1.4"});
-    const std::size_t header_size = detail::las_number<std::uint16_t>(bytes, 94);
-    if (header_size < header_sizes[minor_] || bytes.size() < header_sizes[minor_])
-      fail(94, {"the header has ", std::to_string(std::min(header_size, bytes.size())), " bytes: expected at least ",
-                std::to_string(header_sizes[minor_])});
+      file_.fail_at_byte(24, "is LAS ", major, ".", minor_, ": expected a version from 1.0 to 1.4");
+    const std::size_t header_size = detail::las_number<std::uint16_t>(bytes, 94), least = header_sizes[minor_];
+    if (std::min(header_size, bytes.size()) < least)
+      file_.fail_at_byte(94, "the header has ", std::min(header_size, bytes.size()), " bytes: expected at least ",
+                         least);
     const auto mark = detail::las_number<std::uint8_t>(bytes, 104);  // from 128 on by LASzip
     const unsigned format = places_.format = mark & 127U;
-    if (format >= sizes.size())
-      fail(104, {"has the point format ", std::to_string(format), ": expected one from 0 to 10"});
+    if (format >= sizes.size()) file_.fail_at_byte(104, "has the point format ", format, ": expected one from 0 to 10");
     places_.record = detail::las_number<std::uint16_t>(bytes, 105);
     places_.extras = sizes[format];
+    places_.colour = wants.colours ? colours[format] : 0;
     if (places_.record < sizes[format])
-      fail(105, {"a point has ", std::to_string(places_.record), " bytes: expected at least the ",
-                 std::to_string(sizes[format]), " of format ", std::to_string(format)});
-    if (wants.colours) places_.colour = colours[format];
-
+      file_.fail_at_byte(105, "a point has ", places_.record, " bytes: expected at least the ", sizes[format],
+                         " of format ", format);
     const std::uint64_t begin = detail::las_number<std::uint32_t>(bytes, 96);
     count_ = minor_ == 4 ? detail::las_number<std::uint64_t>(bytes, 247) : 0;
     const std::size_t count_at = count_ > 0 ? 247 : 107;
     if (count_ == 0) count_ = detail::las_number<std::uint32_t>(bytes, 107);
-    const std::string first = std::to_string(begin), size = std::to_string(file_.size());
     if (begin < header_size || begin > file_.size())
-      fail(96, {"the points begin at byte ", first, ": expected one from ", std::to_string(header_size),
-                " to the file's size of ", size});
+      file_.fail_at_byte(96, "the points begin at byte ", begin, ": expected one from ", header_size,
+                         " to the file's size of ", file_.size());
     if (count_ == 0) file_.fail_at_byte(107, "holds no point: expected at least one");
     if (mark < 128 && count_ > (file_.size() - begin) / places_.record)
-      fail(count_at, {"claims ", std::to_string(count_), " points of ", std::to_string(places_.record),
-                      " bytes from byte ", first, ": expected no more than fit into the file's ", size, " bytes"});
-    scale_ = detail::las_number<Vec3>(bytes, 131);
-    offset_ = detail::las_number<Vec3>(bytes, 155);
-    for (int k = 0; k < 3; ++k) {
-      const auto at = static_cast<std::size_t>(131 + 8 * k);
-      if (!(scale_[k] > 0) || !std::isfinite(scale_[k]))
-        file_.fail_at_byte(at, "the scale is " + text::to_text(scale_[k]) + ": expected one above 0");
-      if (!std::isfinite(offset_[k]))
-        file_.fail_at_byte(at + 24, "the offset is " + text::to_text(offset_[k]) + ": expected a finite one");
-    }
-    if (format == 4 || format == 5 || format > 8) ask("waveforms");
-    file_.seek(header_size);
-    read_records(detail::las_number<std::uint32_t>(bytes, 100), 54, begin, wants);
-    if (minor_ == 4) {
-      file_.seek(std::min(detail::las_number<std::uint64_t>(bytes, 235), file_.size()));
-      read_records(detail::las_number<std::uint32_t>(bytes, 243), 60, file_.size(), wants);
-    }
-    detail::LasUnits units(path(), notes_);
-    if (!wkt_.empty() && ((bytes[6] & 16) != 0 || keys_.empty()))
-      unit_ = units.by_wkt(wkt_);
-    else if (!keys_.empty())
-      unit_ = units.by_keys(keys_);
-    else if (scale_.x < 1e-5)
-      ask("steps below 1e-5");
+      file_.fail_at_byte(count_at, "claims ", count_, " points of ", places_.record, " bytes from byte ", begin,
+                         ": expected no more than fit into the file's ", file_.size(), " bytes");
+    read_lattice(bytes);
+    read_records(detail::las_number<std::uint32_t>(bytes, 100), header_size, 54, begin, wants);
+    if (minor_ == 4)
+      read_records(detail::las_number<std::uint32_t>(bytes, 243), detail::las_number<std::uint64_t>(bytes, 235), 60,
+                   file_.size(), wants);
+    read_units((bytes[6] & 16) != 0);
     if (mark >= 128)
       laz_.emplace(file_, descriptor_, begin, places_);
     else
       file_.seek(begin);
   }
 
+  void read_lattice(const std::string& bytes) {
+    scale_ = detail::las_number<Vec3>(bytes, 131);
+    offset_ = detail::las_number<Vec3>(bytes, 155);
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(131 + 8 * k);
+      if (!(scale_[k] > 0) || !std::isfinite(scale_[k]))
+        file_.fail_at_byte(at, "the scale is ", scale_[k], ": expected one above 0");
+      if (!std::isfinite(offset_[k]))
+        file_.fail_at_byte(at + 24, "the offset is ", offset_[k], ": expected a finite one");
+    }
+  }
+
+  void read_units(bool prefers_wkt) {
+    const unsigned format = places_.format;
+    if (format == 4 || format == 5 || format > 8) ask("waveforms");
+    detail::LasUnits units(path(), notes_);
+    if (!wkt_.empty() && (prefers_wkt || keys_.empty()))
+      unit_ = units.by_wkt(wkt_);
+    else if (!keys_.empty())
+      unit_ = units.by_keys(keys_);
+    else if (scale_.x < 1e-5)
+      ask("steps below 1e-5");
+  }
+
   void ask(std::string_view item) { keep_rule(detail::las_rules, path(), "item", item, notes_); }
 
-  /// Reads `count` variable-length records with a header of `head` bytes, up to byte `end`.
-  void read_records(std::uint32_t count, std::size_t head, std::uint64_t end, const LasWants& wants) {
-    for (; count > 0 && file_.position() + head <= end; --count) {
+  /// Reads `count` variable-length records with a header of `head` bytes, from byte `at` up to `end`.
+  void read_records(std::uint32_t count, std::uint64_t at, std::size_t head, std::uint64_t end, const LasWants& wants) {
+    for (; count > 0 && at < end && end - at >= head; --count) {
+      if (file_.position() != at) file_.seek(at);
       const std::string header(file_.take(head));
       if (header.size() < head) return;
-      const std::string_view user = std::string_view(header).substr(2, 16);
-      const std::string name =
-          text::message(user.substr(0, user.find('\0')), ' ', detail::las_number<std::uint16_t>(header, 18));
+      const std::string user = header.substr(2, 16).c_str();
+      const std::string name = text::message(user, ' ', detail::las_number<std::uint16_t>(header, 18));
       const std::uint64_t size =
           head == 54 ? detail::las_number<std::uint16_t>(header, 20) : detail::las_number<std::uint64_t>(header, 20);
-      const std::uint64_t next = file_.position() + std::min(size, file_.size() - file_.position());
-      if (name.starts_with("LASF_Projection ") || name == "lascompatible 22204") ask(name);
-      const auto body = [&] {
-        return std::string(file_.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, InputFile::block_size))));
-      };
-      if (name == "LASF_Projection 2112") wkt_ = body().c_str();
-      if (name == "LASF_Projection 34735") keys_ = body();
-      if (name == "laszip encoded 22204") descriptor_ = body();
-      if (name == "LASF_Spec 4" && wants.objects) find_objects(body());
-      file_.seek(next);
+      const std::string body(
+          file_.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, InputFile::block_size))));
+      if (user == "LASF_Projection" || name == "lascompatible 22204") ask(name);
+      if (name == "LASF_Projection 2112") wkt_ = body.c_str();
+      if (name == "LASF_Projection 34735") keys_ = body;
+      if (name == "laszip encoded 22204") descriptor_ = body;
+      if (name == "LASF_Spec 4" && wants.objects) find_objects(body);
+      at += head + std::min(size, file_.size());
     }
   }
 
@@ -211,12 +209,9 @@ class LasPoints {
     std::size_t at = places_.extras;
     for (; descriptors.size() >= 192; descriptors.remove_prefix(192)) {
       const auto type = static_cast<std::uint8_t>(descriptors[2]), options = static_cast<std::uint8_t>(descriptors[3]);
-      const std::size_t size = type == 0   ? options
-                               : type > 30 ? 0
-                                           : sizes[(type - 1U) % 10 + 1] * ((type - 1U) / 10 + 1);
-      const bool is_plain = (type == 1 || type == 3 || type == 5) && (options & 24U) == 0;
-      if (std::string_view(descriptors.data() + 4, 9) == std::string_view("ObjectId", 9) && is_plain &&
-          at + size <= places_.record) {
+      const std::size_t size = type == 0 ? options : sizes[(type - 1U) % 10 + 1] * ((type - 1U) / 10 + 1);
+      const bool is_number = (type == 1 || type == 3 || type == 5) && (options & 24U) == 0;  // without scale and offset
+      if (is_number && descriptors.substr(4, 9) == std::string_view("ObjectId", 9) && at + size <= places_.record) {
         places_.object = at;
         places_.object_size = size;
       }
