@@ -116,7 +116,7 @@ constexpr unsigned formats[]{0, 1, 2, 3, 6, 7, 8, 9, 10};
 
 TEST_CASE("a LAZ file gives the points of its LAS file, in every format and kind of chunks") {
   for (const unsigned format : formats)
-    for (const std::size_t extra : {0, 7}) {
+    for (const std::size_t extra : {std::size_t{0}, std::size_t{7}}) {
       CAPTURE(format);
       CAPTURE(extra);
       const std::string las = file_of(format, 5000, extra, format + 1);
@@ -261,7 +261,7 @@ TEST_CASE("counts and sizes within chunks of layers are limited by the chunk") {
       LasBuilder::put(bad, chunk + 34 + 4 * layer, size, 4);
       CHECK(error(bad).problem().starts_with("has layers of "));
     }
-  for (const std::size_t layer : {0, 1}) {
+  for (const std::size_t layer : {std::size_t{0}, std::size_t{1}}) {
     std::string bad = good;
     LasBuilder::put(bad, chunk + 34 + 4 * layer, 0, 4);
     CHECK(error(bad).problem() == "the chunk of points ends early: expected an undamaged file");

@@ -39,7 +39,7 @@ struct LazPoint {
   void put_place(std::byte* record) const noexcept {
     std::memcpy(record, &x, 12);
     record[14] = static_cast<std::byte>(returns << 4 | number);
-    record[15] = static_cast<std::byte>((flags & 15U) | channel << 4U | (flags & 48U) << 2);
+    record[15] = static_cast<std::byte>((flags & 15U) | channel * 16U | (flags & 48U) << 2);
     record[16] = static_cast<std::byte>(classification);
   }
 
