@@ -69,7 +69,7 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const auto step = [&](const auto& values, std::size_t context) {
       integers.code(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]),
-                      static_cast<std::int32_t>(values[i]), context);
+                    static_cast<std::int32_t>(values[i]), context);
     };
     if (!points.empty()) step(points, 0);
     step(sizes, 1);
