@@ -19,6 +19,7 @@
 #include <pulsecast/scene/object_attributes.hpp>
 
 #include "support/gltf.hpp"
+#include "support/las_builder.hpp"
 #include "support/png_builder.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
@@ -316,6 +317,24 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   std::get<XyzSource>(cloud.source).material.name = "brick";
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})),
                        doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
+}
+
+TEST_CASE("voxels of a LAS file have the classes of its points, if their material has none") {
+  const Files files;
+  support::LasBuilder las{.minor = 4, .format = 6, .scale = {1, 1, 1}};
+  las.points = {{.stored = {0, 0, 0}, .kind = 2}, {.stored = {5, 0, 0}, .kind = 5}, {.stored = {9, 0, 0}}};
+  std::ofstream(files.folder / "a.las", std::ios::binary) << las.bytes();
+  XyzSource source{.files = {files.folder / "a.las"}, .voxel_size = 1};
+  const auto classes = [&](const XyzSource& from) {
+    const SurveyScene scene = built(scene_of({PartSettings{"3", from, {}, 1, {}, {}, {}}}));
+    const auto at = [&](double x) { return static_cast<int>(below(scene, x, 0).classification); };
+    return std::vector<int>{at(0.5), at(5.5), at(8.5)};
+  };
+  CHECK(classes(source) == std::vector<int>{2, 5, 0});
+  source.material.random = 3;
+  CHECK(classes(source) == std::vector<int>{0, 0, 0});
+  source.material = {files.folder / "m.mtl", "wall"};
+  CHECK(classes(source) == std::vector<int>{6, 6, 6});
 }
 
 /// Writes a GeoTIFF of 8 bits with a colour table, whose entry n is (n, 255 - n, 255), in pixels of 1 m from (0, rows -

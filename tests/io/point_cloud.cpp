@@ -19,7 +19,10 @@
 
 #include <Eigen/SVD>
 
+#include <pulsecast/io/copc.hpp>
 #include <pulsecast/io/detail/point_cloud_reader.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/laz.hpp>
 
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"
@@ -266,6 +269,74 @@ TEST_CASE("a LAS file is recognised as it begins, and gives the same voxels as i
   las.format = 1;
   CHECK(read(las.bytes(), {.normals = VoxelNormals::nearest, .colours = true}).warnings.size() == 2);
   CHECK(error(las.bytes().substr(0, 250)).place() == "byte 107");
+}
+
+TEST_CASE("a voxel has the most frequent class and object of its points, or the lowest of these") {
+  LasBuilder las{.minor = 4, .format = 6, .scale = {1, 1, 1}, .extra = 2};
+  las.more = {{"LASF_Spec", 4, LasBuilder::descriptor("ObjectId", 3)}};
+  const auto add = [&](std::int32_t x, unsigned kind, const char* object) {
+    las.points.push_back({.stored = {x, 0, 0}, .kind = kind, .extra = std::string(object, 1) + '\0'});
+  };
+  add(0, 5, "b");
+  add(0, 2, "a");
+  add(0, 5, "a");
+  add(9, 3, "d");
+  add(9, 2, "c");
+  const PointCloudSettings settings{.classes = true, .objects = true};
+  const PointCloud cloud = read(las.bytes(), settings);
+  CHECK(cloud.classes == std::vector<std::uint32_t>{5, 2});
+  CHECK(cloud.objects == std::vector<std::uint32_t>{'a', 'c'});
+  CHECK(read(las.bytes()).classes.empty());
+  las.more.clear();
+  CHECK(read(las.bytes(), settings).objects.empty());
+  const PointCloud text = read("0 0 0\n", settings);
+  CHECK(text.classes.empty());
+  CHECK(text.warnings.empty());
+}
+
+TEST_CASE("LAS, LAZ and COPC files of ours give the same voxels") {
+  constexpr std::uint64_t seed = 11;
+  CAPTURE(seed);
+  support::Generator random(seed);
+  std::vector<Shot> shots;
+  std::vector<Echo> echoes;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    shots.push_back({.index = i,
+                     .tick = Tick::of(i, 1e4),
+                     .origin = Vec3{477000, 5429000, 100} + random.point(5),
+                     .direction = {0, 0, -1},
+                     .first_echo = i,
+                     .echoes = 1});
+    echoes.push_back({.range = 0,
+                      .amplitude = 1e-9,
+                      .reflectance = 0.3,
+                      .object = ObjectId(random.whole(5)),
+                      .classification = static_cast<std::uint16_t>(random.whole(4)),
+                      .number = 1});
+  }
+  const TemporaryFolder folder;
+  const auto write = [&](auto writer) {
+    writer(EchoBatch{shots, echoes, {}, 0});
+    writer.close();
+  };
+  write(LasWriter(folder / "a.las"));
+  write(LazWriter(folder / "a.laz"));
+  write(CopcWriter(folder / "a.copc.laz"));
+  write(LasWriter(folder / "old.las", {.format = LasFormat::las_1_0}));
+  const auto voxels = [&](const char* name) {
+    const PointCloud cloud = read_point_cloud(folder / name, {.classes = true, .objects = true});
+    CHECK(cloud.points == 3000);
+    CHECK(cloud.warnings.empty());
+    std::map<Cell, std::array<std::uint32_t, 2>> all;
+    for (std::size_t i = 0; i < cloud.voxels.cells.size(); ++i)
+      all[cloud.voxels.cells[i]] = {cloud.classes[i], cloud.objects[i]};
+    return std::pair(cloud.voxels.corner, all);
+  };
+  const auto expected = voxels("a.las");
+  CHECK(expected.second.size() > 900);
+  CHECK(voxels("a.laz") == expected);
+  CHECK(voxels("a.copc.laz") == expected);
+  CHECK(voxels("old.las") == expected);
 }
 
 TEST_CASE("several files make one cloud") {

@@ -113,7 +113,8 @@ class SceneBuilder {
   GroundMaterials ground_materials(const GeoTiffSource& source);
   Material material(const MaterialSource& source);
   MaterialTable table(std::vector<Material> materials) const;
-  MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);
+  MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels,
+                                 std::span<const std::uint32_t> classes);
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
            std::vector<SurveyPart>& all);
   static Placement placement_of(const PartSettings& part, const TransformSettings& transform);

@@ -68,8 +68,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   LazIntegers integers(32, 2);  // contexts: numbers of points, sizes
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const auto step = [&](const auto& values, std::size_t context) {
-      integers.encode(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]),
-                      static_cast<std::int32_t>(values[i]), context);
+      integers.code(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]),
+                    static_cast<std::int32_t>(values[i]), context);
     };
     if (!points.empty()) step(points, 0);
     step(sizes, 1);

@@ -38,6 +38,8 @@ struct PointCloudSettings {
   std::optional<Vec3> default_normal{};           ///< for voxels without, of any length but 0
   bool colours = false;                           ///< true to give voxels colours
   std::optional<double> colour_max{};             ///< default: 65535 in LAS, 255 in text
+  bool classes = false;                           ///< true to give voxels classes, if all files have them
+  bool objects = false;                           ///< true to give voxels objects, if all files have them
   TextPointColumns columns = {};                  ///< columns of text files
 
   void validate() const {
@@ -57,9 +59,11 @@ struct PointCloud {
   std::vector<std::array<float, 3>> colours{};  ///< of voxels, from 0 to 1, root mean square
   std::uint64_t points = 0;                     ///< number of points read
   std::vector<std::string> warnings{};          ///< oddities that could still be read
+  std::vector<std::uint32_t> classes{};         ///< of voxels: the most frequent, or the lowest of these
+  std::vector<std::uint32_t> objects{};         ///< of voxels, as classes
 };
 
-/// Reads point clouds, text (`TextPoints`) or LAS (`LasPoints`) as detected, into one grid of
+/// Reads point clouds, text (`TextPoints`) or LAS, LAZ and COPC (`LasPoints`) as detected, into one grid of
 /// voxels. Files are read twice, for the extent and for the voxels: memory is that of the voxels.
 ///
 /// A voxel includes its lower faces and excludes its upper ones, but for the last ones of

@@ -106,8 +106,9 @@ PULSECAST_INLINE MaterialTable SceneBuilder::table(std::vector<Material> materia
   return material_table(std::move(materials));
 }
 
-/// Material of voxels, or its variants in turn.
-PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSource& source, VoxelData& voxels) {
+/// Material of voxels, its variants in turn, or, if it has no class, copies with the classes of the voxels.
+PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSource& source, VoxelData& voxels,
+                                                              std::span<const std::uint32_t> classes) {
   std::vector<Material> all{material(source)};
   if (source.random > 0) {
     const auto count = static_cast<std::size_t>(source.random);
@@ -115,6 +116,15 @@ PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSour
     all.insert(all.end(), variants.begin(), variants.end());
     const auto turns = assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
     voxels.materials.assign(turns.begin(), turns.end());
+  } else if (!classes.empty() && all[0].classification == 0) {
+    std::map<std::uint32_t, std::uint16_t> materials{{0, std::uint16_t{0}}};
+    voxels.materials.resize(voxels.cells.size());
+    for (std::size_t i = 0; i < voxels.materials.size(); ++i) {
+      const std::uint32_t number = std::min<std::uint32_t>(classes[i], 65535);
+      const auto [known, is_new] = materials.try_emplace(number, static_cast<std::uint16_t>(all.size()));
+      if (is_new) all.emplace_back(all[0]).classification = static_cast<std::uint16_t>(number);
+      voxels.materials[i] = known->second;
+    }
   }
   return table(std::move(all));
 }

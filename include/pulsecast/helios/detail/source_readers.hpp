@@ -47,7 +47,8 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzSource& source) {
-  io::PointCloudSettings s{.voxel_size = source.voxel_size, .default_normal = source.default_normal};
+  io::PointCloudSettings s{
+      .voxel_size = source.voxel_size, .default_normal = source.default_normal, .classes = source.material.random == 0};
   s.normals = source.estimate_normals > 0   ? io::VoxelNormals::fitted
               : source.snap_neighbor_normal ? io::VoxelNormals::nearest
                                             : io::VoxelNormals::mean;
@@ -66,7 +67,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzS
     if (cloud.voxels.cells.empty())
       return warn(
           {file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
-    MaterialTable materials = assign_materials(source.material, cloud.voxels);
+    MaterialTable materials = assign_materials(source.material, cloud.voxels, cloud.classes);
     all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
   });
 }
@@ -80,6 +81,7 @@ PULSECAST_INLINE void SceneBuilder::drop_bare(const std::filesystem::path& file,
   for (std::size_t i = 0; i < all; ++i)
     if (!is_bare(i)) {
       v.cells[kept] = v.cells[i];
+      if (!cloud.classes.empty()) cloud.classes[kept] = cloud.classes[i];
       v.normals[kept++] = v.normals[i];
     }
   if (kept == all) return warn(cloud.warnings);
@@ -105,7 +107,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
     io::VoxelFile voxels = io::read_voxel_file(file, s);
     warn(voxels.warnings);
     if (voxels.voxels.cells.empty()) return warn({file.string() + ": holds no occupied voxel, and is left out"});
-    MaterialTable materials = assign_materials(source.material, voxels.voxels);
+    MaterialTable materials = assign_materials(source.material, voxels.voxels, {});
     if (!source.leaf_angles.empty())  // a `ladlut` has 2 pi times the extinction
       for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
     if (source.mode == VoxelMode::transmittive)

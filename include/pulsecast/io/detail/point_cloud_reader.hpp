@@ -38,7 +38,7 @@ inline void refuse_other_kinds(InputFile& file) {
   for (const Kind& kind : kinds)
     if (head.starts_with(kind.begin) && (kind.begin != "ply" || head.size() < 4 || head[3] == '\n' || head[3] == '\r'))
       file.fail("is ", kind.name,
-                ": expected a point cloud as text or LAS; CloudCompare and pdal translate convert to LAS");
+                ": expected a point cloud as text, LAS or LAZ; CloudCompare and pdal translate convert to LAS");
   file.seek(0);
 }
 
@@ -46,7 +46,7 @@ inline void refuse_other_kinds(InputFile& file) {
 void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, const auto& function) {
   InputFile file(path, "a point cloud");
   if (LasPoints::is_las(file)) {
-    LasPoints points(std::move(file));
+    LasPoints points(std::move(file), {.colours = settings.colours, .objects = settings.objects});
     function(points);
   } else {
     refuse_other_kinds(file);
@@ -79,6 +79,34 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   return side < 0 ? -normal : normal;
 }
 
+/// Counts of labels, such as classes, by voxel.
+class VoxelLabels {
+ public:
+  void add(std::size_t voxel, std::uint32_t label) {
+    const std::size_t pair = pairs_.number({static_cast<std::uint32_t>(voxel), label, 0});
+    if (pair == counts_.size()) counts_.push_back(0);
+    ++counts_[pair];
+  }
+
+  /// Most frequent label of each voxel, or the lowest of these.
+  [[nodiscard]] std::vector<std::uint32_t> most_frequent(std::size_t voxels) && {
+    std::vector<std::uint32_t> labels(voxels);
+    std::vector<std::uint64_t> most(voxels);
+    const auto pairs = std::move(pairs_).release();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto [voxel, label, none] = pairs[i];
+      if (counts_[i] < most[voxel] || (counts_[i] == most[voxel] && label > labels[voxel])) continue;
+      most[voxel] = counts_[i];
+      labels[voxel] = label;
+    }
+    return labels;
+  }
+
+ private:
+  CellNumbers pairs_;
+  std::vector<std::uint64_t> counts_;
+};
+
 class PointCloudReader {
  public:
   PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings)
@@ -97,6 +125,8 @@ class PointCloudReader {
     cloud_.voxels.corner = corner();
     finish_normals();
     finish_colours();
+    if (classes_) cloud_.classes = std::move(class_counts_).most_frequent(counts_.size());
+    if (objects_) cloud_.objects = std::move(object_counts_).most_frequent(counts_.size());
     cloud_.voxels.cells = std::move(cells_).release();
     return std::move(cloud_);
   }
@@ -110,6 +140,8 @@ class PointCloudReader {
     const bool from_file = source == VoxelNormals::mean || source == VoxelNormals::nearest;
     normals_ = source != VoxelNormals::none;
     colours_ = settings_.colours;
+    classes_ = settings_.classes;
+    objects_ = settings_.objects;
     for (const std::filesystem::path& path : paths)
       with_points(path, settings_, [&](auto& points) {
         const std::uint64_t before = cloud_.points;
@@ -121,6 +153,8 @@ class PointCloudReader {
         };
         if (from_file && !points.has_normals()) lack(normals_, "has no normals: no voxel gets one from a file");
         if (settings_.colours && !points.has_colours()) lack(colours_, "has no colours: no voxel gets one");
+        classes_ = classes_ && points.has_class();
+        objects_ = objects_ && points.has_object();
         for (std::string& warning : points.warnings()) cloud_.warnings.push_back(std::move(warning));
       });
   }
@@ -173,6 +207,8 @@ class PointCloudReader {
     ++counts_[voxel];
     if (normals_) add_normal(points, voxel, p - centre);
     if (colours_) add_colour(points, voxel);
+    if (classes_) class_counts_.add(voxel, points.classification());
+    if (objects_) object_counts_.add(voxel, points.object());
   }
 
   void append() {
@@ -260,11 +296,12 @@ class PointCloudReader {
 
   PointCloudSettings settings_;
   PointCloud cloud_;
-  bool normals_ = false, colours_ = false;  // true if gathered in the second pass
-  Box bounds_;                              // extent of the points
-  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m]; its first and last cells
-  double brightest_ = 0;                    // largest channel in LAS files
+  bool normals_ = false, colours_ = false, classes_ = false, objects_ = false;  // true if gathered in the second pass
+  Box bounds_;                                                                  // extent of the points
+  Vec3 origin_{}, first_{}, last_{};  // of the lattice [m]; its first and last cells
+  double brightest_ = 0;              // largest channel in LAS files
   CellNumbers cells_;
+  VoxelLabels class_counts_, object_counts_;
   // for each voxel:
   std::vector<std::uint64_t> counts_;            // number of points
   std::vector<Vec3> sums_;                       // sum of normals, or of offsets from the centre

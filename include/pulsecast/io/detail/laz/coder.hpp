@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -32,6 +33,17 @@ class LazModel {
   /// Cumulative share of the symbols below this one, in 2^-15; that of the last ends at 1.
   [[nodiscard]] std::uint32_t below(std::size_t symbol) const noexcept { return below_[symbol]; }
   [[nodiscard]] bool last(std::size_t symbol) const noexcept { return symbol + 1 == symbols_; }
+
+  /// Symbol with a share, in 2^-15; the last one beyond 1.
+  [[nodiscard]] unsigned at(std::uint32_t share) const noexcept {
+    std::uint32_t first = 0;
+    for (std::uint32_t rest = symbols_; rest > 1;) {
+      const std::uint32_t half = rest / 2;
+      first += below_[first + half] <= share ? half : 0;
+      rest -= half;
+    }
+    return first;
+  }
 
   void learn(std::size_t symbol) noexcept {
     ++count_[symbol];
@@ -80,31 +92,38 @@ class LazBitModel {
   std::uint32_t zeros_ = 1, total_ = 2, of_zero_ = 1U << (share_bits - 1), cycle_ = 4, until_renewal_ = 4;
 };
 
-/// Arithmetic encoder: the bytes are a number in [0, 1), and each symbol narrows its interval.
+/// Arithmetic encoder: the bytes are a number in [0, 1), and each symbol narrows its interval. As for `LazDecoder`,
+/// what is coded is returned: laws of coding are functions of either.
 class LazEncoder {
  public:
+  static constexpr bool encodes = true;
+
   template <std::size_t Capacity>
-  void encode(LazModel<Capacity>& model, std::size_t symbol) {
+  unsigned code(LazModel<Capacity>& model, unsigned symbol) {
     const std::uint32_t unit = length_ >> LazModel<Capacity>::share_bits, low = unit * model.below(symbol);
     narrow(low, (model.last(symbol) ? length_ : unit * model.below(symbol + 1)) - low);
     model.learn(symbol);
+    return symbol;
   }
 
-  void encode(LazBitModel& model, bool bit) {
+  bool code(LazBitModel& model, bool bit) {
     const std::uint32_t zero = (length_ >> LazBitModel::share_bits) * model.of_zero();
     narrow(bit ? zero : 0, bit ? length_ - zero : zero);
     model.learn(bit);
+    return bit;
   }
 
-  /// Encodes the lowest `count` bits of a number, from 1 to 32, as equally likely; others are 0.
-  void encode_bits(std::uint32_t value, unsigned count) {
+  /// Codes the lowest `count` bits of a number, from 1 to 32, as equally likely; others are 0.
+  std::uint32_t code_bits(std::uint32_t value, unsigned count) {
+    const std::uint32_t all = value;
     if (count > 19) {  // more would exceed the interval
-      encode_bits(value & 0xFFFFU, 16);
+      code_bits(value & 0xFFFFU, 16);
       value >>= 16;
       count -= 16;
     }
     const std::uint32_t unit = length_ >> count;
     narrow(unit * value, unit);
+    return all;
   }
 
   /// Bytes of all coded symbols; bytes after them do not matter.
@@ -141,6 +160,70 @@ class LazEncoder {
   std::uint32_t base_ = 0, length_ = 0xFFFFFFFFU;
   std::vector<std::byte> out_;
   std::size_t size_ = 0;
+};
+
+/// Arithmetic decoder; values to be coded are ignored. Bytes beyond the end are 0, and any bytes give symbols.
+class LazDecoder {
+ public:
+  static constexpr bool encodes = false;
+
+  LazDecoder() = default;
+  explicit LazDecoder(std::span<const std::byte> bytes) noexcept : rest_(bytes) { take(4); }
+
+  template <std::size_t Capacity>
+  unsigned code(LazModel<Capacity>& model, unsigned /*symbol*/ = 0) noexcept {
+    const std::uint32_t unit = length_ >> LazModel<Capacity>::share_bits;
+    const unsigned symbol = model.at(value_ / unit);
+    const std::uint32_t low = unit * model.below(symbol);
+    narrow(low, (model.last(symbol) ? length_ : unit * model.below(symbol + 1)) - low);
+    model.learn(symbol);
+    return symbol;
+  }
+
+  bool code(LazBitModel& model, bool /*bit*/ = false) noexcept {
+    const std::uint32_t zero = (length_ >> LazBitModel::share_bits) * model.of_zero();
+    const bool bit = value_ >= zero;
+    narrow(bit ? zero : 0, bit ? length_ - zero : zero);
+    model.learn(bit);
+    return bit;
+  }
+
+  std::uint32_t code_bits(std::uint32_t /*value*/, unsigned count) noexcept {
+    if (count > 19) {
+      const std::uint32_t low = code_bits(0, 16);
+      return code_bits(0, count - 16) << 16 | low;
+    }
+    const std::uint32_t unit = length_ >> count, value = std::min(value_ / unit, (1U << count) - 1);
+    narrow(unit * value, unit);
+    return value;
+  }
+
+  /// True if more bytes were taken than there are and encoders leave out.
+  [[nodiscard]] bool is_beyond_end() const noexcept { return missing_ > 4; }
+
+ private:
+  void narrow(std::uint32_t low, std::uint32_t length) noexcept {
+    const auto done = static_cast<unsigned>(std::countl_zero(length)) & 24U;
+    value_ -= low;
+    length_ = length << done;
+    if (done > 0) take(done / 8);
+  }
+
+  void take(unsigned bytes) noexcept {
+    for (; bytes > 0; --bytes) {
+      value_ <<= 8;
+      if (rest_.empty()) {
+        ++missing_;
+        continue;
+      }
+      value_ |= std::to_integer<std::uint32_t>(rest_.front());
+      rest_ = rest_.subspan(1);
+    }
+  }
+
+  std::span<const std::byte> rest_;
+  std::uint32_t value_ = 0, length_ = 0xFFFFFFFFU;
+  std::size_t missing_ = 0;
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
@@ -51,23 +52,22 @@ class LazIntegers {
     for (unsigned k = 1; k <= bits; ++k) corrections_.emplace_back(std::size_t{1} << std::min(k, modelled_bits));
   }
 
-  /// Encodes a number; 16-bit ones may be signed or unsigned. Arithmetic wraps around.
-  void encode(LazEncoder& encoder, std::int32_t expected, std::int32_t number, std::size_t context = 0) {
+  /// Codes a number; 16-bit ones may be signed or unsigned, and are decoded modulo 2^16. Arithmetic wraps around.
+  template <class Coder>
+  std::int32_t code(Coder& coder, std::int32_t expected, std::int32_t number, std::size_t context = 0) {
     std::int32_t correction = laz_step(expected, number);
     if (bits_ == 16) correction = static_cast<std::int16_t>(correction);
     // corrections of k bits: in [1 - 2^k, -2^(k-1)] or [2^(k-1) + 1, 2^k]; with k = 0, 0 and 1
     const std::int64_t above = correction > 0 ? correction - 1 : -std::int64_t{correction};
     const auto size = static_cast<std::uint32_t>(above);
-    length_ = static_cast<unsigned>(std::bit_width(size));
-    encoder.encode(lengths_[context], length_);
-    if (length_ == 0) return encoder.encode(zero_or_one_, correction == 1);
-    if (length_ == 32) return;  // a single one: -2^31
-    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;
-    LazModel<>& model = corrections_[length_ - 1];
-    if (length_ <= modelled_bits) return encoder.encode(model, place);
-    const unsigned others = length_ - modelled_bits;
-    encoder.encode(model, place >> others);
-    encoder.encode_bits(place & ((1U << others) - 1), others);
+    length_ = coder.code(lengths_[context], static_cast<unsigned>(std::bit_width(size)));
+    if (length_ == 0)
+      correction = coder.code(zero_or_one_, correction == 1) ? 1 : 0;
+    else if (length_ == 32)  // a single one
+      correction = std::numeric_limits<std::int32_t>::min();
+    else
+      correction = of_length(coder, correction > 0 ? size : (1U << length_) - 1 - size);
+    return Coder::encodes ? number : laz_step(laz_step(correction, 0), expected);
   }
 
   /// Bit length of the last correction: a measure of the error to expect of a related number.
@@ -76,35 +76,54 @@ class LazIntegers {
  private:
   static constexpr unsigned modelled_bits = 8;
 
+  /// Codes the rank of a correction of 1 to 31 bits.
+  template <class Coder>
+  std::int32_t of_length(Coder& coder, std::uint32_t rank) {
+    LazModel<>& model = corrections_[length_ - 1];
+    if (length_ <= modelled_bits) {
+      rank = coder.code(model, rank);
+    } else {
+      const unsigned others = length_ - modelled_bits;
+      const std::uint32_t high = coder.code(model, rank >> others);
+      rank = high << others | coder.code_bits(rank & ((1U << others) - 1), others);
+    }
+    const std::uint32_t below = rank >> (length_ - 1) == 0 ? (1U << length_) - 1 : 0xFFFFFFFFU;
+    return static_cast<std::int32_t>(rank - below);
+  }
+
   unsigned bits_, length_ = 0;
   std::vector<LazModel<33>> lengths_;
   LazBitModel zero_or_one_;
   std::vector<LazModel<>> corrections_;  // by length, from 1
 };
 
-/// Coder of times, as 64-bit patterns: continuations of one of four series, each with its last time
-/// and usual step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+/// Coder of times, as 64-bit patterns: continuations of one of four series, each with its last time and usual step; in
+/// version 2 also an equal time. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
 class LazTimes {
  public:
-  explicit LazTimes(std::int64_t first) { last_[0] = first; }
+  explicit LazTimes(std::int64_t first, bool has_equal = false)
+      : equal_(has_equal ? 1 : 0), first_steps_(5 + equal_), multiples_(new_series + 4 + equal_) {
+    last_[0] = first;
+  }
 
-  void encode(LazEncoder& encoder, std::int64_t time) {
-    if (!near(time, series_)) {
-      for (std::size_t k = 1; k < 4; ++k)
-        if (const std::size_t other = (series_ + k) % 4; near(time, other)) {
-          change_series(encoder, k);
-          series_ = other;
-          return go_on(encoder, time);
-        }
-      return begin_series(encoder, time);
+  template <class Coder>
+  std::int64_t code(Coder& coder, std::int64_t time) {
+    for (;;) {
+      const bool is_first = usual_[series_] == 0;
+      const unsigned fresh = new_series_kind();
+      const unsigned kind = coder.code(is_first ? first_steps_ : multiples_, Coder::encodes ? kind_of(time) : 0);
+      if (kind == fresh) return begin_series(coder, time);
+      if (kind < fresh && (equal_ == 0 || kind != equal_time_kind())) return go_on(coder, kind, time);
+      if (kind < fresh) return last_[series_];
+      series_ = (series_ + kind - fresh) % 4;
     }
-    go_on(encoder, time);
   }
 
  private:
-  /// Multiples of the usual step: 0 to 499, at least 500, -9 to -1, at most -10; or a new series.
-  static constexpr int most = 500, least = -10, new_series = most - least + 1;
-  static constexpr int symbols = new_series + 4;  // plus the three other series
+  /// Multiples of the usual step: 0 to 499, at least 500, -9 to -1, at most -10; then, in version 2, an equal time; a
+  /// new series; the three others.
+  static constexpr int most = 500, least = -10;
+  static constexpr unsigned new_series = most - least + 1;
 
   [[nodiscard]] std::int64_t step_to(std::int64_t time, std::size_t series) const noexcept {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - static_cast<std::uint64_t>(last_[series]));
@@ -114,46 +133,47 @@ class LazTimes {
     return step == static_cast<std::int32_t>(step);
   }
 
-  void change_series(LazEncoder& encoder, std::size_t k) {
-    if (usual_[series_] == 0)
-      encoder.encode(first_steps_, 1 + k);
-    else
-      encoder.encode(multiples_, new_series + k);
+  [[nodiscard]] unsigned equal_time_kind() const noexcept { return usual_[series_] == 0 ? 0 : new_series; }
+  [[nodiscard]] unsigned new_series_kind() const noexcept { return equal_ + (usual_[series_] == 0 ? 1 : new_series); }
+
+  [[nodiscard]] unsigned kind_of(std::int64_t time) const noexcept {
+    if (equal_ == 1 && time == last_[series_]) return equal_time_kind();
+    for (unsigned k = 1; k < 4 && !near(time, series_); ++k)
+      if (near(time, (series_ + k) % 4)) return new_series_kind() + k;
+    if (!near(time, series_)) return new_series_kind();
+    if (usual_[series_] == 0) return equal_;
+    const double ratio = static_cast<double>(step_to(time, series_)) / usual_[series_];
+    const int multiple = static_cast<int>(std::lround(std::fmin(std::fmax(ratio, least), most)));
+    return static_cast<unsigned>(multiple >= 0 ? multiple : most - multiple);
   }
 
-  void begin_series(LazEncoder& encoder, std::int64_t time) {
-    change_series(encoder, 0);
+  template <class Coder>
+  std::int64_t begin_series(Coder& coder, std::int64_t time) {
     const auto high = [](std::int64_t bits) { return static_cast<std::int32_t>(bits >> 32); };
-    steps_.encode(encoder, high(last_[series_]), high(time), 8);
-    encoder.encode_bits(static_cast<std::uint32_t>(time), 32);
+    const std::int64_t upper = steps_.code(coder, high(last_[series_]), high(time), 8);
     series_ = newest_ = (newest_ + 1) % 4;
-    last_[series_] = time;
     usual_[series_] = 0;
     unusual_[series_] = 0;
+    return last_[series_] = upper * (std::int64_t{1} << 32) + coder.code_bits(static_cast<std::uint32_t>(time), 32);
   }
 
-  void go_on(LazEncoder& encoder, std::int64_t time) {
-    const auto step = static_cast<std::int32_t>(step_to(time, series_));
-    last_[series_] = time;
+  /// Codes a step, near a multiple of the usual one if there is one.
+  template <class Coder>
+  std::int64_t go_on(Coder& coder, unsigned kind, std::int64_t time) {
     std::int32_t& usual = usual_[series_];
-    if (usual == 0) {
-      encoder.encode(first_steps_, 0);
-      steps_.encode(encoder, 0, step, 0);
-      usual = step;
-      unusual_[series_] = 0;
-      return;
-    }
-    const double ratio = static_cast<double>(step) / usual;
-    const int multiple = static_cast<int>(std::lround(std::fmin(std::fmax(ratio, least), most)));
-    encoder.encode(multiples_, static_cast<std::size_t>(multiple >= 0 ? multiple : most - multiple));
+    const int multiple = usual == 0 ? 0 : kind <= most ? static_cast<int>(kind) : most - static_cast<int>(kind);
     const auto expected =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(usual));
-    steps_.encode(encoder, expected, step, context_of(multiple));
+    const std::int32_t step = steps_.code(coder, expected, static_cast<std::int32_t>(step_to(time, series_)),
+                                          usual == 0 ? 0 : context_of(multiple));
+    const bool is_unlike = multiple == 0 || multiple == least || multiple == most;
     if (multiple == 1) unusual_[series_] = 0;
-    if (multiple != 0 && multiple != least && multiple != most) return;
-    if (++unusual_[series_] <= 3) return;
-    usual = step;
-    unusual_[series_] = 0;
+    if (usual == 0 || (is_unlike && ++unusual_[series_] > 3)) {
+      usual = step;
+      unusual_[series_] = 0;
+    }
+    const auto last = static_cast<std::uint64_t>(last_[series_]) + static_cast<std::uint64_t>(std::int64_t{step});
+    return last_[series_] = static_cast<std::int64_t>(last);
   }
 
   [[nodiscard]] static constexpr std::size_t context_of(int multiple) noexcept {
@@ -163,8 +183,9 @@ class LazTimes {
     return 7;
   }
 
-  LazModel<5> first_steps_;  // without a usual step: a step, a new series, one of the others
-  LazModel<symbols> multiples_;
+  unsigned equal_;                        // number of symbols for an equal time
+  LazModel<new_series + 5> first_steps_;  // without a usual step: an equal time, a step, a new series, the others
+  LazModel<new_series + 5> multiples_;
   LazIntegers steps_{32, 9};
   std::array<std::int64_t, 4> last_{};
   std::array<std::int32_t, 4> usual_{};

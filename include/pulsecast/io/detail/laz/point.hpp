@@ -35,6 +35,14 @@ struct LazPoint {
     user = bytes[17];
   }
 
+  /// Writes positions, returns, flags and class to a record.
+  void put_place(std::byte* record) const noexcept {
+    std::memcpy(record, &x, 12);
+    record[14] = static_cast<std::byte>(returns << 4 | number);
+    record[15] = static_cast<std::byte>((flags & 15U) | channel * 16U | (flags & 48U) << 2);
+    record[16] = static_cast<std::byte>(classification);
+  }
+
   [[nodiscard]] bool first() const noexcept { return number == 1; }
   [[nodiscard]] bool last() const noexcept { return number >= returns; }
   [[nodiscard]] bool only() const noexcept { return returns == 1; }
@@ -48,6 +56,22 @@ struct LazPoint {
   std::int64_t time = 0;  ///< bit pattern of the double
 };
 
+/// Context from a number of bits, rounded down to even and limited; plus 1 for an only return.
+[[nodiscard]] inline std::size_t laz_context(unsigned bits, unsigned most, bool only) noexcept {
+  return (bits < most ? bits & ~1U : most) + (only ? 1U : 0U);
+}
+
+/// Coder of an extra byte as its difference to the last one.
+struct LazExtraByte {
+  using Value = std::uint8_t;
+
+  template <class Coder>
+  Value code(Coder& coder, Value before, Value now) {
+    return static_cast<Value>(before + coder.code(steps, static_cast<Value>(now - before)));
+  }
+  LazModel<> steps;
+};
+
 // Coders of colours by bytes: which differ from those before, and by how much. Source: LASzip for
 // LAS 1.4 (native extension), RGB and NIR layers; for the prediction of blue, laz-perf.
 
@@ -56,11 +80,16 @@ struct LazPoint {
   return {static_cast<std::uint8_t>(value & 255U), static_cast<std::uint8_t>(value >> 8)};
 }
 
+[[nodiscard]] constexpr std::uint16_t laz_whole(std::array<std::uint8_t, 2> halves) noexcept {
+  return static_cast<std::uint16_t>(halves[1] << 8 | halves[0]);
+}
+
 class LazColours {
  public:
   using Value = std::array<std::uint16_t, 3>;
 
-  void encode(LazEncoder& encoder, const Value& before, const Value& now) {
+  template <class Coder>
+  Value code(Coder& coder, const Value& before, const Value& now) {
     std::array<std::array<std::uint8_t, 2>, 3> old{}, next{};
     unsigned changed = 0;  // low and high byte of red, green and blue; one more bit if not grey
     for (std::size_t c = 0; c < 3; ++c) {
@@ -70,27 +99,26 @@ class LazColours {
         if (old[c][half] != next[c][half]) changed |= 1U << (2 * c + half);
     }
     if (next[0] != next[1] || next[0] != next[2]) changed |= 64U;
-    encoder.encode(changed_, changed);
-    for (std::size_t half = 0; half < 2; ++half)  // red
-      if ((changed >> half & 1U) != 0)
-        encoder.encode(steps_[half], static_cast<std::uint8_t>(next[0][half] - old[0][half]));
-    if ((changed & 64U) == 0) return;
+    changed = coder.code(changed_, changed);
+    const auto step = [&](std::size_t c, std::size_t half, int expected) {  // of a byte
+      const int from = std::clamp(old[c][half] + expected, 0, 255);
+      next[c][half] = (changed >> (2 * c + half) & 1U) == 0
+                          ? old[c][half]
+                          : static_cast<std::uint8_t>(
+                                from + static_cast<int>(coder.code(steps_[2 * c + half],
+                                                                   static_cast<std::uint8_t>(next[c][half] - from))));
+      return next[c][half] - old[c][half];
+    };
+    const std::array<int, 2> red{step(0, 0, 0), step(0, 1, 0)};
+    if ((changed & 64U) == 0) return {laz_whole(next[0]), laz_whole(next[0]), laz_whole(next[0])};
     for (std::size_t half = 0; half < 2; ++half) {
-      int expected = next[0][half] - old[0][half];  // step of the colour, as red
-      if ((changed >> (2 + half) & 1U) != 0)
-        encoder.encode(steps_[2 + half], error(next[1][half], old[1][half], expected));
-      if ((changed >> (4 + half) & 1U) == 0) continue;
-      expected = (expected + next[1][half] - old[1][half]) / 2;  // as the mean of red and green
-      encoder.encode(steps_[4 + half], error(next[2][half], old[2][half], expected));
+      const int green = step(1, half, red[half]);  // expected to step as red
+      step(2, half, (red[half] + green) / 2);      // as the mean of both
     }
+    return {laz_whole(next[0]), laz_whole(next[1]), laz_whole(next[2])};
   }
 
  private:
-  /// Error of the prediction that a byte steps as expected, modulo 256.
-  [[nodiscard]] static std::uint8_t error(int next, int old, int expected) noexcept {
-    return static_cast<std::uint8_t>(next - std::clamp(old + expected, 0, 255));
-  }
-
   LazModel<128> changed_;
   std::array<LazModel<256>, 6> steps_;  // low and high byte of red, green and blue
 };
@@ -99,11 +127,12 @@ class LazNearInfrared {
  public:
   using Value = std::uint16_t;
 
-  void encode(LazEncoder& encoder, Value before, Value now) {
+  Value code(LazEncoder& encoder, Value before, Value now) {
     const auto old = laz_halves(before), next = laz_halves(now);
-    encoder.encode(changed_, (old[0] != next[0] ? 1U : 0U) | (old[1] != next[1] ? 2U : 0U));
+    encoder.code(changed_, (old[0] != next[0] ? 1U : 0U) | (old[1] != next[1] ? 2U : 0U));
     for (std::size_t half = 0; half < 2; ++half)
-      if (old[half] != next[half]) encoder.encode(steps_[half], static_cast<std::uint8_t>(next[half] - old[half]));
+      if (old[half] != next[half]) encoder.code(steps_[half], static_cast<std::uint8_t>(next[half] - old[half]));
+    return now;
   }
 
  private:

@@ -57,6 +57,10 @@ class TextPoints {
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
   [[nodiscard]] Vec3 colour() const { return vector(*columns_.colour); }
   static constexpr double max_colour = 255;  ///< default
+  [[nodiscard]] bool has_class() const noexcept { return false; }
+  [[nodiscard]] std::uint32_t classification() const noexcept { return 0; }
+  [[nodiscard]] bool has_object() const noexcept { return false; }
+  [[nodiscard]] std::uint32_t object() const noexcept { return 0; }
 
   /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_LAS_RULES_HPP
+#define PULSECAST_IO_DETAIL_LAS_RULES_HPP
+
+#include <pulsecast/io/format_rules.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
+
+inline constexpr std::string_view las_in_degrees = "metres, not degrees; pdal translate with filters.reprojection",
+                                  las_geocentric = "z to be the height; pdal translate with filters.reprojection";
+
+/// Items of LAS, LAZ and COPC files. Source: ASPRS LAS 1.4 R15; OGC GeoTIFF 1.1; OGC 01-009 and 18-010 (WKT); LASzip.
+inline constexpr FormatRule las_rules[]{
+    {"withheld points", FormatUse::noted, "marked as withheld and left out"},
+    {"synthetic points", FormatUse::noted, "marked as synthetic, and taken like measured ones"},
+    {"points of class 7", FormatUse::noted, "of class 7, low noise, and taken like others"},
+    {"points of class 18", FormatUse::noted, "of class 18, high noise, and taken like others"},
+    {"key-points and overlap", FormatUse::read, "points like others"},
+    {"waveforms", FormatUse::noted, "points are read without them"},
+    {"extra bytes ObjectId", FormatUse::read, "objects of points, if unsigned, without scale and offset"},
+    {"steps below 1e-5", FormatUse::noted, "metres are assumed, but without a reference system these may be degrees"},
+    {"LASF_Projection 2111", FormatUse::refused, "points that need no transform (OGC Math Transform WKT)"},
+    {"LASF_Projection 2112", FormatUse::read, "reference system as well-known text, for its units"},
+    {"LASF_Projection 34735", FormatUse::read, "reference system as GeoTIFF keys, if there is no text"},
+    {"LASF_Projection 34736", FormatUse::read, "numbers of GeoTIFF keys, of which none is needed"},
+    {"LASF_Projection 34737", FormatUse::read, "texts of GeoTIFF keys, of which none is needed"},
+    {"lascompatible 22204", FormatUse::noted, "classes above 31 are in extra bytes; laszip restores them"},
+    {"WKT PROJ*", FormatUse::read, "projected: its unit is that of x and y"},
+    {"WKT LOCAL_CS", FormatUse::read, "its unit is that of x and y"},
+    {"WKT ENGCRS", FormatUse::read, "its unit is that of x and y"},
+    {"WKT GEOG*", FormatUse::refused, las_in_degrees},
+    {"WKT GEO*", FormatUse::refused, las_geocentric},
+    {"WKT VERT*", FormatUse::read, "its unit is that of z; without it, that of x and y"},
+    {"GeoKey 1024: 1", FormatUse::read, "projected"},
+    {"GeoKey 1024: 2", FormatUse::refused, las_in_degrees},
+    {"GeoKey 1024: 3", FormatUse::refused, las_geocentric},
+    {"GeoKey 1024: *", FormatUse::noted, "a projected system is assumed"},
+    {"GeoKey 3076", FormatUse::read, "unit of x and y; without it, metres"},
+    {"GeoKey 4099", FormatUse::read, "unit of z; without it, that of x and y"},
+    {"unit of *", FormatUse::noted, "coordinates become metres"},
+    {"other unit of *", FormatUse::refused, "metres or feet; pdal translate with filters.reprojection"},
+    {"LAZ compressor 1", FormatUse::refused, "chunks of points, as by laszip"},
+    {"LAZ compressor 2", FormatUse::read, "chunks of points of formats 0 to 3"},
+    {"LAZ compressor 3", FormatUse::read, "chunks of layers of formats 6 to 10, also of COPC"},
+    {"LAZ item of version 1", FormatUse::refused, "version 2 or later, as by laszip"},
+    {"LAZ item of version 2", FormatUse::read, "points of formats 0 to 3"},
+    {"LAZ item of version 3", FormatUse::read, "points of formats 6 to 10"},
+    {"LAZ item of version 4", FormatUse::read, "points of formats 6 to 10"},
+    {"LAZ wave packet of version 1", FormatUse::refused, "formats 0 to 3 or 6 to 10, as by las2las"},
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
