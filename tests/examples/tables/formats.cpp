@@ -9,6 +9,8 @@
 #include <string_view>
 
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/ply/rules.hpp>
+#include <pulsecast/io/detail/ptx/points.hpp>
 
 using namespace pulsecast::io;
 
@@ -21,4 +23,10 @@ void print(std::string_view format, std::span<const FormatRule> rules) {
 }
 }  // namespace
 
-int main() { print("glTF", detail::gltf_rules); }
+int main() {
+  print("glTF", detail::gltf_rules);
+  print("PLY, as a mesh", detail::ply_mesh_rules);
+  print("PLY, as points", detail::ply_cloud_rules);
+  print("points: PLY, named columns", detail::point_rules);
+  print("PTX", detail::ptx_rules);
+}

@@ -114,12 +114,13 @@ TEST_CASE("each row of the rules of PTX files is kept") {
 
 TEST_CASE("texts of points are no PTX files") {
   const support::TemporaryFolder folder;
-  for (const char* text : {"1 2 3\n4 5 6\n7 8 9\n", "2\n1 2 3\n4 5 6\n", "2\n2\n1 2\n", "a\nb\n1 2 3\n", "2\n"}) {
+  for (const char* text : {"1 2 3\n4 5 6\n7 8 9\n", "2\n1 2 3\n4 5 6\n", "a\nb\n1 2 3\n", "2\n"}) {
     CAPTURE(text);
     InputFile file(folder.write("a.txt", text), "a point cloud");
     CHECK_FALSE(PtxPoints::is_ptx(file));
     CHECK(file.position() == 0);
   }
+  CHECK(read(header(0, 5, quarter, {}) + sound).positions.size() == 3);
   CHECK(read_point_cloud(folder.write("a.ptx", sound), {.voxel_size = 0.5}).points == 3);
 }
 
@@ -142,6 +143,7 @@ TEST_CASE("damaged PTX files are read or explained") {
   const std::vector<std::pair<std::string, std::string>> lies{{"2\n2\n", "2\n3\n"},
                                                               {"2\n2\n", "2\n1\n"},
                                                               {"2\n2\n", "0\n2\n"},
+                                                              {"2\n2\n", "2\n2\n\n"},
                                                               {"2\n2\n", "-2\n-2\n"},
                                                               {"2\n2\n", "2\n-2\n"},
                                                               {"2\n2\n", "4000000000\n4000000000\n"},

@@ -24,19 +24,13 @@ inline constexpr std::array<FormatRule, 5> ptx_rules{{
 /// with path and line.
 class PtxPoints {
  public:
-  /// True if the file begins as a scan: with two lines of one whole number, and one of three numbers.
+  /// True if the file begins as a scan: two lines are whole numbers, and the third is none.
   [[nodiscard]] static bool is_ptx(InputFile& file) {
+    std::string_view head = file.take(64);
+    const auto is_count = [&] { return text::number_in<std::uint32_t>(text::trimmed(text::take_line(head))); };
+    const bool is = is_count() && is_count() && !is_count();
     file.seek(0);
-    std::string_view head = file.take(512);
-    std::array<std::size_t, 3> cells{};
-    RowCells row(text::blanks, true);
-    for (std::size_t& count : cells) {
-      const auto& found = row.split(text::take_line(head), 4);
-      const bool fits = std::ranges::all_of(found, [](auto cell) { return text::number_in<double>(cell).has_value(); });
-      count = fits ? found.size() : 0;
-    }
-    file.seek(0);
-    return cells == std::array<std::size_t, 3>{1, 1, 3};
+    return is;
   }
 
   explicit PtxPoints(InputFile file) : file_(std::move(file)) {}
@@ -44,6 +38,7 @@ class PtxPoints {
   /// Advances to the next point that is no miss; false at the end.
   [[nodiscard]] bool next() {
     while (left_ > 0 || read_header()) {
+      if (left_ == 0) continue;
       --left_;
       (void)take(colours_ ? 7 : 3);
       if (!std::exchange(begun_, true)) colours_ = row_.cells().size() >= 7;
