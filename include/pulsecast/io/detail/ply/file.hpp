@@ -54,6 +54,7 @@ class PlyFile {
 
   [[nodiscard]] const std::vector<PlyElement>& elements() const noexcept { return elements_; }
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }  ///< comments, obj_info
+  [[nodiscard]] bool is_text() const noexcept { return is_text_; }
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
   /// Keeps to the rules for elements, all of which have one, and for those properties and remarks that have one.
