@@ -14,7 +14,7 @@ FUZZ_TARGET(ply) {
   const std::filesystem::path path = fuzz::file(data, size, "a.ply");
   fuzz::may_refuse([&] {
     InputFile file(path, "a mesh");
-    if (!detail::PlyFile::is_ply(file)) return;
+    if (!io::detail::PlyFile::is_ply(file)) return;
     for (const FileMesh& one : read_mesh_file(path, {.texture = true, .pictures = false}).meshes) one.mesh.validate();
   });
   fuzz::may_refuse([&] {
