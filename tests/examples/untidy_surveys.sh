@@ -99,7 +99,7 @@ untidy "a template that nobody names" survey.xml 's|<survey|<scannerSettings id=
 untidy "a face of two corners" yard.obj 's/^usemtl.*/&\nf 1 2/' "yard.obj, line 7: a face without area is left out"
 untidy "an exponent below 0" yard.mtl 's/^Kd.*/&\nNs -1.96/' "yard.mtl, line 3: material 'lawn': 'Ns -1.96' takes 0 for -1.96"
 untidy "a colour of four numbers" yard.mtl 's/^Kd.*/& 1.0/' "yard.mtl, line 2: material 'lawn': 'Kd 0.5 0.5 0.5 1.0' has words after its numbers"
-untidy "a cloud with names first" hedge.xyz '1i X Y Z Nx Ny Nz' "hedge.xyz, line 1: 'X Y Z Nx Ny Nz' is skipped, as names of columns"
+untidy "a cloud with names first" hedge.xyz '1i East North Height A B C' "hedge.xyz, line 1: 'East North Height A B C' is skipped, as names of columns"
 untidy "a document in windows-1252" survey.xml 's|name="untidy"|name="unt\xE4dy"|' 'survey.xml:17:20: is no UTF-8, and is taken as windows-1252'
 untidy "a name with slashes" survey.xml 's|name="untidy"|name="untidy/1"|' 'survey.xml:17:11: name="untidy/1" is taken as '
 untidy "a trajectory that jumps" survey.xml \

@@ -12,17 +12,17 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
-/// Meshes of PLY, glTF, GLB, STL, DAE, FBX files, by assimp (others: untested), and of OBJ files.
+/// Meshes of PLY and OBJ files, and of glTF, GLB, STL, DAE, FBX files by assimp (others: untested).
 namespace PULSECAST_NAMESPACE::io {
 
 /// Reads a mesh file. Nodes whose transforms differ by a similarity, within 1e-6, share a mesh; others
 /// share one with their shear or reflection applied. Polygons are triangulated; points, lines and triangles
 /// without area are left out; animations are not played. Reflectance is 0.5; opacity and transmission are as of glass
 /// with the index of the file; specular colour as `read_mtl`; metals of a roughness up to 0.1 are mirrors, other
-/// surfaces of glTF have facets of that roughness. Limits: nodes are nested at most 1000 deep; strips (PLY) are
-/// refused, and required extensions of glTF but those for materials, lights, transforms of texture coordinates and
-/// Draco. Warnings report what is left out or changed, and rounding by over 1 mm. @throws SettingError @throws
-/// FileError for a file that is missing or damaged, or has a coordinate beyond 1e12
+/// surfaces of glTF have facets of that roughness. Limits: nodes are nested at most 1000 deep; required extensions of
+/// glTF but those for materials, lights, transforms of texture coordinates and Draco are refused. Warnings report what
+/// is left out or changed, and rounding by over 1 mm. @throws SettingError @throws FileError for a file that is missing
+/// or damaged, or has a coordinate beyond 1e12
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 
@@ -43,6 +43,7 @@ namespace PULSECAST_NAMESPACE::io {
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
+#include <pulsecast/io/detail/mesh_file/ply.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 
@@ -83,19 +84,6 @@ inline void read_pictures(MeshFile& file, bool isolated) {
   }
 }
 
-/// Refuses PLY files whose header has no end, with which assimp takes minutes, or with strips, of
-/// which it reads half, and missing or empty files. Source: Turk 1994, The PLY polygon file format.
-inline void check_ply(const std::filesystem::path& path) {
-  constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
-  InputFile file(path, "a mesh file");
-  const std::string_view begin = file.take(longest);
-  if (!begin.starts_with("ply")) return;
-  const std::size_t end = begin.find("end_header");
-  if (end == begin.npos) file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
-  if (begin.substr(0, end).find("element tristrips") != begin.npos)
-    file.fail("has triangle strips: expected faces, as most programs write them (element face)");
-}
-
 }  // namespace detail
 
 PULSECAST_INLINE bool is_mesh_file(const std::filesystem::path& path) {
@@ -112,8 +100,11 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
     if (text::lower(path.extension().string()) == ".obj") {
       file = detail::file_of(path, settings, workers);
     } else {
-      detail::check_ply(path);
-      const auto import = [&](const auto& opened) { return detail::MeshImport(path, settings, opened).read(); };
+      InputFile begin(path, "a mesh file");
+      const bool is_ply = detail::PlyFile::is_ply(begin);
+      const auto import = [&](const auto& opened) {
+        return is_ply ? detail::PlyMesh(path, settings).read() : detail::MeshImport(path, settings, opened).read();
+      };
       const auto scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(nullptr);
       file = detail::MeshFileMaker(path, scene, settings, workers).make();
     }

@@ -37,7 +37,7 @@ struct PointCloudSettings {
   VoxelNormals normals = VoxelNormals::none;      ///< source of the normals
   std::optional<Vec3> default_normal{};           ///< for voxels without, of any length but 0
   bool colours = false;                           ///< true to give voxels colours
-  std::optional<double> colour_max{};             ///< default: 65535 in LAS, 255 in text
+  std::optional<double> colour_max{};             ///< default: 65535 in LAS, of the type in PLY, else 255
   bool classes = false;                           ///< true to give voxels classes, if all files have them
   bool objects = false;                           ///< true to give voxels objects, if all files have them
   TextPointColumns columns = {};                  ///< columns of text files
@@ -63,8 +63,9 @@ struct PointCloud {
   std::vector<std::uint32_t> objects{};         ///< of voxels, as classes
 };
 
-/// Reads point clouds, text (`TextPoints`) or LAS, LAZ and COPC (`LasPoints`) as detected, into one grid of
-/// voxels. Files are read twice, for the extent and for the voxels: memory is that of the voxels.
+/// Reads point clouds, text (`TextPoints`), PTX (`PtxPoints`), PLY (`PlyPoints`), or LAS, LAZ and COPC
+/// (`LasPoints`), as detected, into one grid of voxels. Files are read twice, for the extent and for the voxels: memory
+/// is that of the voxels.
 ///
 /// A voxel includes its lower faces and excludes its upper ones, but for the last ones of
 /// `at_cloud`. Plane fits need three points not on one line. A voxel without a normal gets the

@@ -10,6 +10,8 @@
 
 #include <pulsecast/io/detail/las/rules.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/ply/rules.hpp>
+#include <pulsecast/io/detail/ptx/points.hpp>
 
 using namespace pulsecast::io;
 
@@ -25,4 +27,8 @@ void print(std::string_view format, std::span<const FormatRule> rules) {
 int main() {
   print("glTF", detail::gltf_rules);
   print("LAS, LAZ, COPC", detail::las_rules);
+  print("PLY, as a mesh", detail::ply_mesh_rules);
+  print("PLY, as points", detail::ply_cloud_rules);
+  print("points: PLY, named columns", detail::point_rules);
+  print("PTX", detail::ptx_rules);
 }

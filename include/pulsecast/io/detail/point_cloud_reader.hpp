@@ -15,6 +15,8 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/las/points.hpp>
+#include <pulsecast/io/detail/ply/points.hpp>
+#include <pulsecast/io/detail/ptx/points.hpp>
 #include <pulsecast/io/detail/text/points.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
@@ -28,17 +30,17 @@ inline void refuse_other_kinds(InputFile& file) {
   struct Kind {
     std::string_view begin, name;
   };
-  static constexpr std::array<Kind, 6> kinds{{{"ply", "a PLY file, which is loaded as a mesh if it has faces"},
-                                              {"# .PCD", "a PCD file"},
+  static constexpr std::array<Kind, 5> kinds{{{"# .PCD", "a PCD file"},
                                               {"ASTM-E57", "an E57 file"},
                                               {"PK\x03\x04", "a ZIP file"},
                                               {"\x1F\x8B", "compressed by gzip"},
                                               {"\x89HDF", "an HDF file"}}};
   const std::string_view head = file.take(16);
   for (const Kind& kind : kinds)
-    if (head.starts_with(kind.begin) && (kind.begin != "ply" || head.size() < 4 || head[3] == '\n' || head[3] == '\r'))
-      file.fail("is ", kind.name,
-                ": expected a point cloud as text, LAS or LAZ; CloudCompare and pdal translate convert to LAS");
+    if (head.starts_with(kind.begin))
+      file.fail(
+          "is ", kind.name,
+          ": expected a point cloud as text, PTX, PLY, LAS or LAZ; CloudCompare and pdal translate convert to LAS");
   file.seek(0);
 }
 
@@ -47,6 +49,12 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   InputFile file(path, "a point cloud");
   if (LasPoints::is_las(file)) {
     LasPoints points(std::move(file), {.colours = settings.colours, .objects = settings.objects});
+    function(points);
+  } else if (detail::PlyFile::is_ply(file)) {
+    PlyPoints points(std::move(file));
+    function(points);
+  } else if (PtxPoints::is_ptx(file)) {
+    PtxPoints points(std::move(file));
     function(points);
   } else {
     refuse_other_kinds(file);
@@ -243,7 +251,7 @@ class PointCloudReader {
   template <class Points>
   void add_colour(const Points& points, std::size_t voxel) {
     const Vec3 colour = points.colour();
-    const double largest = settings_.colour_max.value_or(Points::max_colour);
+    const double largest = settings_.colour_max.value_or(points.max_colour);
     for (int k = 0; k < 3; ++k)
       if (!(colour[k] >= 0 && colour[k] <= largest))
         points.fail_here(text::message("has the colour ", colour[k], ": expected one from 0 to ", largest));

@@ -99,7 +99,7 @@ TEST_CASE("the first row decides whether there are normals and colours") {
   CHECK(e.problem() == "has 5 columns: expected at least 6");
 }
 
-TEST_CASE("one first row of names or a count is skipped with a warning, unless it names other columns") {
+TEST_CASE("one first row of names or a count is skipped with a warning, or gives the columns if it has x, y and z") {
   const auto skipped = [](const std::string& head, const std::string& what) {
     CAPTURE(head);
     const Read found = read(head + "1;2;3\n-4.5;5e3;.25\n");
@@ -109,14 +109,25 @@ TEST_CASE("one first row of names or a count is skipped with a warning, unless i
   };
   skipped("75\n", "1: '75' is skipped, as a count of points");
   skipped("//X;Y;Z;Intensity\n75\n", "2: '75' is skipped");
-  skipped("X;Y;Z\n", "1: 'X;Y;Z' is skipped, as names of columns");
-  skipped("\"x\" \"y\" \"z\"\n", "1: ");
-  skipped("east,north,height\n", "1: ");
-  skipped("# time x y z\n", "1: names x, y and z of other columns");
-  CHECK(read("# x y z\n1 2 3\n").warnings.empty());
+  skipped("east,north,height\n", "1: 'east,north,height' is skipped, as names of columns");
+  for (const char* names : {"X;Y;Z\n", "\"x\" \"y\" \"z\"\n", "# x y z\n", "//X, Y, Z, Intensity\n"}) {
+    CAPTURE(names);
+    const Read found = read(std::string(names) + "1 2 3 9\n");
+    CHECK(found.positions == Points{{1, 2, 3}});
+    CHECK(found.warnings.empty());
+  }
+  for (const char* names : {"# time x y z\n", "time,x,y,z\n", "#time Y Z X\n"}) {
+    CAPTURE(names);
+    const bool turned = std::string(names).find('Y') != std::string::npos;
+    CHECK(read(std::string(names) + "9 1 2 3\n").positions == Points{turned ? Vec3{3, 1, 2} : Vec3{1, 2, 3}});
+    CHECK(error(std::string(names) + "1 2 3\n").problem() == "has 3 columns: expected at least 4");
+  }
+  const Read normals = read("x y z intensity class nz ny nx blue green red\n1 2 3 4 5 6 7 8 9 10 11\n");
+  CHECK(normals.normals == Points{{8, 7, 6}});
+  CHECK(normals.colours == Points{{11, 10, 9}});
+  CHECK(read("x y z a b c d e f\n1 2 3 4 5 6 7 8 9\n").normals.empty());
+  CHECK(read("z y x\n1 2 3\n", {.position = {0, 2, 1}}).positions == Points{{1, 3, 2}});  // settings have the last word
   CHECK(read("# by x\n1 2 3\n").warnings.empty());
-  CHECK(error("time,x,y,z\n9,1,2,3\n").problem() ==
-        "names x, y and z of other columns than those that are read: expected these first");
   CHECK(read("time,x,y,z\n9,1,2,3\n", {.position = {1, 2, 3}}).positions == Points{{1, 2, 3}});
   for (const char* bad : {"x y z\nx y z\n1 2 3\n", "2\n2\n1 2 3\n", "x 2 z\n1 2 3\n", "x y\n1 2 3\n", "2.5\n1 2 3\n"}) {
     CAPTURE(bad);

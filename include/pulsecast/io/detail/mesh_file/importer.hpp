@@ -192,13 +192,17 @@ class MeshImport {
     for (const aiFace& face : faces) count += face.mNumIndices < 3 ? 0 : face.mNumIndices - 2;
     SharedBuffer<Corners3> triangles(count);
     Corners3* to = triangles.data();
+    const auto place_of = [&](unsigned vertex) {
+      const aiVector3D& v = from.mVertices[vertex];
+      return Vec3(v.x, v.y, v.z);
+    };
     for (const aiFace& face : faces) {
       if (face.mNumIndices < 3) {
         ++left_out_;
         continue;
       }
       check({face.mIndices, face.mNumIndices}, from.mNumVertices);
-      crossings_ += cut(face, from.mVertices, to) ? 0 : 1;
+      crossings_ += cut_polygon({face.mIndices, face.mNumIndices}, place_of, to) ? 0 : 1;
       to += face.mNumIndices - 2;
     }
     return triangles;
@@ -210,30 +214,6 @@ class MeshImport {
     for (const unsigned one : corners)
       if (one >= vertices)
         fail("a face has the vertex ", one, ", expected less than the number of vertices, ", vertices);
-  }
-
-  /// Writes the n - 2 triangles of a face, some without area. False if its outline crosses itself.
-  [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
-    const unsigned* const c = face.mIndices;
-    for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
-    if (face.mNumIndices == 3) return true;
-    std::vector<Vec3> corners;
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      const aiVector3D& v = vertices[c[k]];
-      corners.emplace_back(v.x, v.y, v.z);
-    }
-    if (corners.size() == 4) {  // a convex one, as most polygons are, without a search
-      const Vec3 normal = cross(corners[2] - corners[0], corners[3] - corners[1]);
-      const auto turns_left = [&](std::size_t k) {
-        const Vec3 &a = corners[k], &b = corners[(k + 1) % 4], &after = corners[(k + 2) % 4];
-        return dot(cross(b - a, after - b), normal) > 0;
-      };
-      if (turns_left(0) && turns_left(1) && turns_left(2) && turns_left(3)) return true;
-    }
-    const auto cuts = triangulated(corners);
-    for (std::size_t k = 0; k + 2 < corners.size() && !cuts.empty(); ++k)
-      for (std::size_t i = 0; i < 3; ++i) to[k][i] = k < cuts.size() ? c[cuts[k][i]] : c[0];
-    return !cuts.empty();
   }
 
   /// Nodes with meshes, each before those below it.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,28 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< limit, as the tim
     start = i;
   }
   return triangles;
+}
+
+/// Writes the n - 2 triangles of a polygon with these vertices, some without area. False if its outline crosses itself.
+/// `place_of` is the place of a vertex.
+[[nodiscard]] bool cut_polygon(std::span<const std::uint32_t> c, const auto& place_of,
+                               std::array<std::uint32_t, 3>* to) {
+  for (std::size_t k = 2; k < c.size(); ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
+  if (c.size() == 3) return true;
+  std::vector<Vec3> corners;
+  for (const std::uint32_t vertex : c) corners.push_back(place_of(vertex));
+  if (corners.size() == 4) {  // a convex one, as most polygons are, without a search
+    const Vec3 normal = cross(corners[2] - corners[0], corners[3] - corners[1]);
+    const auto turns_left = [&](std::size_t k) {
+      const Vec3 &a = corners[k], &b = corners[(k + 1) % 4], &after = corners[(k + 2) % 4];
+      return dot(cross(b - a, after - b), normal) > 0;
+    };
+    if (turns_left(0) && turns_left(1) && turns_left(2) && turns_left(3)) return true;
+  }
+  const auto cuts = triangulated(corners);
+  for (std::size_t k = 0; k + 2 < corners.size() && !cuts.empty(); ++k)
+    for (std::size_t i = 0; i < 3; ++i) to[k][i] = k < cuts.size() ? c[cuts[k][i]] : c[0];
+  return !cuts.empty();
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -10,6 +10,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/text/text_point_columns.hpp>
 #include <pulsecast/io/input_file.hpp>
@@ -18,9 +19,10 @@ namespace PULSECAST_NAMESPACE::io {
 
 /// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are
 /// skipped; so is, with a warning, a first row that is a whole number, as a count, or has no
-/// number, as the names of columns. Default separators are semicolons if the first row has any,
-/// else commas, else blanks, several as one. Blanks around a cell are ignored. The first row
-/// decides on normals and colours. Throws a `FileError` with path, line and column.
+/// number, as the names of columns. If such a row or comment has the names x, y and z, then columns
+/// are by names, unless the settings have others than by default. Default separators are semicolons if the first row
+/// has any, else commas, else blanks, several as one. Blanks around a cell are ignored. The first row decides on
+/// normals and colours. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, TextPointColumns columns)
@@ -33,8 +35,7 @@ class TextPoints {
       if (text.empty()) continue;
       if (text.front() == '#' || text.starts_with("//")) {
         const std::size_t begin = text.find_first_not_of("#/ \t");
-        if (begin != text.npos && names_other_columns(text.substr(begin)))
-          note("names x, y and z of other columns than those that are read");
+        if (!begun_ && begin != text.npos) (void)takes_names(text.substr(begin));
         continue;
       }
       if (!begun_ && is_heading(text)) continue;
@@ -57,10 +58,10 @@ class TextPoints {
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
   [[nodiscard]] Vec3 colour() const { return vector(*columns_.colour); }
   static constexpr double max_colour = 255;  ///< default
-  [[nodiscard]] bool has_class() const noexcept { return false; }
-  [[nodiscard]] std::uint32_t classification() const noexcept { return 0; }
-  [[nodiscard]] bool has_object() const noexcept { return false; }
-  [[nodiscard]] std::uint32_t object() const noexcept { return 0; }
+  [[nodiscard]] bool has_class() const noexcept { return class_.has_value(); }
+  [[nodiscard]] std::uint32_t classification() const { return whole(*class_); }
+  [[nodiscard]] bool has_object() const noexcept { return object_.has_value(); }
+  [[nodiscard]] std::uint32_t object() const { return whole(*object_); }
 
   /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
@@ -92,20 +93,22 @@ class TextPoints {
     cells_.split(text, TextPointColumns::max_column + 1);
   }
 
-  /// True if a row of names has x, y and z, not all in the columns that are read.
-  [[nodiscard]] bool names_other_columns(std::string_view text) {
+  /// Takes the columns of a row of names, if it has x, y and z and the settings are as by default; false otherwise.
+  [[nodiscard]] bool takes_names(std::string_view text) {
     split(text);
-    bool is_other = false;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto named = std::find_if(cells().begin(), cells().end(), [&](std::string_view cell) {
-        if (cell.size() == 3 && cell.front() == '"') cell = cell.substr(1, 1);
-        return text::is_same_word(cell, std::string_view("xyz").substr(axis, 1));
-      });
-      if (named == cells().end()) return false;
-      const auto column = static_cast<std::size_t>(named - cells().begin());
-      is_other = is_other || column != columns_.position[axis];
-    }
-    return is_other;
+    detail::PointNames names;
+    for (std::size_t k = 0; k < cells().size(); ++k) names.add(cells()[k], k);
+    const TextPointColumns usual;
+    const bool is_usual = columns_.position == usual.position &&
+                          columns_.normal.value_or(*usual.normal) == usual.normal &&
+                          columns_.colour.value_or(*usual.colour) == usual.colour;
+    if (!names.vector(0) || !is_usual) return false;
+    columns_.position = *names.vector(0);
+    if (columns_.normal) columns_.normal = names.vector(3);
+    if (columns_.colour) columns_.colour = names.vector(6);
+    class_ = names.column[9];
+    object_ = names.column[10];
+    return true;
   }
 
   /// True for a first row that is a count of points or has the names of columns. Notes it.
@@ -117,8 +120,7 @@ class TextPoints {
     const auto is_number = [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; };
     const bool has_number = std::ranges::any_of(cells(), is_number);
     if (!is_count && (has_number || cells().size() < 3)) return false;
-    if (!is_count && names_other_columns(text))
-      fail_here("names x, y and z of other columns than those that are read: expected these first");
+    if (!is_count && takes_names(text)) return true;
     note(text::quoted(text) + " is skipped, as " + (is_count ? "a count of points" : "names of columns"));
     return true;
   }
@@ -132,6 +134,10 @@ class TextPoints {
     for (std::optional<Columns>* columns : {&columns_.normal, &columns_.colour}) {
       if (*columns && cells().size() < last(**columns)) columns->reset();
       if (*columns) needed_ = std::max(needed_, last(**columns));
+    }
+    for (const std::optional<std::size_t>& column : {class_, object_}) {
+      if (column && cells().size() <= *column) too_few();
+      if (column) needed_ = std::max(needed_, *column + 1);
     }
     begun_ = true;
   }
@@ -147,6 +153,10 @@ class TextPoints {
         column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
   }
 
+  [[nodiscard]] std::uint32_t whole(std::size_t column) const {
+    return detail::whole_number(text::number_in<double>(cells()[column]).value_or(0));
+  }
+
   [[noreturn]] void too_few() const {
     fail_here("has " + std::to_string(cells().size()) + " columns: expected at least " + std::to_string(needed_));
   }
@@ -154,7 +164,8 @@ class TextPoints {
   InputFile file_;
   TextPointColumns columns_;
   RowCells cells_{"", true};
-  std::size_t needed_ = 0;  // columns in use
+  std::size_t needed_ = 0;                         // columns in use
+  std::optional<std::size_t> class_{}, object_{};  // columns
   std::vector<std::string> notes_;
   bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: first row looked at
 };
