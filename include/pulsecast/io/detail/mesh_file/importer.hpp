@@ -26,6 +26,7 @@
 #include <assimp/Importer.hpp>
 
 #include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
@@ -132,6 +133,9 @@ class MeshImport {
   [[nodiscard]] std::string main_file(std::string_view content) {
     const std::filesystem::path path = std::filesystem::absolute(path_);
     const std::string ending = text::lower(path.extension().string());
+    for (const FormatRule& rule : mesh_rules)
+      if ((ending == ".dae" || ending == ".fbx") && content.find(rule.name) != content.npos)
+        keep_rule(mesh_rules, path_, "item", rule.name, scene_.warnings);
     if (!content.starts_with("glTF") && ending != ".gltf" && ending != ".glb") return path.string();
     const auto open = [&](const std::string& uri) {
       Assimp::IOStream* const stream = system_->Open((path.parent_path() / uri).c_str(), "rb");
