@@ -20,6 +20,7 @@
 
 #include <pulsecast/io/mesh_file.hpp>
 
+#include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
 #include "support/format_cases.hpp"
 #include "support/generators.hpp"
@@ -180,6 +181,25 @@ TEST_CASE("instances are parts, placed in the frame of their node, with rotation
     CHECK(file.placements[2].name == "wood/1");
     CHECK(near(places(file), {{0, 100, 0}, {1, 100, 0}, {0, 101, 0}, {10, 100, 0}, {8, 100, 0}, {10, 102, 0}, {0, 100, 3},
                               {1, 100, 3}, {0, 101, 3}}, 1e-5));
+  }
+}
+
+TEST_CASE("what gltfpack packs are the trees that it was given, to the quantum") {
+  // tests/data/gltfpack.glb: three trees of four triangles, packed by gltfpack 1.3 with -mi
+  const std::vector<Vec3> tree{{0, 4, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 0, -1.5}};
+  const MeshFile file = read_mesh_file(support::data_folder / "gltfpack.glb");
+  CHECK(file.warnings.empty());
+  CHECK(file.placements.size() == 3);
+  const std::vector<Vec3> found = places(file);
+  CHECK(found.size() == 36);
+  for (int i = 0; i < 3; ++i) {
+    const double angle = 0.8 * i, scale = 1 + 0.5 * i, c = std::cos(angle), s = std::sin(angle);
+    for (const Vec3& v : tree) {
+      const Vec3 at = Vec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x) * scale + Vec3(10 * i, 0, 5);
+      double nearest = 1;
+      for (const Vec3& one : found) nearest = std::fmin(nearest, length(one - at));
+      CHECK(nearest < 5e-4);  // 4 m in 16383 steps, and rotations of 16 bits
+    }
   }
 }
 

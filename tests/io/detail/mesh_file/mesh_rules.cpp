@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
