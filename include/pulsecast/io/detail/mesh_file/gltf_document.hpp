@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 #include <set>
-#include <span>
 #include <vector>
 
 #include <rapidjson/document.h>
@@ -26,13 +25,12 @@ using Json = rapidjson::Value;
 /// Member of an object, or a member of it, and so on; null if there is none.
 template <class... Names>
 [[nodiscard]] Json* member(Json& object, std::string_view name, const Names&... names) {
-  if (!object.IsObject()) return nullptr;
-  const auto found = object.FindMember(Json(name.data(), static_cast<rapidjson::SizeType>(name.size())));
-  if (found == object.MemberEnd()) return nullptr;
+  const Json key(name.data(), static_cast<rapidjson::SizeType>(name.size()));
+  if (!object.IsObject() || !object.HasMember(key)) return nullptr;  // iterators do not compare in C++20
   if constexpr (sizeof...(names) > 0)
-    return member(found->value, names...);
+    return member(object[key], names...);
   else
-    return &found->value;
+    return &object[key];
 }
 
 /// Elements of an array, or none.
@@ -160,7 +158,8 @@ class GltfDocument {
       for (Json& one : elements(value)) open.push_back({&one, false});
       if (!value->IsObject()) continue;
       value->RemoveMember("extras");
-      for (auto& one : value->GetObject()) {
+      for (std::size_t k = 0; k < value->MemberCount(); ++k) {
+        auto& one = value->MemberBegin()[static_cast<std::ptrdiff_t>(k)];
         const std::string_view name = text_of(&one.name);
         if (is_list || (rule_of(listed, name) && has_effect(name, one.value))) keep(name, !is_list);
         open.push_back({&one.value, name == "extensions"});
@@ -224,11 +223,13 @@ class GltfDocument {
       if (!attributes || !attributes->IsObject() || member(primitive, "extensions", "KHR_draco_mesh_compression"))
         continue;
       primitive.RemoveMember("targets");
-      for (auto one = attributes->MemberBegin(); one != attributes->MemberEnd();) {
+      for (rapidjson::SizeType k = attributes->MemberCount(); k-- > 0;) {
+        const auto one = attributes->MemberBegin() + static_cast<std::ptrdiff_t>(k);
         const std::string_view name = text_of(&one->name);
-        const bool is_kept = name == "POSITION" || name.starts_with("TEXCOORD_");
-        if (is_kept) one->value.SetUint64(as_float(whole(*attributes, name), name == "POSITION", has_bones));
-        one = is_kept ? one + 1 : attributes->EraseMember(one);
+        if (name != "POSITION" && !name.starts_with("TEXCOORD_"))
+          attributes->EraseMember(one);
+        else
+          one->value.SetUint64(as_float(whole(*attributes, name), name == "POSITION", has_bones));
       }
     }
   }
@@ -270,8 +271,7 @@ class GltfDocument {
     const std::uint64_t first = begin + whole(accessor, "byteOffset", 0);
     if (count == 0 || end > buffer.size() || first + row > end || stride < row ||
         count - 1 > (end - first - row) / stride)
-      fail("has the accessor ", number, " of ", count, " elements: expected them in a buffer, of ", buffer.size(),
-           " bytes");
+      fail("has the accessor ", number, " of ", count, " elements: expected them in a buffer, within its view");
     const Json* const normalized = member(accessor, "normalized");
     const bool is_share = normalized && normalized->IsTrue() && type <= 5123;
     std::vector<float> made(count * width);
