@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/mesh_file.hpp>
+#include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
+
+#include <string>
+#include <vector>
 
 #include "fuzz/fuzz.hpp"
 

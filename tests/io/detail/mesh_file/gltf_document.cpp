@@ -115,7 +115,8 @@ TEST_CASE("quantized positions are numbers or shares of a type, at any stride, i
   CHECK(near(read(quantized_file<std::int8_t>({-127, 0, 0, 1, 127, 0, 0, 1, 0, -128, 0, 1}, 5120,
                                               R"(,"normalized":true)", R"(,"byteStride":4)")),
              {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}}));
-  CHECK(near(read(quantized_file<std::uint8_t>({1, 2, 3, 255, 0, 0, 0, 9, 0}, 5121)), {{1, 2, 3}, {255, 0, 0}, {0, 9, 0}}));
+  CHECK(near(read(quantized_file<std::uint8_t>({1, 2, 3, 255, 0, 0, 0, 9, 0}, 5121)),
+             {{1, 2, 3}, {255, 0, 0}, {0, 9, 0}}));
 }
 
 TEST_CASE("random triangles are the same quantized and as floating-point numbers, to the quantum") {
@@ -129,7 +130,8 @@ TEST_CASE("random triangles are the same quantized and as floating-point numbers
     std::vector<Gltf::Corners> triangles;
     for (std::uint32_t i = 0; i < 300; ++i) {
       const Vec3 at = (random.point(1) + Vec3(1)) * 0.5;
-      exact.push_back({static_cast<float>(at.x * size), static_cast<float>(at.y * size), static_cast<float>(at.z * size)});
+      exact.push_back(
+          {static_cast<float>(at.x * size), static_cast<float>(at.y * size), static_cast<float>(at.z * size)});
       for (int k = 0; k < 3; ++k) words.push_back(static_cast<std::uint16_t>(std::lround(at[k] * 65535)));
       words.push_back(0);
       if (i % 3 == 2) triangles.push_back({i - 2, i - 1, i});
@@ -158,17 +160,15 @@ TEST_CASE("instances are parts, placed in the frame of their node, with rotation
     gltf.primitive(corners, {{0, 1, 2}});
     gltf.mesh("tree");
     const std::string shifts = gltf.accessor(std::vector<Gltf::Place>{{10, 0, 0}, {0, 0, 3}}, 5126, "VEC3", 2);
-    const std::string turns =
-        whole ? gltf.accessor(std::vector<std::int16_t>{0, 32767, 0, 0, 0, 0, 0, 32767}, 5122, "VEC4", 2,
-                              R"(,"normalized":true)")
-              : gltf.accessor(std::vector<float>{0, 2, 0, 0, 0, 0, 0, 1}, 5126, "VEC4", 2);
+    const std::string turns = whole ? gltf.accessor(std::vector<std::int16_t>{0, 32767, 0, 0, 0, 0, 0, 32767}, 5122,
+                                                    "VEC4", 2, R"(,"normalized":true)")
+                                    : gltf.accessor(std::vector<float>{0, 2, 0, 0, 0, 0, 0, 1}, 5126, "VEC4", 2);
     const std::string scales = gltf.accessor(std::vector<Gltf::Place>{{2, 2, 2}, {1, 1, 1}}, 5126, "VEC3", 2);
     gltf.node(R"("name":"wood","mesh":0,"children":[1],"translation":[0,100,0],"extensions":{"EXT_mesh_gpu_instancing":
         {"attributes":{"TRANSLATION":)" +
               shifts + ",\"ROTATION\":" + turns + ",\"SCALE\":" + scales + "}}}");
     gltf.node(R"("name":"hut","mesh":0)");
-    gltf.more =
-        R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],)";
+    gltf.more = R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],)";
     return gltf;
   };
   for (const bool whole : {false, true}) {
@@ -179,8 +179,17 @@ TEST_CASE("instances are parts, placed in the frame of their node, with rotation
     CHECK(file.placements[0].name == "wood/hut");
     CHECK(file.placements[1].name == "wood/0");
     CHECK(file.placements[2].name == "wood/1");
-    CHECK(near(places(file), {{0, 100, 0}, {1, 100, 0}, {0, 101, 0}, {10, 100, 0}, {8, 100, 0}, {10, 102, 0}, {0, 100, 3},
-                              {1, 100, 3}, {0, 101, 3}}, 1e-5));
+    CHECK(near(places(file),
+               {{0, 100, 0},
+                {1, 100, 0},
+                {0, 101, 0},
+                {10, 100, 0},
+                {8, 100, 0},
+                {10, 102, 0},
+                {0, 100, 3},
+                {1, 100, 3},
+                {0, 101, 3}},
+               1e-5));
   }
 }
 
@@ -208,8 +217,8 @@ TEST_CASE("texture coordinates are shares of whole numbers, and transformed as t
   const auto coordinates = [&](const std::string& transform, const std::string& more = "") {
     Gltf gltf;
     const std::string at = gltf.accessor(corners, 5126, "VEC3", 3);
-    const std::string first = gltf.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 255, 0, 0, 0, 0, 255, 0, 0}, 5121, "VEC2", 3,
-                                            R"(,"normalized":true)", R"(,"byteStride":4)");
+    const std::string first = gltf.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 255, 0, 0, 0, 0, 255, 0, 0}, 5121,
+                                            "VEC2", 3, R"(,"normalized":true)", R"(,"byteStride":4)");
     const std::string second = gltf.accessor(std::vector<float>{5, 5, 6, 5, 5, 6}, 5126, "VEC2", 3);
     gltf.primitive("\"POSITION\":" + at + ",\"TEXCOORD_0\":" + first + ",\"TEXCOORD_1\":" + second, R"(,"material":0)");
     gltf.mesh("m");
@@ -218,11 +227,11 @@ TEST_CASE("texture coordinates are shares of whole numbers, and transformed as t
                   (transform.empty() ? "" : R"(,"extensions":{"KHR_texture_transform":{)" + transform + "}}") + "}}");
     gltf.more = R"("images":[{"uri":"a.png"}],"textures":[{"source":0}],)";
     folder.write("a.png", "no picture is read");
-    const MeshFile file =
-        read_mesh_file(folder.write("a.gltf", gltf.text()), {.texture = true, .pictures = false});
+    const MeshFile file = read_mesh_file(folder.write("a.gltf", gltf.text()), {.texture = true, .pictures = false});
     CHECK(file.warnings.empty());
     std::vector<Vec3> all;
-    for (const Vec2& one : file.meshes.at(0).mesh.texture.at(0)) all.emplace_back(one.x, 1 - one.y, 0);  // as in the file
+    for (const Vec2& one : file.meshes.at(0).mesh.texture.at(0))
+      all.emplace_back(one.x, 1 - one.y, 0);  // as in the file
     return all;
   };
   CHECK(near(coordinates(""), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
@@ -266,17 +275,15 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
        }},
       {"KHR_texture_transform",
        [&] {
-         const MeshFile file =
-             read(triangle({.file = R"("images":[{"uri":"a.png"}],"textures":[{"source":0}],)",
-                            .material = R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0,
+         const MeshFile file = read(triangle({.file = R"("images":[{"uri":"a.png"}],"textures":[{"source":0}],)",
+                                              .material = R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0,
                                 "extensions":{"KHR_texture_transform":{"offset":[0.5,0]}}}})"}));
          CHECK(file.meshes.at(0).mesh.texture.at(0)[0].x == doctest::Approx(0.5));
          return file.warnings;
        }},
       {"KHR_node_visibility",
        [&] {
-         const MeshFile file =
-             read(triangle({.node = R"(,"extensions":{"KHR_node_visibility":{"visible":false}})"}));
+         const MeshFile file = read(triangle({.node = R"(,"extensions":{"KHR_node_visibility":{"visible":false}})"}));
          CHECK(file.placements.size() == 1);
          return file.warnings;
        }},
@@ -324,9 +331,7 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
       {"EXT_mesh_features", is_read("EXT_mesh_features")},
       {"EXT_instance_features", is_read("EXT_instance_features")},
       {"KHR_materials_pbrSpecularGlossiness",
-       [&] {
-         return warnings(triangle({.material = R"(,"extensions":{"KHR_materials_pbrSpecularGlossiness":{}})"}));
-       }},
+       [&] { return warnings(triangle({.material = R"(,"extensions":{"KHR_materials_pbrSpecularGlossiness":{}})"})); }},
       {"KHR_materials_variants", is_read("KHR_materials_variants")},
       {"KHR_materials_*", is_read("KHR_materials_clearcoat")},
       {"KHR_texture_basisu", is_read("KHR_texture_basisu")},
@@ -336,12 +341,14 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
        [&] {
          Gltf gltf;
          gltf.primitive("\"POSITION\":" + gltf.accessor(corners, 5126, "VEC3", 3) +
-                            ",\"COLOR_0\":" + gltf.accessor(corners, 5126, "VEC3", 3), "");
+                            ",\"COLOR_0\":" + gltf.accessor(corners, 5126, "VEC3", 3),
+                        "");
          gltf.mesh("m");
          gltf.node("\"mesh\":0");
          return warnings(gltf);
        }},
-      {"CESIUM_RTC", [&] { return warnings(triangle({.file = R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)"})); }},
+      {"CESIUM_RTC",
+       [&] { return warnings(triangle({.file = R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)"})); }},
       {"animations", [&] { return warnings(triangle({.file = R"("animations":[{"channels":[],"samplers":[]}],)"})); }},
       {"skins", [&] { return warnings(triangle({.node = R"(,"skin":0)", .file = R"("skins":[{"joints":[0]}],)"})); }},
       {"weights", [&] { return warnings(triangle({.node = R"(,"weights":[0,0.5])"})); }},
@@ -367,7 +374,8 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
 
   // what a file declares without effect, requires and is unknown, or has without a declaration
   CHECK(warnings(triangle({.node = R"(,"weights":[0,0],"extras":{"weights":[1],"extensions":{"A_b":1}})",
-                           .file = R"("animations":[],)"})).empty());
+                           .file = R"("animations":[],)"}))
+            .empty());
   CHECK(warnings(triangle({.node = R"(,"extensions":{"SOME_thing":{}})"})).size() == 1);
   CHECK(used("EXT_meshopt_compression").size() == 1);
   for (const char* name : {"SOME_thing", "\\u0053OME_thing"})
@@ -375,7 +383,8 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
                    "has the glTF feature 'SOME_thing', which is unknown: expected a file without it"));
   CHECK(contains(support::file_error([&] {
                    (void)warnings(triangle({.file = R"("extensions\u0052equired":["SOME_thing"],)"}));
-                 }).problem(), "SOME_thing"));
+                 }).problem(),
+                 "SOME_thing"));
 }
 
 TEST_CASE("a hidden node hides those below it, and no other") {
@@ -407,8 +416,9 @@ TEST_CASE("a mesh of many vertices at one place is refused, one quad is noted") 
   std::string stl = "solid a\n";
   for (int i = 0; i < 3; ++i)
     stl += "facet normal 0 0 1\nouter loop\nvertex 1 1 1\nvertex 1 1 1\nvertex 1 1 1\nendloop\nendfacet\n";
-  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.stl", stl + "endsolid a\n")); }).problem(),
-                 "all at one place"));
+  CHECK(contains(
+      support::file_error([&] { (void)read_mesh_file(folder.write("a.stl", stl + "endsolid a\n")); }).problem(),
+      "all at one place"));
 }
 
 TEST_CASE("names of buffers may have escapes of JSON and of URIs, and stay in the folder") {
@@ -418,8 +428,8 @@ TEST_CASE("names of buffers may have escapes of JSON and of URIs, and stay in th
   folder.write("a.bin", gltf.buffer());
   folder.write("inner/my sc\xC3\xA4ne.bin", gltf.buffer());
   for (const bool isolated : {false, true}) {
-    for (const char* name : {"my sc\\u00e4ne.bin", "my%20sc\\u00E4ne.bin", "my%20sc%C3%A4ne.bin", "my\\u0020sc\xC3\xA4ne.bin",
-                             "my\\u002520sc\\u00e4ne.bin"}) {
+    for (const char* name : {"my sc\\u00e4ne.bin", "my%20sc\\u00E4ne.bin", "my%20sc%C3%A4ne.bin",
+                             "my\\u0020sc\xC3\xA4ne.bin", "my\\u002520sc\\u00e4ne.bin"}) {
       CAPTURE(name);
       const MeshFile file = read_mesh_file(folder.write("inner/a.gltf", gltf.text(name)), {.isolated = isolated});
       CHECK(places(file)[1].x == 255);
@@ -449,10 +459,12 @@ TEST_CASE("documents that lie about quantized positions and instances are explai
   const std::string sound = gltf.text(), sound_binary = gltf.binary();
   const auto problem = [&](const std::string& text) {
     return support::file_error([&] {
-             const MeshFile file = read_mesh_file(folder.write("a.gltf", text), {.isolated = true, .limits = {.memory = 5e8}});
+             const MeshFile file =
+                 read_mesh_file(folder.write("a.gltf", text), {.isolated = true, .limits = {.memory = 5e8}});
              for (const FileMesh& one : file.meshes) one.mesh.validate();
              for (const MeshPlacement& one : file.placements) one.placement.validate();
-           }).problem();
+           })
+        .problem();
   };
   REQUIRE(problem(sound) == "no error");
   struct Lie {
@@ -498,13 +510,15 @@ TEST_CASE("documents that lie about quantized positions and instances are explai
       {R"("type":"VEC4","count":3)", R"("type":"VEC4","count":2)", "not as many ROTATION as others"},
       {R"("type":"VEC4","count":3)", R"("type":"VEC4","count":1000000000)", "expected them in a buffer"},
       {R"("children":[1])", R"("children":[0])", ""},
-      {R"("children":[1])", R"("children":{},"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}})",
+      {R"("children":[1])",
+       R"("children":{},"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}})",
        "children that are no list"},
       {R"("mesh":0,"children")", R"("mesh":"0","children")", "has no right mesh"},
       {R"("bufferViews":[)", R"("bufferViews":7,"x":[)", "of its bufferViews"},
       {R"("accessors":[)", R"("accessors":{},"x":[)", "of its accessors"},
       {R"("nodes":[{)", R"("nodes":[7,null,[],{)", ""},
-      {R"("asset":)", R"("asset":)" + std::string(100'000, '[') + std::string(100'000, ']') + R"(,"a":)", "is nested more than 200 deep"},
+      {R"("asset":)", R"("asset":)" + std::string(100'000, '[') + std::string(100'000, ']') + R"(,"a":)",
+       "is nested more than 200 deep"},
       {R"("asset":)", R"("extras":)" + std::string(100'000, '{'), "is nested more than 200 deep"},
       {R"("asset":)", "\"\xFF\xC0\x80\":\"\xED\xA0\x80\",\"asset\":", ""},
       {R"("asset":)", R"("\ud800":1,"asset":)", "is no right JSON"},
@@ -515,7 +529,8 @@ TEST_CASE("documents that lie about quantized positions and instances are explai
       {R"("uri":"data:application/octet-stream;base64,)", R"("uri":"<document>.gltf","x":")", ""},
       {R"("uri":"data:application/octet-stream;base64,)", R"("uri":"/dev/zero","x":")", ""},
       {R"("uri":"data:application/octet-stream;base64,)", R"("uri":"a.gltf","x":")", ""},
-      {R"("uri":"data:application/octet-stream;base64,)", R"("uri":"none.bin","x":")", "could not open referenced file 'none.bin'"}};
+      {R"("uri":"data:application/octet-stream;base64,)", R"("uri":"none.bin","x":")",
+       "could not open referenced file 'none.bin'"}};
   CHECK(lies.size() >= 40);
   for (const Lie& lie : lies) {
     const std::string name = lie.to.substr(0, 200);

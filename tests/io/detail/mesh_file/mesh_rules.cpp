@@ -32,7 +32,8 @@ std::string dae(const std::string& of_asset, const std::string& of_node = "", co
 <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
 </source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">
 <input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>)" +
-         of_mesh + R"(</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">)" +
+         of_mesh +
+         R"(</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">)" +
          of_node + R"(<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
