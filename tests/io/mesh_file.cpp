@@ -480,37 +480,6 @@ TEST_CASE("files outside the folder of a mesh are refused, unless allowed") {
   }
 }
 
-TEST_CASE("a required extension of glTF is known, or the file is refused; others that move meshes are noted") {
-  const Folder folder;
-  const auto uses = [](const std::string& list, const std::string& name) {
-    Gltf gltf = triangle_file();
-    gltf.more = "\"extensionsUsed\":[\"KHR_materials_ior\",\"" + name + "\"]," + list;
-    return gltf;
-  };
-  const auto required = [&](const std::string& name) {
-    return uses("\"extensionsRequired\" : [ \"" + name + "\" ],", name);
-  };
-  for (const char* known : {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual"})
-    CHECK(read_mesh_file(folder.write("a.gltf", required(known).text())).triangle_count() == 1);
-  for (const char* unknown :
-       {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "SOME_thing", "\\u004bHR"}) {
-    CAPTURE(unknown);
-    for (const bool isolated : {false, true})
-      for (const auto& path :
-           {folder.write("a.gltf", required(unknown).text()), folder.write("b.glb", required(unknown).binary())})
-        CHECK(contains(support::file_error([&] { (void)read_mesh_file(path, {.isolated = isolated}); }).problem(),
-                       std::string("requires the glTF extension '") + unknown + "', which is not supported: expected"));
-  }
-  for (const char* moving : {"EXT_mesh_gpu_instancing", "CESIUM_RTC"})
-    CHECK(warns(read_mesh_file(folder.write("a.gltf", uses("", moving).text())),
-                std::string(moving) + ", which has no effect"));
-  CHECK(read_mesh_file(folder.write("a.gltf", uses("", "KHR_texture_transform").text())).warnings.empty());
-  Gltf hidden = triangle_file();
-  hidden.more = R"("extensions\u0052equired":["SOME_thing"],)";
-  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", hidden.text())); }).problem(),
-                 "without escapes"));
-}
-
 TEST_CASE("a mesh compressed by Draco is read, where assimp can") {
   const Folder folder;
   const std::string code =

@@ -41,6 +41,10 @@ class Gltf {
     add(primitives_, "{\"attributes\":{" + attributes +
                          "},\"indices\":" + accessor(triangles, 5125, "SCALAR", 3 * triangles.size()) + members + "}");
   }
+  /// Part of the next mesh, of accessors by number.
+  void primitive(const std::string& attributes, const std::string& members) {
+    add(primitives_, "{\"attributes\":{" + attributes + "}" + members + "}");
+  }
   /// Mesh of the parts so far. Returns its number.
   std::size_t mesh(const std::string& name) {
     add(meshes_, "{\"name\":\"" + name + "\",\"primitives\":[" + primitives_ + "]}");
@@ -77,24 +81,25 @@ class Gltf {
   }
 
   /// Adds a picture, or other bytes, to the buffer. Returns the number of its view.
-  std::string view(const void* data, std::size_t size) {
+  std::string view(const void* data, std::size_t size, const std::string& members = "") {
     while (bytes_.size() % 4 != 0) bytes_ += '\0';
     add(views_, "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) +
-                    ",\"byteLength\":" + std::to_string(size) + "}");
+                    ",\"byteLength\":" + std::to_string(size) + members + "}");
     bytes_.append(static_cast<const char*>(data), size);
     return std::to_string(view_count_++);
+  }
+  /// Adds elements, of a component type and a shape, as in `5126` and `VEC3`. Returns the number of their accessor.
+  template <class T>
+  std::string accessor(const std::vector<T>& elements, int type, const std::string& shape, std::size_t count,
+                       const std::string& members = "", const std::string& members_of_view = "") {
+    const std::string number = view(elements.data(), elements.size() * sizeof(T), members_of_view);
+    add(accessors_, "{\"bufferView\":" + number + ",\"componentType\":" + std::to_string(type) + ",\"type\":\"" +
+                        shape + "\",\"count\":" + std::to_string(count) + members + "}");
+    return std::to_string(accessor_count_++);
   }
 
  private:
   static void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ",") + item; }
-
-  template <class T>
-  std::string accessor(const std::vector<T>& elements, int type, const std::string& shape, std::size_t count) {
-    const std::string number = view(elements.data(), elements.size() * sizeof(T));
-    add(accessors_, "{\"bufferView\":" + number + ",\"componentType\":" + std::to_string(type) + ",\"type\":\"" +
-                        shape + "\",\"count\":" + std::to_string(count) + "}");
-    return std::to_string(accessor_count_++);
-  }
 
   [[nodiscard]] std::string json(const std::string& uri) const {
     return "{\"asset\":{\"version\":\"2.0\"}," + more + "\"scene\":0,\"scenes\":[{\"nodes\":[" + roots +

@@ -19,10 +19,10 @@ namespace PULSECAST_NAMESPACE::io {
 /// share one with their shear or reflection applied. Polygons are triangulated; points, lines and triangles
 /// without area are left out; animations are not played. Reflectance is 0.5; opacity and transmission are as of glass
 /// with the index of the file; specular colour as `read_mtl`; metals of a roughness up to 0.1 are mirrors, other
-/// surfaces of glTF have facets of that roughness. Limits: nodes are nested at most 1000 deep; required extensions of
-/// glTF but those for materials, lights, transforms of texture coordinates and Draco are refused. Warnings report what
-/// is left out or changed, and rounding by over 1 mm. @throws SettingError @throws FileError for a file that is missing
-/// or damaged, or has a coordinate beyond 1e12
+/// surfaces of glTF have facets of that roughness. Limits: nodes are nested at most 1000 deep; what
+/// `docs/formats.md` says is refused. Warnings report what is left out or changed, and
+/// rounding by over 1 mm. @throws SettingError @throws FileError for a file that is missing or damaged, has more than
+/// four vertices all at one place, or a coordinate beyond 1e12
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 

@@ -12,6 +12,7 @@
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 
 using namespace pulsecast::io;
 
@@ -31,4 +32,5 @@ int main() {
   print("PLY, as points", detail::ply_cloud_rules);
   print("points: PLY, named columns", detail::point_rules);
   print("PTX", detail::ptx_rules);
+  print("DAE, FBX", detail::mesh_rules);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -86,9 +87,7 @@ class MeshFileMaker {
     if (reshaped_ > 0)
       warn(reshaped_, " nodes shear, mirror or stretch their meshes, which become ", shapes_, " meshes of their own");
     if (flattened_ > 0) warn(flattened_, " nodes whose transforms flatten their meshes are left out");
-    if (empty_ > 0 && file_.placements.empty())
-      fail(path_, "has triangles, and none with an area: all their vertices may coincide: expected a mesh");
-    if (empty_ > 0) warn(empty_, " meshes have triangles, and none with an area: all their vertices may coincide");
+    if (empty_ > 0) warn(empty_, " meshes have triangles, and none with an area");
     const double rounding = farthest_ * 0x1p-24;  // of 24 bits. Source: IEEE 754-2019, binary32
     if (rounding > 1e-3)
       warn("has coordinates up to ", std::llround(farthest_), " m, which are read in single precision, to ",
@@ -151,11 +150,25 @@ class MeshFileMaker {
     return known->second;
   }
 
+  /// Refuses a mesh of more than a quad's vertices at one point: its numbers are not understood.
+  void require_extent(const RawMesh& mesh) const {
+    const auto is_first = [&](const Float3& v) {
+      const Float3& first = mesh.vertices[0];
+      return std::equal_to<float>()(v.x, first.x) && std::equal_to<float>()(v.y, first.y) &&
+             std::equal_to<float>()(v.z, first.z);
+    };
+    if (mesh.vertices.size() > 4 && std::ranges::all_of(mesh.vertices, is_first))
+      detail::fail(path_, "has the mesh ", text::quoted(mesh.name), " of ", mesh.vertices.size(),
+                   " vertices, all at one place, as in an encoding that is not known: expected coordinates that "
+                   "differ, as in an OBJ file that its program exports");
+  }
+
   [[nodiscard]] std::optional<std::size_t> made(const Numbers& meshes, const Matrix3& shape) {
     FileMesh one;
     Numbers materials, shown;
     for (const std::uint32_t mesh : meshes) {
       if (scene_.meshes[mesh].triangles.empty()) continue;
+      require_extent(scene_.meshes[mesh]);
       shown.push_back(mesh);
       const std::uint32_t material = scene_.meshes[mesh].material;
       const auto [number, is_new] = numbers_.try_emplace(material, static_cast<std::uint32_t>(used_.size()));

@@ -8,21 +8,25 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <new>
+#include <optional>
 #include <set>
 #include <span>
 #include <system_error>
 #include <vector>
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 
-#include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
+#include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
@@ -37,10 +41,14 @@ class FolderSystem : public Assimp::IOSystem {
 
   mutable std::string refused;               ///< first file that was refused, as outside; or empty
   mutable std::set<std::string> looked_for;  ///< files that were requested, existing or not
+  /// Content of files that are not on disk, by name.
+  std::map<std::string, std::string_view, std::less<>> in_memory;
 
-  bool Exists(const char* file) const override { return is_open_to(found(file)); }
+  bool Exists(const char* file) const override { return has_in_memory(file) || is_open_to(found(file)); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* named, const char* mode) override {
+    if (const std::string_view* const bytes = has_in_memory(named))
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
     const std::string file = found(named);
     if (std::strpbrk(mode, "wa+") || !is_open_to(file)) return nullptr;
     std::error_code ignored;
@@ -51,6 +59,10 @@ class FolderSystem : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
 
  private:
+  [[nodiscard]] const std::string_view* has_in_memory(std::string_view file) const {
+    const auto known = in_memory.find(file.substr(file.rfind('/') + 1));
+    return known == in_memory.end() ? nullptr : &known->second;
+  }
   /// Name as it is, or decoded if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
   [[nodiscard]] std::string found(const char* file) const {
     looked_for.insert(file);
@@ -84,7 +96,8 @@ class MeshImport {
   }
 
   [[nodiscard]] RawScene read() {
-    check_gltf(path_, scene_.warnings);
+    const MappedFile content(path_, "a mesh file");
+    const std::string main = main_file(content.text());
     Assimp::Importer& importer = *importer_;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
@@ -92,14 +105,13 @@ class MeshImport {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
-    const std::string main = std::filesystem::absolute(path_).string();
     const aiScene* const found = importer.ReadFile(main, 0);
     if (!found || !found->mRootNode) fail(importer.GetErrorString());
     require_own_folder();
     format(*found);
     for (unsigned i = 0; i < found->mNumMaterials; ++i) {
       const ImportedMaterial& one =
-          materials_.emplace_back(MaterialImport(*found, *found->mMaterials[i], gltf_).read());
+          materials_.emplace_back(MaterialImport(*found, *found->mMaterials[i], is_gltf()).read());
       scene_.materials.push_back(one.material);
       if (one.moved_picture)
         warn("material '", one.material.name, "' transforms its texture coordinates, which has no effect");
@@ -112,11 +124,31 @@ class MeshImport {
     if (crossings_ > 0) warn(crossings_, " polygons cross themselves, and become fans about their first corners");
     if (left_out_ > 0) warn("points and lines are left out: ", left_out_, " in all");
     for (const std::string& file : system_->looked_for)
-      if (file != main) scene_.files.push_back(file);
+      if (file != std::filesystem::absolute(path_)) scene_.files.push_back(file);
     return std::move(scene_);
   }
 
  private:
+  /// Name of the file for assimp: for glTF and GLB, that of a document of our own.
+  [[nodiscard]] std::string main_file(std::string_view content) {
+    const std::filesystem::path path = std::filesystem::absolute(path_);
+    const std::string ending = text::lower(path.extension().string());
+    for (const FormatRule& rule : mesh_rules)
+      if ((ending == ".dae" || ending == ".fbx") && content.find(rule.name) != content.npos)
+        keep_rule(mesh_rules, path_, "item", rule.name, scene_.warnings);
+    if (!content.starts_with("glTF") && ending != ".gltf" && ending != ".glb") return path.string();
+    const auto open = [&](const std::string& uri) {
+      Assimp::IOStream* const stream = system_->Open((path.parent_path() / uri).c_str(), "rb");
+      if (!stream) fail("could not open referenced file ", text::quoted(uri));
+      std::string bytes(stream->FileSize(), '\0');
+      bytes.resize(bytes.empty() ? 0 : stream->Read(bytes.data(), 1, bytes.size()));
+      system_->Close(stream);
+      return bytes;
+    };
+    system_->in_memory = gltf_.emplace(path_, content, open, scene_.warnings).files();
+    return (path.parent_path() / "<document>.gltf").string();
+  }
+
   [[noreturn]] void fail(const auto&... what) const {
     require_own_folder();
     const std::string problem = text::message(what...);
@@ -136,9 +168,8 @@ class MeshImport {
     aiString name;
     if (found.mMetaData) found.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, name);
     const std::string_view word = name.C_Str();
-    gltf_ = word.starts_with("glTF");
     const bool fbx = word.find("FBX") != word.npos, dae = word.starts_with("Collada");
-    if (gltf_ || fbx || dae) scene_.upright = y_up;
+    if (is_gltf() || fbx || dae) scene_.upright = y_up;
     if (dae && settings_.unit)  // assimp scales the root by the unit, and turns it
       scene_.applied_unit = std::cbrt(std::fabs(double{found.mRootNode->mTransformation.Determinant()}));
     if (!fbx) return;
@@ -177,11 +208,19 @@ class MeshImport {
     made.vertices = shared(from.mVertices);
     made.triangles = triangles_of(from);
     if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
-    const auto& [material, channel, moved] = materials_[from.mMaterialIndex];
+    const auto& [material, channel, is_moved] = materials_[from.mMaterialIndex];
     const bool pictured = !material.colour.name.empty() || !material.opacity.name.empty();
     const bool has_channel = channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(channel);
     if (pictured || settings_.texture || !settings_.materials.empty())
       made.texture = shared(from.mTextureCoords[has_channel ? channel : 0]);
+    if (gltf_ && from.mMaterialIndex < gltf_->transforms.size() && gltf_->transforms[from.mMaterialIndex]) {
+      const SharedBuffer<Float3> moved(made.texture.size());
+      std::ranges::transform(made.texture, moved.data(), [&](const Float3& t) {
+        const Vec3 to = *gltf_->transforms[from.mMaterialIndex] * Vec3(double{t.x}, double{t.y}, 1);
+        return Float3{static_cast<float>(to.x), static_cast<float>(to.y), 0};
+      });
+      made.texture = moved;
+    }
     scene_.meshes.push_back(std::move(made));
   }
 
@@ -233,7 +272,7 @@ class MeshImport {
       const aiMatrix4x4& m = node.mTransformation;
       const Matrix3 linear(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3));
       std::string name = node.mName.C_Str();  // of a root, often without a meaning
-      const bool means_nothing = name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT"));
+      const bool means_nothing = name.starts_with('<') || (node.mNumMeshes == 0 && !(is_gltf() && name != "ROOT"));
       if (step.depth == 0 && means_nothing) name.clear();
       RawNode made{.name = step.name.empty() ? name : step.name + "/" + name,
                    .place = step.above * Affine{linear, Vec3(m.a4, m.b4, m.c4)}};
@@ -243,9 +282,25 @@ class MeshImport {
       }
       for (unsigned i = node.mNumChildren; i-- > 0;)
         open.push_back({node.mChildren[i], made.place, made.name, step.depth + 1});
-      if (!made.meshes.empty()) scene_.nodes.push_back(std::move(made));
+      if (!made.meshes.empty()) add(std::move(made), name, step.name);
     }
   }
+
+  /// Adds a node, or one for each instance, named as its node with a number.
+  void add(RawNode node, std::string_view name, const std::string& above) {
+    const bool is_marked = gltf_ && name.starts_with(GltfDocument::instance_mark);
+    const auto number = is_marked ? text::number_in<std::size_t>(name.substr(1)) : std::nullopt;
+    if (!number || *number >= gltf_->instances.size()) {
+      scene_.nodes.push_back(std::move(node));
+      return;
+    }
+    const std::vector<Affine>& all = gltf_->instances[*number];
+    for (std::size_t i = 0; i < all.size(); ++i)
+      scene_.nodes.push_back(
+          {above + (above.empty() ? "" : "/") + std::to_string(i), node.place * all[i], node.meshes});
+  }
+
+  [[nodiscard]] bool is_gltf() const noexcept { return gltf_.has_value(); }
 
   const std::filesystem::path& path_;
   const MeshFileSettings& settings_;
@@ -253,7 +308,7 @@ class MeshImport {
   FolderSystem* system_;                                                               // of the importer
   RawScene scene_;
   std::vector<ImportedMaterial> materials_;
-  bool gltf_ = false;
+  std::optional<GltfDocument> gltf_;
   std::uint64_t left_out_ = 0, posed_ = 0, crossings_ = 0;
 };
 
