@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_SIDE_FILES_HPP
+#define PULSECAST_IO_DETAIL_SIDE_FILES_HPP
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include <pulsecast/io/format_rules.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Files beside a raster: its reference system, and elements of GDAL's `.aux.xml`. Source: OGC 01-009; GDAL manual,
+/// Persistent Auxiliary Metadata.
+inline constexpr std::array<FormatRule, 11> side_file_rules{{
+    {"reference system", FormatUse::read, "`.prj`, or `<SRS>` of `.aux.xml`: coordinates and heights become metres"},
+    {"reference system in degrees", FormatUse::refused, "projected coordinates: gdalwarp -t_srs EPSG:CODE makes them"},
+    {"reference system of depths", FormatUse::refused, "heights, not depths: gdal_calc.py --calc=-A makes them"},
+    {"reference system without a unit", FormatUse::noted, "it names no unit: metres are assumed"},
+    {"reference system not in metres, without heights", FormatUse::noted, "heights without a unit are taken as metres"},
+    {"<GeoTransform>", FormatUse::refused, "the place in the raster or a world file: gdal_translate writes it there"},
+    {"<GCPList", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one of control points"},
+    {"<GeodataXform", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one"},
+    {"<NoDataValue", FormatUse::refused, "missing heights told by the raster: gdal_translate to GeoTIFF writes them"},
+    {"<Offset>", FormatUse::refused, "an offset in the raster: gdal_translate to GeoTIFF writes it"},
+    {"<Scale>", FormatUse::refused, "a scale in the raster: gdal_translate to GeoTIFF writes it"},
+}};
+
+/// Metres a unit, the last of a part of well-known text: that of its axes; empty if it has none.
+[[nodiscard]] inline std::optional<double> last_unit(std::string_view part) {
+  const std::size_t at = part.rfind("UNIT[");
+  const std::size_t comma = at == part.npos ? at : part.find("\",", at);
+  if (comma == part.npos) return std::nullopt;
+  part = text::trimmed(part.substr(comma + 2));
+  const std::optional<double> metres = text::finite_number_in(text::trimmed(part.substr(0, part.find_first_of(",]"))));
+  return metres && *metres >= 1e-6 && *metres <= 1e6 ? metres : std::nullopt;
+}
+
+/// Reference system by its well-known text; heights without a unit have the unit 1. Source: OGC 01-009, 7; OGC 18-010.
+[[nodiscard]] inline SpatialReference reference_of(std::string_view wkt, const std::filesystem::path& path,
+                                                   std::vector<std::string>& warnings) {
+  const auto keep = [&](std::string_view name) { keep_rule(side_file_rules, path, "item", name, warnings); };
+  const auto find = [wkt](auto... keys) { return std::min({wkt.find(keys)...}); };
+  const std::size_t projected = find("PROJCS[", "PROJCRS[", "PROJECTEDCRS["), local = find("LOCAL_CS[", "ENGCRS["),
+                    compound = find("COMPD_CS[", "COMPOUNDCRS["), target = find("TARGETCRS["),
+                    vertical = find("VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["),
+                    globe = find("GEOGCS[", "GEOCCS[", "GEOGCRS[", "GEODCRS[", "GEOGRAPHIC", "Geographic");
+  if (projected == wkt.npos && local == wkt.npos && globe != wkt.npos) keep("reference system in degrees");
+  const std::string_view up = wkt.substr(std::min(vertical, wkt.size()));
+  if (up.find(",DOWN") != up.npos || up.find(",down") != up.npos || up.find("\"Direction\",-1") != up.npos)
+    keep("reference system of depths");
+  const std::optional<double> unit = last_unit(wkt.substr(0, std::min(vertical, target))), height = last_unit(up);
+  if (!unit) keep("reference system without a unit");
+  const std::size_t begin = std::min({projected, local, compound, wkt.size()}), end = wkt.rfind(']') + 1;
+  SpatialReference made{.unit = unit.value_or(1), .vertical_unit = height.value_or(1)};
+  if (begin < end) made.wkt = wkt.substr(begin, end - begin);
+  if (made.unit != 1 && !height) keep("reference system not in metres, without heights");
+  return made;
+}
+
+/// Reads the files beside a raster, but world files. `is_silent`: the raster names no reference system itself.
+/// @throws FileError by the rules
+[[nodiscard]] inline SpatialReference read_side_files(const std::filesystem::path& raster,
+                                                      std::vector<std::string>& warnings, bool is_silent = true) {
+  std::error_code ignored;
+  constexpr std::size_t most = InputFile::block_size;
+  std::string wkt;
+  std::filesystem::path from = raster.string() + ".aux.xml";
+  if (std::filesystem::is_regular_file(from, ignored) && std::filesystem::file_size(from, ignored) > 0) {
+    const MappedFile file(from);
+    std::string_view text = file.text();
+    for (const FormatRule& rule : side_file_rules)
+      if (rule.name.starts_with('<') && text.find(rule.name) != text.npos)
+        keep_rule(side_file_rules, from, "element", rule.name, warnings);
+    text = text.substr(std::min(text.find("<SRS"), text.size()));
+    text = text.substr(0, std::min(text.find("</SRS>"), most));
+    for (; !text.empty(); text.remove_prefix(1)) {
+      wkt += text.starts_with("&quot;") ? '"' : text.front();
+      if (text.starts_with("&quot;")) text.remove_prefix(5);
+    }
+  }
+  if (!is_silent) return {};
+  for (const char* extension : {".prj", ".PRJ"})
+    if (std::filesystem::path beside = std::filesystem::path(raster).replace_extension(extension);
+        wkt.empty() && std::filesystem::is_regular_file(beside, ignored)) {
+      wkt = InputFile(beside, "a reference system").take(most);
+      from = std::move(beside);
+    }
+  return wkt.empty() ? SpatialReference{} : reference_of(wkt, from, warnings);
+}
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
