@@ -53,7 +53,6 @@ struct AsciiGrid {
 #include <limits>
 
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/io/detail/ascii_grid_rules.hpp>
 #include <pulsecast/io/detail/side_files.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/world_file.hpp>

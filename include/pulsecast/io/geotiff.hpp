@@ -84,20 +84,21 @@ class GeoTiffReader {
         file_(path),
         reference_(reference_of(file_, settings_.vertical_scale.has_value())),
         layout_(file_, settings_.band) {
-    keep_items(file_, settings_.band);
-    const auto& scale = settings_.vertical_scale;
-    scale_ = scale ? HeightScale{*scale} : height_scale(file_, settings_.band, reference_.vertical_unit);
+    const BandItems items = band_items(file_, settings_.band, layout_.samples, reference_.vertical_unit);
+    const auto& [scale, offset, unit] = items.heights;
+    scale_ =
+        settings_.vertical_scale ? HeightScale{*settings_.vertical_scale} : HeightScale{scale * unit, offset * unit};
     const RasterCorner corner = raster_corner(file_, layout_);
     westward_ = corner.step_x < 0;
     northward_ = corner.step_y > 0;
     raster_ = placed_raster(file_, layout_, corner, reference_.unit);
     const std::string question = degrees_question(raster_);
-    if (!question.empty() && is_any_key(file_, {geotiff::model_type}))
+    if (!question.empty() && geo_key(file_, geotiff::model_type, 0) != 0)
       file_.warn(question);
     else if (!question.empty() && reference_.wkt.empty())
       file_.fail(question);
     missing_ = settings_.missing ? settings_.missing : missing_value();
-    read_masks();
+    read_masks(items.alpha);
   }
 
   [[nodiscard]] GeoTiff read() {
@@ -121,7 +122,7 @@ class GeoTiffReader {
   }
 
   /// Takes pixels outside masks as missing. Source: GDAL manual, GTiff driver, internal masks; RFC 15 of GDAL.
-  void read_masks() {
+  void read_masks(const std::vector<std::uint16_t>& alpha) {
     const auto take = [&](const TiffFile& file, const RasterLayout& layout, std::uint16_t band) {
       std::vector<bool> zeros = zeros_of(file, layout, band);
       for (std::size_t i = 0; i < hidden_.size(); ++i) zeros[i] = zeros[i] || hidden_[i];
@@ -133,7 +134,7 @@ class GeoTiffReader {
       if (layout.columns != layout_.columns || layout.rows != layout_.rows) file_.keep("mask of another size");
       take(file, layout, std::min(settings_.band, layout.samples));
     };
-    for (const std::uint16_t band : alpha_bands(file_, layout_.samples))
+    for (const std::uint16_t band : alpha)
       if (band != settings_.band) take(file_, layout_, band);
     if (file_.mask() != 0) take_image(file_.path(), file_.mask());
     std::error_code ignored;

@@ -53,7 +53,6 @@ struct PngHeightSettings {
 
 #include <stb/stb_image.h>
 
-#include <pulsecast/io/detail/png_heights_rules.hpp>
 #include <pulsecast/io/detail/side_files.hpp>
 #include <pulsecast/io/world_file.hpp>
 

@@ -40,7 +40,7 @@ namespace detail {
 /// seconds).
 [[nodiscard]] inline std::string degrees_question(const Raster& raster) {
   const Vec2 first = raster.first, pixel = raster.pixel;
-  const Vec2 last = first + Vec2(raster.columns * pixel.x, -(raster.rows * pixel.y));
+  const Vec2 last = first + Vec2((raster.columns - 1) * pixel.x, -((raster.rows - 1) * pixel.y));
   const bool on_globe =
       std::max(std::fabs(first.x), std::fabs(last.x)) <= 361 && std::max(std::fabs(first.y), std::fabs(last.y)) <= 91;
   const auto is_whole = [](double number) { return std::fabs(number - std::round(number)) < 1e-3; };

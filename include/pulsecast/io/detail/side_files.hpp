@@ -3,30 +3,13 @@
 #ifndef PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 #define PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 
-#include <array>
 #include <filesystem>
 #include <vector>
 
-#include <pulsecast/io/format_rules.hpp>
+#include <pulsecast/io/detail/raster_rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
-
-/// Files beside a raster: its reference system, and elements of GDAL's `.aux.xml`. Source: OGC 01-009; GDAL manual,
-/// Persistent Auxiliary Metadata.
-inline constexpr std::array<FormatRule, 11> side_file_rules{{
-    {"reference system", FormatUse::read, "`.prj`, or `<SRS>` of `.aux.xml`: coordinates and heights become metres"},
-    {"reference system in degrees", FormatUse::refused, "projected coordinates: gdalwarp -t_srs EPSG:CODE makes them"},
-    {"reference system of depths", FormatUse::refused, "heights, not depths: gdal_calc.py --calc=-A makes them"},
-    {"reference system without a unit", FormatUse::noted, "it names no unit: metres are assumed"},
-    {"reference system not in metres, without heights", FormatUse::noted, "heights without a unit are taken as metres"},
-    {"<GeoTransform>", FormatUse::refused, "the place in the raster or a world file: gdal_translate writes it there"},
-    {"<GCPList", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one of control points"},
-    {"<GeodataXform", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one"},
-    {"<NoDataValue", FormatUse::refused, "missing heights told by the raster: gdal_translate to GeoTIFF writes them"},
-    {"<Offset>", FormatUse::refused, "an offset in the raster: gdal_translate to GeoTIFF writes it"},
-    {"<Scale>", FormatUse::refused, "a scale in the raster: gdal_translate to GeoTIFF writes it"},
-}};
 
 /// Metres a unit, the last of a part of well-known text: that of its axes; empty if it has none.
 [[nodiscard]] inline std::optional<double> last_unit(std::string_view part) {

@@ -25,10 +25,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 namespace geotiff {
 inline constexpr ttag_t pixel_scale = 33550, tie_points = 33922, transformation = 34264, key_directory = 34735,
                         key_numbers = 34736, key_texts = 34737, metadata = 42112, nodata = 42113;
-inline constexpr std::uint16_t model_type = 1024, raster_type = 1025, citation = 1026, geodetic = 2048,
-                               projected = 3072, projected_citation = 3073, linear_unit = 3076, unit_size = 3077,
-                               vertical = 4096, vertical_unit = 4099;
-inline constexpr std::uint16_t user_defined = 32767, first_private = 32768;
+inline constexpr std::uint16_t model_type = 1024, raster_type = 1025, geodetic = 2048, projected = 3072,
+                               linear_unit = 3076, unit_size = 3077, vertical = 4096, vertical_unit = 4099;
+inline constexpr std::uint16_t user_defined = 32767;
 inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< EPSG codes of units
 
 /// Unit by EPSG code, and names between bars. Source: EPSG 10.076; GDALRasterBand::GetUnitType.
@@ -62,44 +61,26 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
   if (code >= 8700 && code <= 8711) return foot;
   return code == 7407 || (code >= 8712 && code <= 8800) ? us_foot : std::uint16_t{0};
 }
-[[nodiscard]] constexpr bool is_vertical_in_metres(std::uint16_t code) noexcept {
-  return code >= 3855 && code <= 9999 && !(code >= 5001 && code <= 5106);
-}
 }  // namespace geotiff
 
-/// Place of a key's value: the number itself for `at` 0, else an index into tag `at`. Source: OGC GeoTIFF 1.1, 7.1.2.
+/// Entry of a key: its value for `at` 0, else an index into tag `at`. Source: OGC GeoTIFF 1.1, 7.1.2.
 struct GeoKey {
-  std::uint16_t at = 0, count = 0, value = 0;
+  std::uint16_t key = 0, at = 0, count = 0, value = 0;
 };
-[[nodiscard]] inline std::optional<GeoKey> find_key(const TiffFile& file, std::uint16_t wanted) {
+[[nodiscard]] inline std::vector<GeoKey> geo_keys(const TiffFile& file) {
   const auto keys = file.tags<std::uint16_t>(geotiff::key_directory);
+  std::vector<GeoKey> all;
   for (std::size_t i = 4; i + 4 <= keys.size() && i / 4 <= keys[3]; i += 4)
-    if (keys[i] == wanted) return GeoKey{keys[i + 1], keys[i + 2], keys[i + 3]};
-  return std::nullopt;
+    all.push_back({keys[i], keys[i + 1], keys[i + 2], keys[i + 3]});
+  return all;
 }
 
-/// Value of a key.
-[[nodiscard]] inline std::uint16_t geo_key(const TiffFile& file, std::uint16_t wanted, std::uint16_t otherwise) {
-  const std::optional<GeoKey> key = find_key(file, wanted);
-  return key && key->at == 0 ? key->value : otherwise;
-}
-
-/// True if a file has one of some keys.
-[[nodiscard]] inline bool is_any_key(const TiffFile& file, std::initializer_list<std::uint16_t> wanted) {
-  return std::ranges::any_of(wanted, [&](std::uint16_t key) { return find_key(file, key).has_value(); });
-}
-
-/// Keeps to the rules of the keys. @throws FileError for unknown ones
-inline void keep_keys(TiffFile& file) {
-  const auto keys = file.tags<std::uint16_t>(geotiff::key_directory);
-  for (std::size_t i = 4; i + 4 <= keys.size() && i / 4 <= keys[3]; i += 4) {
-    const std::uint16_t key = keys[i];
-    const bool is_projection = (key >= 3074 && key <= 3096) && key != geotiff::linear_unit && key != geotiff::unit_size;
-    if (key >= geotiff::first_private) continue;
-    file.keep(key >= 2048 && key <= 2062 ? "GeoKeys 2048 to 2062"
-              : is_projection            ? "GeoKeys 3074 to 3096"
-                                         : text::message("GeoKey ", key));
-  }
+/// Value of a key, or index into tag `at`.
+[[nodiscard]] inline std::uint16_t geo_key(const TiffFile& file, std::uint16_t wanted, std::uint16_t otherwise,
+                                           ttag_t at = 0) {
+  for (const GeoKey& key : geo_keys(file))
+    if (key.key == wanted && key.at == at) return key.value;
+  return otherwise;
 }
 
 /// Metres per unit by its EPSG code; empty if it is unknown.
@@ -125,73 +106,55 @@ inline void read_vertical(TiffFile& file, SpatialReference& made, bool is_scaled
            : is_in(geotiff::systems_in_us_feet)        ? geotiff::us_foot
            : system == geotiff::system_in_british_feet ? std::uint16_t{9095}
                                                        : geotiff::unit_of_compound(made.epsg);
-  if (!is_given && unit == 0 && system != 0 && !geotiff::is_vertical_in_metres(system) && !is_scaled)
+  if (!is_given && !is_scaled && unit == 0 && (system < 3855 || (system > 5000 && system < 5107) || system > 9999))
     file.keep("GeoKey 4096 alone");
   if (is_given && !metres_of(unit) && !is_scaled) file.keep("GeoKey 4099 = other");
   made.vertical_unit = metres_of(unit).value_or(1);
   made.vertical_epsg = system == geotiff::user_defined ? std::uint16_t{0} : system;
 }
 
-/// Text of a key.
-[[nodiscard]] inline std::string_view key_text(const TiffFile& file, std::uint16_t wanted) {
-  const auto all = file.tags<char>(geotiff::key_texts);
-  const std::optional<GeoKey> key = find_key(file, wanted);
-  if (!key || key->at != geotiff::key_texts || key->value >= all.size()) return {};
-  return std::string_view(all.data(), all.size()).substr(key->value, key->count);
-}
-
-/// Well-known text that Esri's programs write into a citation; else empty. Source: GDAL manual, GTiff driver.
-[[nodiscard]] inline std::string_view citation_wkt(const TiffFile& file) {
-  for (const std::uint16_t key : {geotiff::citation, geotiff::projected_citation})
-    if (const std::string_view text = key_text(file, key); text.starts_with("ESRI PE String = "))
-      return text.substr(17, text.find('|') - 17);
-  return {};
-}
-
-/// Unit of the coordinates by the code of a system or its name, as GDAL leaves out the key in compound ones; 0 if
-/// unknown. Source: EPSG registry 10.076, where NAD27 alone has feet without `(ftUS)` or `(ft)` in the name.
-[[nodiscard]] inline std::uint16_t unit_by_name(const TiffFile& file, std::uint16_t system) {
+/// Unit of the coordinates by a system's code or by citations, as GDAL writes no key of compound ones; 0 if unknown.
+/// Source: EPSG registry 10.076, where NAD27 alone has feet without `(ftUS)` or `(ft)` in the names of systems.
+[[nodiscard]] inline std::uint16_t unit_by_name(std::uint16_t system, std::string_view citations) {
   if ((system >= 26729 && system <= 26813) || (system >= 32001 && system <= 32058)) return geotiff::us_foot;
-  for (const std::uint16_t key : {geotiff::projected_citation, geotiff::citation}) {
-    std::string_view name = key_text(file, key);
-    name = name.substr(0, name.find(" + "));
-    if (name.find("(ftUS)") != name.npos) return geotiff::us_foot;
-    if (name.find("(ft)") != name.npos) return geotiff::foot;
-  }
-  return geotiff::unit_of_compound(system);
+  citations = citations.substr(0, citations.find(" + "));  // the vertical system follows
+  if (citations.find("(ftUS)") != citations.npos) return geotiff::us_foot;
+  return citations.find("(ft)") != citations.npos ? geotiff::foot : geotiff::unit_of_compound(system);
 }
 
 /// Unit of the coordinates [m]. @throws FileError for an unknown one
-[[nodiscard]] inline double horizontal_unit(TiffFile& file, const SpatialReference& named) {
-  const std::optional<GeoKey> size_key = find_key(file, geotiff::unit_size);
+[[nodiscard]] inline double horizontal_unit(TiffFile& file, const SpatialReference& named, std::string_view citations) {
   const auto numbers = file.tags<double>(geotiff::key_numbers);
-  const bool has_size = size_key && size_key->at == geotiff::key_numbers && size_key->value < numbers.size();
-  const double size = has_size ? numbers[size_key->value] : 0;
+  const std::size_t at = geo_key(file, geotiff::unit_size, 0xFFFF, geotiff::key_numbers);
+  const double size = at < numbers.size() ? numbers[at] : 0;
   const std::uint16_t given = geo_key(file, geotiff::linear_unit, 0);
-  if (const auto metres = metres_of(given != 0 ? given : unit_by_name(file, named.epsg))) return *metres;
+  if (const auto metres = metres_of(given != 0 ? given : unit_by_name(named.epsg, citations))) return *metres;
   if (size >= 1e-6 && size <= 1e6) return size;
-  if (given != 0 || size_key) file.keep("GeoKey 3076 = other");
-  if (!named.wkt.empty()) return named.unit;
-  if (named.epsg != 0 && las_utm(named.epsg).empty()) file.keep("GeoKey 3072 alone");
-  return 1;
+  if (given != 0) file.keep("GeoKey 3076 = other");
+  if (named.epsg != 0 && named.wkt.empty() && las_utm(named.epsg).empty()) file.keep("GeoKey 3072 alone");
+  return named.unit;
 }
 
 /// Reference system of a file, by its keys or by the files beside it. `is_scaled`: a setting replaces the unit of
 /// heights. @throws FileError for one in degrees or geocentric, and by the rules
 [[nodiscard]] inline SpatialReference reference_of(TiffFile& file, bool is_scaled) {
-  keep_keys(file);
-  const bool is_silent = !is_any_key(file, {geotiff::model_type, geotiff::geodetic, geotiff::projected});
-  SpatialReference made = read_side_files(file.path(), file.warnings(), is_silent);
+  for (const GeoKey& key : geo_keys(file))
+    if (key.key <= geotiff::user_defined) file.keep(text::message("GeoKey ", key.key));
   const std::uint16_t projected = geo_key(file, geotiff::projected, 0);
-  const std::uint16_t geodetic = geo_key(file, geotiff::geodetic, 0);
-  const std::uint16_t model = geo_key(file, geotiff::model_type, geodetic != 0 && projected == 0 ? 2 : 0);
+  const bool is_globe = projected == 0 && geo_key(file, geotiff::geodetic, 0) != 0;
+  const std::uint16_t model = geo_key(file, geotiff::model_type, is_globe ? 2 : 0);
   if (model == 2) file.keep("GeoKey 1024 = 2");
   if (model == 3) file.keep("GeoKey 1024 = 3");
-  if (const std::string_view text = citation_wkt(file); !text.empty())
-    made = reference_of(text, file.path(), file.warnings());
+  SpatialReference made = read_side_files(file.path(), file.warnings(), model == 0 && projected == 0);
+  const auto texts = file.tags<char>(geotiff::key_texts);
+  const std::string_view citations(texts.data(), texts.size()), esri = "ESRI PE String = ";
+  if (const std::size_t at = citations.find(esri); at != citations.npos)
+    made = reference_of(citations.substr(at + esri.size(), citations.find('|', at) - at - esri.size()), file.path(),
+                        file.warnings());
   made.epsg = projected == geotiff::user_defined ? std::uint16_t{0} : projected;
-  made.unit = horizontal_unit(file, made);
-  if (geotiff::unit_of_compound(made.epsg) != 0 || is_any_key(file, {geotiff::vertical, geotiff::vertical_unit}))
+  made.unit = horizontal_unit(file, made, citations);
+  const std::uint16_t heights = geo_key(file, geotiff::vertical, geo_key(file, geotiff::vertical_unit, 0));
+  if (heights != 0 || geotiff::unit_of_compound(made.epsg) != 0)
     read_vertical(file, made, is_scaled);
   else if (made.unit != 1 && made.wkt.empty() && !is_scaled)
     file.keep("GeoKey 3076 alone");
@@ -257,18 +220,41 @@ struct RasterCorner {
   return raster;
 }
 
-/// Height of a number: `scale` times the number, plus `offset` [m].
+/// Height of a number: `scale` times the number, plus `offset`, in units of `unit` [m].
 struct HeightScale {
-  double scale = 1, offset = 0;
+  double scale = 1, offset = 0, unit = 1;
 };
 
-/// Item of GDAL's metadata. Source: GDAL manual, GTiff driver.
-struct MetadataItem {
-  std::string_view name, role, value;
-  unsigned band = 0;  ///< from 1; 0: none
+/// What GDAL's metadata and ExtraSamples say of the bands. Source: GDAL manual, GTiff driver; TIFF 6.0, ExtraSamples.
+struct BandItems {
+  HeightScale heights;                 ///< of one band
+  std::vector<std::uint16_t> alpha{};  ///< bands of opacity, from 1
 };
 
-[[nodiscard]] inline std::vector<MetadataItem> metadata_items(const TiffFile& file) {
+/// Sets an item of band `of`, from 1, of the heights or of another. @throws FileError for a scale that is no number
+inline void set_item(TiffFile& file, BandItems& made, std::string_view role, std::string_view value, bool is_height,
+                     std::size_t of) {
+  if (role == "colorinterp" && value == "Alpha") made.alpha.push_back(static_cast<std::uint16_t>(of));
+  if (!is_height || value.empty()) return;
+  if (role == "colorinterp" && (value == "Red" || value == "Green" || value == "Blue"))
+    file.keep(of == 1 ? "colours" : "colours, another band");
+  if (role == "unittype") {
+    const auto* const known = std::ranges::find_if(geotiff::length_units, [&](const geotiff::LengthUnit& u) {
+      return u.names.find('|' + text::lower(value) + '|') != u.names.npos;
+    });
+    if (known == geotiff::length_units.end()) file.keep("item unittype = other");
+    made.heights.unit = known == geotiff::length_units.end() ? 1 : known->metres;
+  }
+  if (role != "scale" && role != "offset") return;
+  const std::optional<double> number = text::finite_number_in(value);
+  if (!number || !(std::fabs(*number) <= 1e15) || (role == "scale" && *number == 0))
+    file.fail("has the ", role, ' ', text::quoted(value), " of heights: expected another number");
+  (role == "scale" ? made.heights.scale : made.heights.offset) = *number;
+}
+
+/// Reads what is said of a band of heights, from 1, in units of `unit` [m] unless the band names one.
+[[nodiscard]] inline BandItems band_items(TiffFile& file, std::uint16_t band, std::uint16_t samples, double unit) {
+  BandItems made{.heights = {.unit = unit}};
   const auto attribute = [](std::string_view tag, std::string_view name) -> std::string_view {
     const std::size_t at = tag.find(name);
     if (at == tag.npos) return {};
@@ -276,79 +262,26 @@ struct MetadataItem {
     return value.substr(0, value.find('"'));
   };
   const auto text = file.tags<char>(geotiff::metadata);
-  const std::string_view all(text.data(), text.size());
-  std::vector<MetadataItem> items;
+  std::string_view all(text.data(), text.size());
+  all = all.substr(0, all.find('\0'));
+  bool is_named = false;
   for (std::size_t at = all.find("<Item "); at != all.npos; at = all.find("<Item ", at + 1)) {
     const std::size_t close = std::min(all.find('>', at), all.size() - 1);
-    const std::string_view tag = all.substr(at, close - at);
-    const auto sample = text::number_in<std::uint16_t>(attribute(tag, " sample=\""));
-    items.push_back({attribute(tag, " name=\""), attribute(tag, " role=\""),
-                     text::trimmed(all.substr(close + 1, all.find('<', close) - close - 1)),
-                     sample ? *sample + 1U : 0});
-  }
-  return items;
-}
-
-/// True for a colour as GDAL names the role of a band. Source: GDALGetColorInterpretationName.
-[[nodiscard]] inline bool is_colour(std::string_view name) {
-  constexpr std::array<std::string_view, 7> names{"Red", "Green", "Blue", "Cyan", "Magenta", "Yellow", "Black"};
-  return std::ranges::find(names, name) != names.end();
-}
-
-/// Keeps to the rules of GDAL's metadata. @throws FileError by the rules
-inline void keep_items(TiffFile& file, std::uint16_t band) {
-  const std::vector<MetadataItem> items = metadata_items(file);
-  const auto has_role = [&](std::string_view role) {
-    return std::ranges::any_of(items, [&](const MetadataItem& i) { return i.role == role && i.band == band; });
-  };
-  for (const auto& [name, role, value, of] : items) {
+    const std::string_view tag = all.substr(at, close - at), role = attribute(tag, " role=\"");
+    const std::string name = text::lower(attribute(tag, " name=\""));
+    const auto of = text::number_in<std::uint16_t>(attribute(tag, " sample=\""));
+    const std::string_view value = text::trimmed(all.substr(close + 1, all.find('<', close) - close - 1));
+    is_named = is_named || (role.empty() && (name.ends_with("scale_factor") || name.ends_with("add_offset")));
     if (!role.empty()) file.keep(text::message("item ", role));
-    if (role == "colorinterp" && of == band && is_colour(value))
-      file.keep(band == 1 ? "colours" : "colours, another band");
-    if (!role.empty() || (of != 0 && of != band)) continue;
-    const bool is_scale = text::lower(name).ends_with("scale_factor") && value != "1" && !has_role("scale");
-    if (is_scale || (text::lower(name).ends_with("add_offset") && value != "0" && !has_role("offset")))
-      file.keep("item scale_factor, add_offset");
+    if (!role.empty() && of && *of < samples) set_item(file, made, role, value, *of + 1 == band, *of + std::size_t{1});
   }
-}
-
-/// Bands of opacity, from 1. Source: TIFF 6.0, ExtraSamples.
-[[nodiscard]] inline std::vector<std::uint16_t> alpha_bands(const TiffFile& file, std::uint16_t samples) {
-  std::vector<std::uint16_t> bands;
-  for (const MetadataItem& item : metadata_items(file))
-    if (item.role == "colorinterp" && item.value == "Alpha" && item.band >= 1 && item.band <= samples)
-      bands.push_back(static_cast<std::uint16_t>(item.band));
+  if (is_named && made.heights.scale == 1 && made.heights.offset == 0) file.keep("item scale_factor, add_offset");
   std::uint16_t count = 0;
   const std::uint16_t* kinds = nullptr;
-  if (TIFFGetField(file.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) != 1 || kinds == nullptr) return bands;
+  if (TIFFGetField(file.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) != 1 || kinds == nullptr) count = 0;
   for (std::uint16_t i = 0; i < count && count <= samples; ++i)
     if (kinds[i] == EXTRASAMPLE_ASSOCALPHA || kinds[i] == EXTRASAMPLE_UNASSALPHA)
-      bands.push_back(static_cast<std::uint16_t>(samples - count + i + 1));
-  return bands;
-}
-
-/// Heights of a band, from 1; `by_keys`: metres a unit, but for a unit of the band.
-/// @throws FileError for a scale of 0 or no number
-[[nodiscard]] inline HeightScale height_scale(TiffFile& file, std::uint16_t band, double by_keys) {
-  HeightScale made;
-  double metres = by_keys;
-  for (const auto& [name, role, value, of] : metadata_items(file)) {
-    if (of != band || value.empty()) continue;
-    if (role == "unittype") {
-      const std::string word = '|' + text::lower(value) + '|';
-      const auto* const known = std::ranges::find_if(
-          geotiff::length_units, [&](const geotiff::LengthUnit& u) { return u.names.find(word) != u.names.npos; });
-      if (known == geotiff::length_units.end()) file.keep("item unittype = other");
-      metres = known == geotiff::length_units.end() ? 1 : known->metres;
-    }
-    if (role != "scale" && role != "offset") continue;
-    const std::optional<double> number = text::finite_number_in(value);
-    if (!number || !(std::fabs(*number) <= 1e15))
-      file.fail("has the ", role, ' ', text::quoted(value), " of heights: expected a number");
-    (role == "scale" ? made.scale : made.offset) = *number;
-  }
-  made = {.scale = made.scale * metres, .offset = made.offset * metres};
-  if (made.scale == 0) file.fail("has the scale 0 of heights: expected another number");
+      made.alpha.push_back(static_cast<std::uint16_t>(samples - count + i + 1));
   return made;
 }
 
