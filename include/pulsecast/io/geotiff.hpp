@@ -138,7 +138,7 @@ class GeoTiffReader {
       if (band != settings_.band) take(file_, layout_, band);
     if (file_.mask() != 0) take_image(file_.path(), file_.mask());
     std::error_code ignored;
-    if (const std::string beside = file_.path() + ".msk"; std::filesystem::exists(beside, ignored))
+    if (const auto beside = side_files_of(file_.path()).back(); std::filesystem::exists(beside, ignored))
       take_image(beside, 0);
   }
 

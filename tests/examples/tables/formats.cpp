@@ -8,7 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include <pulsecast/io/detail/geotiff/rules.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/raster_rules.hpp>
 
 using namespace pulsecast::io;
 
@@ -21,4 +23,10 @@ void print(std::string_view format, std::span<const FormatRule> rules) {
 }
 }  // namespace
 
-int main() { print("glTF", detail::gltf_rules); }
+int main() {
+  print("glTF", detail::gltf_rules);
+  print("GeoTIFF", detail::geotiff_rules);
+  print("ASCII grid", detail::ascii_grid_rules);
+  print("PNG heights", detail::png_rules);
+  print("beside a raster", detail::side_file_rules);
+}

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 #define PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -43,35 +44,41 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return made;
 }
 
-/// Reads the files beside a raster, but world files. `is_silent`: the raster names no reference system itself.
+/// Paths of the files beside a raster that its readers look for, but world files: the last is the mask of a GeoTIFF.
+[[nodiscard]] inline std::array<std::filesystem::path, 4> side_files_of(const std::filesystem::path& raster) {
+  const auto as = [&](const char* extension) { return std::filesystem::path(raster).replace_extension(extension); };
+  return {raster.string() + ".aux.xml", as(".prj"), as(".PRJ"), raster.string() + ".msk"};
+}
+
+/// Reads the files beside a raster, but masks and world files. `is_silent`: the raster names no system of its own.
 /// @throws FileError by the rules
 [[nodiscard]] inline SpatialReference read_side_files(const std::filesystem::path& raster,
                                                       std::vector<std::string>& warnings, bool is_silent = true) {
-  std::error_code ignored;
-  constexpr std::size_t most = InputFile::block_size;
+  const auto is_file = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) && std::filesystem::file_size(path, ignored) > 0;
+  };
+  const auto [aux, prj, upper_prj, mask] = side_files_of(raster);
   std::string wkt;
-  std::filesystem::path from = raster.string() + ".aux.xml";
-  if (std::filesystem::is_regular_file(from, ignored) && std::filesystem::file_size(from, ignored) > 0) {
-    const MappedFile file(from);
+  if (is_file(aux)) {
+    const MappedFile file(aux);
     std::string_view text = file.text();
     for (const FormatRule& rule : side_file_rules)
       if (rule.name.starts_with('<') && text.find(rule.name) != text.npos)
-        keep_rule(side_file_rules, from, "element", rule.name, warnings);
+        keep_rule(side_file_rules, aux, "element", rule.name, warnings);
     text = text.substr(std::min(text.find("<SRS"), text.size()));
-    text = text.substr(0, std::min(text.find("</SRS>"), most));
+    text = text.substr(0, std::min(text.find("</SRS>"), InputFile::block_size));
     for (; !text.empty(); text.remove_prefix(1)) {
       wkt += text.starts_with("&quot;") ? '"' : text.front();
       if (text.starts_with("&quot;")) text.remove_prefix(5);
     }
   }
   if (!is_silent) return {};
-  for (const char* extension : {".prj", ".PRJ"})
-    if (std::filesystem::path beside = std::filesystem::path(raster).replace_extension(extension);
-        wkt.empty() && std::filesystem::is_regular_file(beside, ignored)) {
-      wkt = InputFile(beside, "a reference system").take(most);
-      from = std::move(beside);
-    }
-  return wkt.empty() ? SpatialReference{} : reference_of(wkt, from, warnings);
+  if (!wkt.empty()) return reference_of(wkt, aux, warnings);
+  for (const std::filesystem::path& path : {prj, upper_prj})
+    if (is_file(path))
+      return reference_of(InputFile(path, "a reference system").take(InputFile::block_size), path, warnings);
+  return {};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
