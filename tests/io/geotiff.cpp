@@ -553,6 +553,8 @@ TEST_CASE("keys tell the reference system, and the unit of the coordinates") {
         {{1026, 34737, 20, 0, 3072, 0, 1, 2222}, 0.3048, "NAD83 / Arizona (ft) + NAVD88 height (ftUS)|"},
         {{1026, 34737, 20, 0, 3072, 0, 1, 25832}, 1, "ETRS89 / UTM zone 32N + NAVD88 height (ftUS)|"},
         {{3072, 0, 1, 26741}, us_foot},
+        {{1026, 34737, 20, 0, 3072, 0, 1, 7060}, us_foot, "NAD83(2011) / IaRCS zone 4 + NAVD88 height (ft)|"},
+        {{3072, 0, 1, 30200}, 0.201166195164},
         {{3072, 0, 1, 32001}, us_foot}}) {
     CAPTURE(c.keys);
     Place place = keyed(c.keys);
@@ -572,6 +574,10 @@ TEST_CASE("keys tell the reference system, and the unit of the coordinates") {
     CHECK(read_geotiff_reference(file.path) == found.reference);
     CHECK(read_geotiff(file.path, {.vertical_scale = 1}).warnings.empty());
   }
+  CHECK(file.read({}, keyed({3072, 0, 1, 2263})).warnings.size() == 1);  // no unit and no name
+  Place paris = keyed({1026, 34737, 20, 0, 3072, 0, 1, 2154});
+  paris.texts = "RGF93 v1 / Lambert-93 + NGF-IGN69 height|";
+  CHECK(file.read({}, paris).warnings.empty());
   for (const double size : {0.0, -1.0, none, infinite}) {
     Place place = keyed({3076, 0, 1, 32767, 3077, 34736, 1, 0});
     place.numbers = {size};
@@ -890,6 +896,7 @@ TEST_CASE("keys and roles that no rule names are refused; private keys and other
   CHECK(file.refusal({}, keyed({32768, 0, 1, 1, 65535, 0, 1, 1})).empty());
   CHECK(contains(file.refusal({}, told(item("curvature", "1"))), "'item curvature', which is unknown"));
   CHECK(contains(file.refusal({}, told(item("colorinterp", "Red"))), "has the item 'colours'"));
+  CHECK(file.read({}, told("<Item name=\"add_offset\" sample=\"0\">0</Item>")).warnings.empty());
   CHECK(file.read({}, told("<Item name=\"STATISTICS_MEAN\" sample=\"0\">7</Item>")).warnings.empty());
 }
 

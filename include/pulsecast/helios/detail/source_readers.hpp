@@ -13,6 +13,7 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
+#include <pulsecast/io/detail/side_files.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mesh_file.hpp>
