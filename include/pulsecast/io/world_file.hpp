@@ -4,6 +4,7 @@
 #define PULSECAST_IO_WORLD_FILE_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -32,6 +33,13 @@ struct WorldFile {
 
 /// The first of them that exists; empty if there is none.
 [[nodiscard]] std::filesystem::path world_file_of(const std::filesystem::path& picture);
+
+/// Paths of other files beside a raster that its readers look for: GDAL's `.aux.xml`, `.prj`, also in capitals, and the
+/// mask of a GeoTIFF, `.msk`.
+[[nodiscard]] inline std::array<std::filesystem::path, 4> side_files_of(const std::filesystem::path& raster) {
+  const auto as = [&](const char* extension) { return std::filesystem::path(raster).replace_extension(extension); };
+  return {raster.string() + ".aux.xml", as(".prj"), as(".PRJ"), raster.string() + ".msk"};
+}
 
 namespace detail {
 
@@ -62,7 +70,6 @@ namespace detail {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_WORLD_FILE)
-#include <array>
 #include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>

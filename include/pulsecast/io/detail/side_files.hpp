@@ -3,12 +3,9 @@
 #ifndef PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 #define PULSECAST_IO_DETAIL_SIDE_FILES_HPP
 
-#include <array>
-#include <filesystem>
-#include <vector>
-
 #include <pulsecast/io/detail/raster_rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
+#include <pulsecast/io/world_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -42,12 +39,6 @@ namespace PULSECAST_NAMESPACE::io::detail {
   if (begin < end) made.wkt = wkt.substr(begin, end - begin);
   if (made.unit != 1 && !height) keep("reference system not in metres, without heights");
   return made;
-}
-
-/// Paths of the files beside a raster that its readers look for, but world files: the last is the mask of a GeoTIFF.
-[[nodiscard]] inline std::array<std::filesystem::path, 4> side_files_of(const std::filesystem::path& raster) {
-  const auto as = [&](const char* extension) { return std::filesystem::path(raster).replace_extension(extension); };
-  return {raster.string() + ".aux.xml", as(".prj"), as(".PRJ"), raster.string() + ".msk"};
 }
 
 /// Reads the files beside a raster, but masks and world files. `is_silent`: the raster names no system of its own.

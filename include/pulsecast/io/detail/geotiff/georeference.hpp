@@ -28,7 +28,6 @@ inline constexpr ttag_t pixel_scale = 33550, tie_points = 33922, transformation 
 inline constexpr std::uint16_t model_type = 1024, raster_type = 1025, geodetic = 2048, projected = 3072,
                                linear_unit = 3076, unit_size = 3077, vertical = 4096, vertical_unit = 4099;
 inline constexpr std::uint16_t user_defined = 32767;
-inline constexpr double us_survey_foot = 1200.0 / 3937.0;
 inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< EPSG codes of units
 
 /// Unit by EPSG code, and names between bars. Source: EPSG 10.076; GDALRasterBand::GetUnitType.
@@ -44,7 +43,7 @@ inline constexpr std::array<LengthUnit, 8> length_units{{
     {9036, 1000, "|km|kilometre|"},
     {9096, 0.9144, "|yd|yard|"},
     {foot, 0.3048, "|ft|foot|feet|international foot|"},
-    {us_foot, us_survey_foot, "|us survey foot|us_survey_foot|foot_us|us-ft|ftus|sft|sfoot|"},
+    {us_foot, 1200.0 / 3937.0, "|us survey foot|us_survey_foot|foot_us|us-ft|ftus|sft|sfoot|"},
     {9095, 0.3048007491, "|british foot (1936)|"},
 }};
 
@@ -57,54 +56,18 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
     5336, 5612, 5614, 5706, 5715, 5734, 5739, 5789, 5831, 5861, 5862, 5863, 5864, 5865, 5866,
     5867, 5873, 6357, 6358, 6359, 7976, 8051, 8053, 8358, 8378, 8897, 9287, 9288, 9672};
 
-/// Units of projected systems that their names, as `(ft)` or `(ftUS)`, do not tell. Source: EPSG
-/// registry 10.076.
-struct SystemUnit {
-  std::uint16_t first = 0, last = 0;
-  double metres = us_survey_foot;
-};
-inline constexpr std::array<SystemUnit, 42> units_of_systems{{{2155, 2155},
-                                                              {2194, 2194},
-                                                              {2204, 2204},
-                                                              {2964, 2964},
-                                                              {3102, 3102},
-                                                              {3561, 3565},
-                                                              {3991, 3992},
-                                                              {4455, 4456},
-                                                              {5623, 5625},
-                                                              {6200, 6202},
-                                                              {6966, 6966},
-                                                              {7057, 7070},
-                                                              {8518, 8540},
-                                                              {26729, 26813},
-                                                              {32001, 32058},
-                                                              {32074, 32077},
-                                                              {32099, 32099},
-                                                              {3080, 3080, 0.3048},
-                                                              {5588, 5588, 0.3048},
-                                                              {6128, 6141, 0.3048},
-                                                              {6391, 6391, 0.3048},
-                                                              {3359, 3359, 0.3048},
-                                                              {26814, 26846, 1},
-                                                              {2066, 2066, 0.201166195164},
-                                                              {2136, 2136, 0.3047997101815088},
-                                                              {2159, 2160, 0.3047997101815088},
-                                                              {2314, 2314, 0.3047972654},
-                                                              {3139, 3140, 0.201168},
-                                                              {3167, 3167, 20.116756},
-                                                              {3407, 3407, 0.3047972654},
-                                                              {5472, 5472, 0.9143917962},
-                                                              {5589, 5589, 0.3047972654},
-                                                              {22300, 22300, 1000},
-                                                              {24100, 24100, 0.3047972654},
-                                                              {24370, 24374, 0.9143985307444408},
-                                                              {24382, 24382, 0.9143985307444408},
-                                                              {24571, 24571, 20.116782494375872},
-                                                              {27291, 27292, 0.9143984146160287},
-                                                              {29371, 29385, 1.0000135965},
-                                                              {29871, 29871, 20.116765121552632},
-                                                              {29872, 29872, 0.3047994715386762},
-                                                              {30200, 30200, 0.201166195164}}};
+/// Projected systems whose names, as `(ft)` or `(ftUS)`, do not tell their unit, from one code to another; odd units
+/// are links, yards, chains and other feet. Source: EPSG registry 10.076.
+inline constexpr std::array<std::uint16_t, 34> ranges_in_us_feet{
+    2155, 2155, 2194, 2194, 2204, 2204, 2964, 2964, 3102, 3102,  3561,  3565,  3991,  3992,  4455,  4456,  5623,
+    5625, 6200, 6202, 6966, 6966, 7057, 7070, 8518, 8540, 26729, 26813, 32001, 32058, 32074, 32077, 32099, 32099};
+inline constexpr std::array<std::uint16_t, 10> ranges_in_feet{3080, 3080, 3359, 3359, 5588,
+                                                              5588, 6128, 6141, 6391, 6391};
+inline constexpr std::array<std::uint16_t, 2> ranges_in_metres{26814, 26846};
+inline constexpr std::array<std::uint16_t, 38> ranges_in_odd_units{
+    2066,  2066,  2136,  2136,  2159,  2160,  2314,  2314,  3139,  3140,  3167,  3167,  3407,
+    3407,  5472,  5472,  5589,  5589,  22300, 22300, 24100, 24100, 24370, 24374, 24382, 24382,
+    24571, 24571, 27291, 27292, 29371, 29385, 29871, 29871, 29872, 29872, 30200, 30200};
 
 /// Unit of x, y and z of a compound system in feet; 0 for others. Source: EPSG registry 10.076.
 [[nodiscard]] constexpr std::uint16_t unit_of_compound(std::uint16_t code) noexcept {
@@ -165,10 +128,16 @@ inline void read_vertical(TiffFile& file, SpatialReference& made, bool is_scaled
 
 /// Unit of the coordinates by a system's code or name, as GDAL writes no key of compound ones; empty if unknown [m].
 [[nodiscard]] inline std::optional<double> unit_by_name(std::uint16_t system, std::string_view citations) {
-  for (const auto& [first, last, metres] : geotiff::units_of_systems)
-    if (system >= first && system <= last) return metres;
+  const auto is_in = [system](const auto& ranges) {
+    const auto end = std::ranges::upper_bound(ranges, system);
+    return (end - ranges.begin()) % 2 == 1 || (end != ranges.begin() && *std::prev(end) == system);
+  };
+  if (is_in(geotiff::ranges_in_us_feet)) return 1200.0 / 3937.0;
+  if (is_in(geotiff::ranges_in_feet)) return 0.3048;
+  if (is_in(geotiff::ranges_in_metres)) return 1;
+  if (is_in(geotiff::ranges_in_odd_units)) return std::nullopt;
   const std::string_view name = citations.substr(0, citations.find(" + "));  // the vertical system follows
-  if (name.find("(ftUS)") != name.npos) return geotiff::us_survey_foot;
+  if (name.find("(ftUS)") != name.npos) return 1200.0 / 3937.0;
   if (name.find("(ft)") != name.npos) return 0.3048;
   if (const auto metres = metres_of(geotiff::unit_of_compound(system))) return metres;
   return !name.empty() || !las_utm(system).empty() ? std::optional(1.0) : std::nullopt;
