@@ -12,7 +12,10 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/io/detail/raster_rules.hpp>
+
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
@@ -64,15 +67,82 @@ TEST_CASE("a grid of one line longer than a block is read, words across the ends
   }
 }
 
-TEST_CASE("a grid that may be in degrees is read with a question") {
-  const auto warnings = [&](const std::string& place) {
-    return read("ncols 2\nnrows 2\n" + place + "\n1 2\n3 4\n").warnings;
+TEST_CASE("a grid that can only be in degrees is refused, unless a file beside it names a projected system") {
+  const auto grid = [](const std::string& place) { return "ncols 2\nnrows 2\n" + place + "\n1 2\n3 4\n"; };
+  for (const char* globe :
+       {"xllcorner 8.5\nyllcorner 49.4\ncellsize 0.000278", "xllcenter -180\nyllcorner 0\ncellsize 0.0083",
+        "xllcorner 8\nyllcorner 49\ncellsize 0.0166666667", "xllcorner 8\nyllcorner 49\ncellsize 0.08333333333333"}) {
+    CAPTURE(globe);
+    const FileError error = support::file_error([&] { (void)read(grid(globe)); });
+    CHECK(support::contains(error.problem(), "is it in degrees? Expected metres; gdalwarp"));
+  }
+  CHECK_THROWS_AS((void)read("ncols 4\nnrows 2\nxllcorner -180\nyllcorner -90\ncellsize 90\n1 2 3 4 5 6 7 8\n"),
+                  FileError);
+  for (const char* place :
+       {"xllcorner 500000\nyllcorner 5400000\ncellsize 0.005", "xllcorner 8\nyllcorner 49\ncellsize 0.5",
+        "xllcorner 0\nyllcorner 0\ncellsize 0.05", "xllcorner 8\nyllcorner 49\ncellsize 1"})
+    CHECK(read(grid(place)).warnings.empty());
+  const support::TemporaryFolder folder;
+  std::ofstream(folder / "a.asc") << grid("xllcorner 8\nyllcorner 49\ncellsize 0.005");
+  std::ofstream(folder / "a.prj") << R"(PROJCS["site",GEOGCS["x",UNIT["Degree",0.0174]],UNIT["Meter",1.0]])";
+  CHECK(read_ascii_grid(folder / "a.asc").raster.pixel.x == 0.005);
+}
+
+TEST_CASE("a system beside the grid tells the unit of coordinates and heights") {
+  const support::TemporaryFolder folder;
+  std::ofstream(folder / "a.asc") << head + "1 2 3\n4 5 6\n";
+  const auto with = [&](const std::string& system, const AsciiGridSettings& settings = {}) {
+    std::ofstream(folder / "a.prj") << system;
+    return read_ascii_grid(folder / "a.asc", settings);
   };
-  const std::vector<std::string> globe = warnings("xllcorner 8.5\nyllcorner 49.4\ncellsize 0.000278");
-  REQUIRE(globe.size() == 1);
-  CHECK(globe[0].ends_with("is it in degrees? Expected metres"));
-  CHECK(warnings("xllcorner 500000\nyllcorner 5400000\ncellsize 0.005").empty());
-  CHECK(warnings("xllcorner 8\nyllcorner 49\ncellsize 0.5").empty());
+  const std::string feet = R"(PROJCS["x",GEOGCS["y",UNIT["Degree",0.0174]],UNIT["Foot",0.3048]])";
+  const std::string up = R"(,VERTCS["z",VDATUM["z"],PARAMETER["Direction",1.0],UNIT["Foot_US",0.25]])";
+  const AsciiGrid flat = with(feet), high = with(feet + up), scaled = with(feet + up, {.vertical_scale = 2});
+  for (const AsciiGrid* grid : {&flat, &high, &scaled}) {
+    CHECK(grid->raster.pixel == Vec2{2 * 0.3048, 2 * 0.3048});
+    CHECK(grid->raster.first == Vec2{101 * 0.3048, 203 * 0.3048});
+    CHECK(grid->reference.unit == 0.3048);
+  }
+  CHECK(flat.raster.heights[1] == 2);
+  CHECK(flat.warnings.size() == 1);  // of heights without a unit
+  CHECK(high.raster.heights[1] == 0.5F);
+  CHECK(high.warnings.empty());
+  CHECK(scaled.raster.heights[1] == 4);
+  CHECK(support::contains(support::file_error([&] { (void)with(R"(GEOGCS["y",UNIT["Degree",0.0174]])"); }).problem(),
+                          "reference system in degrees"));
+}
+
+TEST_CASE("heights that often mark missing ones are noted without NODATA_value") {
+  CHECK(read(head + "1 2 -32768 -32768 5 6\n").warnings.size() == 1);
+  CHECK(read(head + "NODATA_value -9999\n1 2 -32768 -32768 5 6\n").warnings.empty());
+  CHECK(read(head + "1 2 -9999 4 5 6\n").warnings.empty());  // missing by habit
+  CHECK(read(head + "1 2 -32768 4 5 6\n", {.missing = 1}).warnings.empty());
+}
+
+TEST_CASE("each keyword of the rules changes what is read") {
+  const auto changes = [](const std::string& text, bool is_changed) {
+    CHECK(is_changed);
+    return read(text).warnings;
+  };
+  const std::string rest = "1 2 3 4 5 6\n";
+  const Raster usual = read(head + rest).raster;
+  const std::string wide = "ncols 2\nnrows 3\nxllcenter 100\nyllcenter 200\ndx 3\ndy 4\nNODATA_value 3\n" + rest;
+  const Raster other = read(wide).raster;
+  test::check_rules(
+      io::detail::ascii_grid_rules,
+      std::vector<test::FormatCase>{{"ncols", [&] { return changes(wide, other.columns == 2); }},
+                                    {"nrows", [&] { return changes(wide, other.rows == 3); }},
+                                    {"xllcorner", [&] { return changes(head + rest, usual.first.x == 101); }},
+                                    {"xllcenter", [&] { return changes(wide, other.first.x == 100); }},
+                                    {"yllcorner", [&] { return changes(head + rest, usual.first.y == 203); }},
+                                    {"yllcenter", [&] { return changes(wide, other.first.y == 208); }},
+                                    {"cellsize",
+                                     [&] {
+                                       return changes(head + rest, usual.pixel == Vec2{2, 2});
+                                     }},
+                                    {"dx", [&] { return changes(wide, other.pixel.x == 3); }},
+                                    {"dy", [&] { return changes(wide, other.pixel.y == 4); }},
+                                    {"NODATA_value", [&] { return changes(wide, std::isnan(other.heights[2])); }}});
 }
 
 TEST_CASE("counts that the file cannot hold are refused before memory is taken") {

@@ -19,10 +19,12 @@
 #include <vector>
 
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
+#include <pulsecast/io/detail/geotiff/rules.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
@@ -46,7 +48,12 @@ struct Form {
   const char* mode = "w";
   std::uint32_t padding = 0;           ///< rows after the last, which the header does not count
   std::vector<std::uint16_t> extra{};  ///< kinds of the samples after the first
-  bool mask = false;                   ///< a second image that is a mask
+  std::uint16_t orientation = ORIENTATION_TOPLEFT;
+  std::uint32_t depth = 1, kind = 0;  ///< of the first image
+  std::uint32_t masked = 0;           ///< columns in the west that a second image hides
+  std::uint16_t mask_bits = 1;        ///< of that image
+  bool mask_tiled = false;
+  std::uint32_t mask_rows = rows, second_kind = FILETYPE_MASK;
   std::set<std::uint32_t> left_out{};  ///< tiles
   std::vector<std::uint16_t> red{}, green{}, blue{};
 };
@@ -55,8 +62,23 @@ struct Form {
 struct Place {
   std::vector<double> scale{2, 3, 0}, ties{0, 0, 0, 1000, 2000, 0}, matrix{};
   std::vector<std::uint16_t> keys{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633};
-  std::string nodata{}, metadata{};
+  std::string nodata{}, metadata{}, texts{};
+  std::vector<double> numbers{};
 };
+
+/// A file's place with more keys than its model.
+Place keyed(std::vector<std::uint16_t> more, std::uint16_t model = 1) {
+  Place place{.keys = {1, 1, 0, static_cast<std::uint16_t>(1 + more.size() / 4), 1024, 0, 1, model}};
+  place.keys.insert(place.keys.end(), more.begin(), more.end());
+  return place;
+}
+
+/// An item of GDAL's metadata.
+std::string item(const std::string& role, const std::string& value, int band = 0) {
+  return "  <Item name=\"" + role + "\" sample=\"" + std::to_string(band) + "\" role=\"" + role + "\">" + value +
+         "</Item>\n";
+}
+Place told(const std::string& items) { return {.metadata = "<GDALMetadata>\n" + items + "</GDALMetadata>\n"}; }
 
 /// Fits every kind of sample, and has all its values different from those of its neighbours.
 double height(std::uint32_t column, std::uint32_t row, std::uint16_t) { return 60.0 + column - row; }
@@ -89,6 +111,42 @@ void put_sample(std::vector<unsigned char>& bytes, const Form& form, double valu
   return form.bits == 32 ? put(bytes, static_cast<std::int32_t>(whole)) : put(bytes, whole);
 }
 
+/// Adds an image that is 0 in the columns that `form` hides, and not 0 elsewhere.
+void put_mask(TIFF* tiff, const Form& form) {
+  REQUIRE(TIFFWriteDirectory(tiff) == 1);
+  TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, form.second_kind);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, form.mask_rows);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, form.mask_bits);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MASK);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  const std::uint32_t wide = form.mask_tiled ? 32 : columns, high = form.mask_tiled ? 16 : 7;
+  if (form.mask_tiled) {
+    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, wide);
+    TIFFSetField(tiff, TIFFTAG_TILELENGTH, high);
+  } else
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, high);
+  for (std::uint32_t north = 0; north < form.mask_rows; north += high)
+    for (std::uint32_t west = 0; west < columns; west += wide) {
+      const std::uint32_t all = form.mask_tiled ? high : std::min(high, form.mask_rows - north);
+      const std::size_t row_bytes = (wide * form.mask_bits + 7U) / 8U;
+      std::vector<unsigned char> bytes(row_bytes * all);
+      for (std::uint32_t r = 0; r < all; ++r)
+        for (std::uint32_t c = 0; c < wide; ++c) {
+          if (west + c < form.masked) continue;
+          if (form.mask_bits == 1)
+            bytes[r * row_bytes + c / 8] |= static_cast<unsigned char>(0x80U >> c % 8);
+          else
+            bytes[r * row_bytes + c] = 255;
+        }
+      const auto size = static_cast<tmsize_t>(bytes.size());
+      const std::uint32_t chunk =
+          form.mask_tiled ? TIFFComputeTile(tiff, west, north, 0, 0) : TIFFComputeStrip(tiff, north, 0);
+      REQUIRE((form.mask_tiled ? TIFFWriteEncodedTile(tiff, chunk, bytes.data(), size)
+                               : TIFFWriteEncodedStrip(tiff, chunk, bytes.data(), size)) == size);
+    }
+}
+
 using Heights = std::function<double(std::uint32_t, std::uint32_t, std::uint16_t)>;
 
 void write(const std::filesystem::path& path, const Form& form = {}, const Place& place = {},
@@ -101,6 +159,8 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
       {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
       {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("matrix")},
       {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
+      {34736, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("numbers")},
+      {34737, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("texts")},
       {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("metadata")},
       {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
@@ -124,6 +184,11 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   if (!place.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(place.keys.size()), place.keys.data());
   if (!form.extra.empty())
     TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(form.extra.size()), form.extra.data());
+  if (form.orientation != ORIENTATION_TOPLEFT) TIFFSetField(tiff, TIFFTAG_ORIENTATION, form.orientation);
+  if (form.depth != 1) TIFFSetField(tiff, TIFFTAG_IMAGEDEPTH, form.depth);
+  if (form.kind != 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, form.kind);
+  if (!place.texts.empty()) TIFFSetField(tiff, 34737, place.texts.c_str());
+  if (!place.numbers.empty()) TIFFSetField(tiff, 34736, static_cast<int>(place.numbers.size()), place.numbers.data());
   if (!place.metadata.empty()) TIFFSetField(tiff, 42112, place.metadata.c_str());
   if (!place.nodata.empty()) TIFFSetField(tiff, 42113, place.nodata.c_str());
   const std::uint32_t wide = form.tiled ? 16 : columns, high = form.tiled ? 16 : 5;
@@ -152,16 +217,7 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
         REQUIRE((form.tiled ? TIFFWriteEncodedTile(tiff, chunk, bytes.data(), size)
                             : TIFFWriteEncodedStrip(tiff, chunk, bytes.data(), size)) == size);
       }
-  if (form.mask) {
-    TIFFWriteDirectory(tiff);
-    TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_MASK);
-    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 8);
-    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
-    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1);
-    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MASK);
-    unsigned char bits = 0;
-    REQUIRE(TIFFWriteEncodedStrip(tiff, 0, &bits, 1) == 1);
-  }
+  if (form.masked > 0) put_mask(tiff, form);
   TIFFClose(tiff);
   if (form.padding == 0) return;
   std::string bytes = support::content(path);
@@ -467,54 +523,91 @@ TEST_CASE("a raster without a place of its own is refused") {
   CHECK(file.read({}, {.scale = {2, 3, 10}}).warnings.size() == 1);
 }
 
-TEST_CASE("keys tell the reference system; one that is not in metres is refused") {
+TEST_CASE("keys tell the reference system, and the unit of the coordinates") {
   const File file;
-  const auto with = [](std::uint16_t model, std::vector<std::uint16_t> more) {
-    Place place{.keys = {1, 1, 0, static_cast<std::uint16_t>(1 + more.size() / 4), 1024, 0, 1, model}};
-    place.keys.insert(place.keys.end(), more.begin(), more.end());
-    return place;
+  CHECK(file.read({}, keyed({3072, 0, 1, 25832})).epsg == 25832);
+  CHECK(file.read({}, keyed({3072, 0, 1, 25832})).warnings.empty());
+  CHECK_FALSE(file.read({}, keyed({3072, 0, 1, 32767})).epsg);  // user-defined
+  CHECK_FALSE(file.read({}, keyed({3072, 34736, 1, 25832})).epsg);
+  CHECK_FALSE(file.read({}, keyed({3072, 0, 1})).epsg);  // cut off
+  CHECK(contains(file.refusal({}, keyed({2048, 0, 1, 4326}, 2)), "not degrees"));
+  Place no_model = keyed({2048, 0, 1, 4326});
+  no_model.keys[4] = 1025;
+  CHECK(contains(file.refusal({}, no_model), "not degrees"));
+
+  constexpr double us_foot = 1200.0 / 3937;
+  struct Case {
+    std::vector<std::uint16_t> keys;
+    double unit;
+    std::string texts{};
+    std::vector<double> numbers{};
   };
-  CHECK(file.read({}, with(1, {3072, 0, 1, 25832})).epsg == 25832);
-  CHECK_FALSE(file.read({}, with(1, {3072, 0, 1, 32767})).epsg);  // user-defined
-  CHECK_FALSE(file.read({}, with(1, {3072, 34736, 1, 25832})).epsg);
-  CHECK(contains(file.refusal({}, with(2, {2048, 0, 1, 4326})), "is in degrees"));
-  CHECK(contains(file.refusal({}, with(3, {})), "geocentric"));
-  CHECK(contains(file.refusal({}, with(1, {3076, 0, 1, 9003})), "in feet"));
-  CHECK(file.read({}, with(1, {3076, 0, 1, 9036})).warnings.size() == 1);
-  Place broken = with(1, {3072, 0, 1});  // cut off
-  CHECK_FALSE(file.read({}, broken).epsg);
+  for (const Case& c :
+       {Case{{3076, 0, 1, 9001}, 1},
+        {{3072, 0, 1, 2263, 3076, 0, 1, 9003}, us_foot},
+        {{3072, 0, 1, 2222, 3076, 0, 1, 9002}, 0.3048},
+        {{3076, 0, 1, 9036}, 1000},
+        {{3076, 0, 1, 9096}, 0.9144},
+        {{3076, 0, 1, 32767, 3077, 34736, 1, 1}, 0.5, "", {7, 0.5}},
+        {{3077, 34736, 1, 0}, 0.25, "", {0.25}},
+        {{1026, 34737, 20, 0, 3072, 0, 1, 2263}, us_foot, "NAD83 / New York (ftUS) + NAVD88 height|"},
+        {{1026, 34737, 20, 0, 3072, 0, 1, 2222}, 0.3048, "NAD83 / Arizona (ft) + NAVD88 height (ftUS)|"},
+        {{1026, 34737, 20, 0, 3072, 0, 1, 25832}, 1, "ETRS89 / UTM zone 32N + NAVD88 height (ftUS)|"},
+        {{3072, 0, 1, 26741}, us_foot},
+        {{1026, 34737, 20, 0, 3072, 0, 1, 7060}, us_foot, "NAD83(2011) / IaRCS zone 4 + NAVD88 height (ft)|"},
+        {{3072, 0, 1, 32001}, us_foot}}) {
+    CAPTURE(c.keys);
+    Place place = keyed(c.keys);
+    place.texts = c.texts;
+    place.numbers = c.numbers;
+    const GeoTiff found = file.read({}, place);
+    CHECK(found.reference.unit == support::relative(c.unit, 1e-15));
+    CHECK(found.raster.pixel.x == support::relative(2 * c.unit, 1e-15));
+    CHECK(found.raster.pixel.y == support::relative(3 * c.unit, 1e-15));
+    CHECK(found.raster.first.x == support::relative(1001 * c.unit, 1e-15));
+    CHECK(found.raster.first.y == support::relative(1998.5 * c.unit, 1e-15));
+    CHECK(found.raster.heights[0] == 60);
+    CHECK(found.warnings.size() == (c.unit == 1 ? 0 : 1));  // the unit of the heights is unknown
+    const std::uint16_t system = found.reference.epsg;
+    CHECK(found.epsg == (c.unit == 1 && system != 0 ? std::optional(system) : std::nullopt));
+    CHECK(read_geotiff_epsg(file.path) == found.epsg);
+    CHECK(read_geotiff_reference(file.path) == found.reference);
+    CHECK(read_geotiff(file.path, {.vertical_scale = 1}).warnings.empty());
+  }
+  CHECK(file.read({}, keyed({3072, 0, 1, 30200})).warnings.size() == 1);  // in links
+  CHECK(file.read({}, keyed({3072, 0, 1, 2263})).warnings.size() == 1);   // no unit and no name
+  Place paris = keyed({1026, 34737, 20, 0, 3072, 0, 1, 2154});
+  paris.texts = "RGF93 v1 / Lambert-93 + NGF-IGN69 height|";
+  CHECK(file.read({}, paris).warnings.empty());
+  for (const double size : {0.0, -1.0, none, infinite}) {
+    Place place = keyed({3076, 0, 1, 32767, 3077, 34736, 1, 0});
+    place.numbers = {size};
+    CHECK(contains(file.refusal({}, place), "GeoKey 3076 = other"));
+  }
+  CHECK(contains(file.refusal({}, keyed({3076, 0, 1, 32767, 3077, 34736, 1, 9})), "GeoKey 3076 = other"));
 
   const auto heights_of = [&](std::uint16_t unit, const GeoTiffSettings& settings = {}) {
-    return static_cast<double>(file.read({}, with(1, {4099, 0, 1, unit}), height, settings).raster.heights[0]);
+    return static_cast<double>(file.read({}, keyed({4099, 0, 1, unit}), height, settings).raster.heights[0]);
   };
   CHECK(heights_of(9001) == 60);
   CHECK(heights_of(9002) == support::relative(60 * 0.3048, 1e-7));
-  CHECK(heights_of(9003) == support::relative(60 * 1200.0 / 3937, 1e-7));
+  CHECK(heights_of(9003) == support::relative(60 * us_foot, 1e-7));
   CHECK(heights_of(9003, {.vertical_scale = 0.5}) == 30);
-  CHECK(file.read({}, with(1, {4099, 0, 1, 9003})).warnings.size() == 1);
-  CHECK(file.read({}, with(1, {4099, 0, 1, 9036})).warnings.size() == 1);
-
-  CHECK(file.read({}, with(1, {3072, 0, 1, 25832})).warnings.empty());
-  CHECK(file.read({}, with(1, {3072, 0, 1, 2263, 3076, 0, 1, 9001})).warnings.empty());
-  const GeoTiff silent = file.read({}, with(1, {3072, 0, 1, 2263}));  // in feet by the register
-  REQUIRE(silent.warnings.size() == 1);
-  CHECK(contains(silent.warnings[0], "does not tell the unit of its coordinates, in the projected system 2263"));
+  CHECK(heights_of(9999, {.vertical_scale = 0.5}) == 30);
+  CHECK(file.read({}, keyed({4099, 0, 1, 9003})).warnings.empty());
 }
 
-TEST_CASE("a vertical system tells the unit of the heights, where no key does, and is noted") {
+TEST_CASE("a vertical or a compound system tells the unit of the heights, where no key does") {
   const File file;
-  const auto in = [](std::vector<std::uint16_t> more) {
-    Place place{.keys = {1, 1, 0, static_cast<std::uint16_t>(1 + more.size() / 4), 1024, 0, 1, 1}};
-    place.keys.insert(place.keys.end(), more.begin(), more.end());
-    return place;
-  };
+  constexpr double us_foot = 1200.0 / 3937;
   struct Case {
     std::uint16_t system;
     double unit;
+    bool noted = false;
   };
-  for (const Case& c : {Case{6360, 1200.0 / 3937},
-                        {5702, 1200.0 / 3937},
-                        {8052, 1200.0 / 3937},
+  for (const Case& c : {Case{6360, us_foot},
+                        {5702, us_foot},
+                        {8052, us_foot},
                         {8228, 0.3048},
                         {6130, 0.3048},
                         {6131, 0.3048},
@@ -522,30 +615,34 @@ TEST_CASE("a vertical system tells the unit of the heights, where no key does, a
                         {8050, 0.3048},
                         {5754, 0.3048007491},
                         {7837, 1},
-                        {32767, 1}}) {
+                        {5703, 1},
+                        {5103, 1, true},
+                        {20123, 1, true},
+                        {32767, 1, true}}) {
     CAPTURE(c.system);
-    const GeoTiff found = file.read({}, in({4096, 0, 1, c.system}));
+    const GeoTiff found = file.read({}, keyed({4096, 0, 1, c.system}));
     CHECK(static_cast<double>(found.raster.heights[0]) == support::relative(60 * c.unit, 1e-7));
-    CHECK(found.warnings.size() == (c.unit == 1 ? 1 : 2));
-    CHECK(contains(found.warnings[0], "vertical system " + std::to_string(c.system)));
-    CHECK(contains(found.warnings[0], "metres are assumed") == (c.unit == 1));
-    CHECK_FALSE(
-        contains(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).warnings.at(0), "metres are assumed"));
-    CHECK(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).raster.heights[0] == 60);
+    CHECK(found.reference.vertical_unit == c.unit);
+    CHECK(found.reference.vertical_epsg == (c.system == 32767 ? 0 : c.system));
+    REQUIRE(found.warnings.size() == (c.noted ? 1 : 0));
+    if (c.noted) CHECK(contains(found.warnings[0], "metres are assumed"));
+    CHECK(read_geotiff(file.path, {.vertical_scale = 1}).warnings.empty());
+    const GeoTiff metres = file.read({}, keyed({4096, 0, 1, c.system, 4099, 0, 1, 9001}));
+    CHECK(metres.raster.heights[0] == 60);
+    CHECK(metres.warnings.empty());
   }
-  CHECK(contains(file.refusal({}, in({4096, 0, 1, 5715})), "has depths, by its vertical system EPSG:5715"));
-  CHECK(file.refusal({}, in({4096, 0, 1, 5715}), {.vertical_scale = 1}).empty());
+  CHECK(contains(file.refusal({}, keyed({4096, 0, 1, 5715})), "expected heights, not depths"));
+  CHECK(file.refusal({}, keyed({4096, 0, 1, 5715}), {.vertical_scale = 1}).empty());
+  CHECK(read_geotiff_reference(file.path).vertical_epsg == 0);
+  for (const Case& c : {Case{7407, us_foot}, {8700, 0.3048}, {8711, 0.3048}, {8712, us_foot}, {8800, us_foot}}) {
+    const GeoTiff found = file.read({}, keyed({3072, 0, 1, c.system}));
+    CHECK(found.reference == SpatialReference{.epsg = c.system, .unit = c.unit, .vertical_unit = c.unit});
+    CHECK(found.warnings.empty());
+  }
 }
 
 TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike") {
   const File file;
-  const auto item = [](const std::string& role, const std::string& value, int band = 0) {
-    return "  <Item name=\"" + role + "\" sample=\"" + std::to_string(band) + "\" role=\"" + role + "\">" + value +
-           "</Item>\n";
-  };
-  const auto told = [](const std::string& items) {
-    return Place{.metadata = "<GDALMetadata>\n" + items + "</GDALMetadata>\n"};
-  };
   struct Case {
     std::string items;
     double scale = 1, offset = 0;
@@ -558,10 +655,12 @@ TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike
                         {item("offset", "12.5"), 1, 12.5},
                         {item("scale", "5", 1)},
                         {item("unittype", "m")},
-                        {item("unittype", "ft"), 0.3048, 0, 1},
-                        {item("unittype", "US survey foot") + item("offset", "10"), 1200.0 / 3937, 12000.0 / 3937, 1},
+                        {item("unittype", "FT"), 0.3048},
+                        {item("unittype", "US survey foot") + item("offset", "10"), 1200.0 / 3937, 12000.0 / 3937},
                         {item("unittype", "cm"), 0.01},
                         {item("unittype", "ell"), 1, 0, 1},
+                        {"<Item name=\"x#scale_factor\" sample=\"0\">0.1</Item>", 1, 0, 1},
+                        {"<Item name=\"add_offset\">0.1</Item>" + item("offset", "2"), 1, 2},
                         {item("scale", "-1"), -1}})
     for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP}) {
       CAPTURE(c.items);
@@ -587,29 +686,258 @@ TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike
     CHECK(contains(file.refusal({}, told(item("scale", bad))), "of heights: expected"));
 }
 
-TEST_CASE("a mask, an alpha band, colours and numbers that may be missing heights are noted") {
+TEST_CASE("pixels outside a mask and of alpha 0 are missing, packed and not") {
   const File file;
-  const auto note = [&](const Form& form, const Heights& heights = height) {
-    const GeoTiff found = file.read(form, {}, heights);
-    CHECK(wrong(found.raster, heights) == 0);
-    return found.warnings.size() == 1 ? found.warnings[0] : std::to_string(found.warnings.size()) + " notes";
+  const auto same = [&](const Heights& expected, const GeoTiffSettings& settings = {}) {
+    GeoTiffSettings packed = settings;
+    packed.packed = true;
+    const GeoTiff found = read_geotiff(file.path, settings);
+    return found.warnings.empty() && wrong(found.raster, expected) == 0 &&
+           wrong(read_geotiff(file.path, packed).raster.unpacked(), expected) == 0;
   };
+  const auto hidden = [](std::uint32_t wide) {
+    return [wide](std::uint32_t c, std::uint32_t r, std::uint16_t s) { return c < wide ? none : height(c, r, s); };
+  };
+  const auto alpha = [](std::uint32_t c, std::uint32_t r, std::uint16_t s) {
+    return s == 0 ? height(c, r, s) : c < 19 ? 0.0 : 1.0 + c % 100;
+  };
+  for (const std::uint16_t bits : Codes{8, 16, 32})
+    for (const bool tiled : {false, true})
+      for (const std::string nodata : {"", "1"}) {
+        CAPTURE(bits);
+        const Place place{.nodata = nodata};
+        const Form form{.format = SAMPLEFORMAT_UINT, .bits = bits, .tiled = tiled};
+        for (const std::uint16_t mask_bits : Codes{1, 8})
+          for (const bool mask_tiled : {false, true}) {
+            Form masked = form;
+            masked.masked = 21;
+            masked.mask_bits = mask_bits;
+            masked.mask_tiled = mask_tiled;
+            write(file.path, masked, place);
+            CHECK(same(hidden(21)));
+          }
+        for (const std::uint16_t planes : Codes{PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE})
+          for (const std::uint16_t kind : Codes{EXTRASAMPLE_ASSOCALPHA, EXTRASAMPLE_UNASSALPHA}) {
+            Form two = form;
+            two.samples = 2;
+            two.planes = planes;
+            two.extra = {kind};
+            write(file.path, two, place, alpha);
+            CHECK(same(hidden(19)));
+            two.extra = {EXTRASAMPLE_UNSPECIFIED};
+            write(file.path, two, place, alpha);
+            CHECK(same(height));
+            Place named = told(item("colorinterp", "Alpha", 1));
+            named.nodata = nodata;
+            write(file.path, two, named, alpha);
+            CHECK(same(hidden(19)));
+          }
+        write(file.path, form, place);
+        write(file.path.string() + ".msk", {.format = SAMPLEFORMAT_UINT, .bits = 8, .tiled = !tiled}, place,
+              [](std::uint32_t c, std::uint32_t, std::uint16_t) { return c < 5 ? 0.0 : 255.0; });
+        CHECK(same(hidden(5)));
+        write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = bits, .masked = 9}, place);
+        CHECK(same(hidden(9)));  // both
+        std::filesystem::remove(file.path.string() + ".msk");
+      }
+  // rows and columns of a raster that goes the other way are turned with their mask
+  const Place turned{.scale = {}, .ties = {}, .matrix = {-2, 0, 0, 1000, 0, 3, 0, 900, 0, 0, 0, 0, 0, 0, 0, 1}};
+  const GeoTiff found = file.read({.masked = 4}, turned);
+  CHECK(std::isnan(found.raster.heights[columns - 1]));
+  CHECK(found.raster.heights[0] == 60 + columns - 1 - (rows - 1));
+  CHECK(contains(file.refusal({.masked = columns}), "has no height"));
+  CHECK(contains(file.refusal({.masked = 1, .mask_bits = 8, .mask_rows = rows - 1}), "mask of another size"));
+  std::ofstream(file.path.string() + ".msk") << "mask";
+  CHECK_THROWS_AS((void)file.read(), FileError);
+}
+
+TEST_CASE("numbers that may be missing heights are noted, unless a mask hides them") {
+  const File file;
   const Form plain{.format = SAMPLEFORMAT_INT, .bits = 16};
-  CHECK(contains(note({.mask = true}), "has a mask, which is not applied"));
-  CHECK(contains(note({.samples = 2, .extra = {EXTRASAMPLE_UNASSALPHA}}), "has an alpha band"));
-  CHECK(note({.samples = 2, .extra = {EXTRASAMPLE_UNSPECIFIED}}) == "0 notes");
-  CHECK(contains(note({.format = SAMPLEFORMAT_UINT, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB}),
-                 "is a picture of colours"));
   for (const double number : {-9999.0, -32768.0}) {
     const auto holed = [number](std::uint32_t c, std::uint32_t r, std::uint16_t) {
       return c == 3 ? number : height(c, r, 0);
     };
-    CHECK(contains(note(plain, holed), "23 heights are a number that often marks missing ones"));
+    const GeoTiff found = file.read(plain, {}, holed);
+    REQUIRE(found.warnings.size() == 1);
+    CHECK(contains(found.warnings[0], "23 heights are a number that often marks missing ones"));
     CHECK(read_geotiff(file.path, {.packed = true}).warnings.size() == 1);
     CHECK(read_geotiff(file.path, {.missing = number}).warnings.empty());
+    Form masked = plain;
+    masked.masked = 4;
+    CHECK(file.read(masked, {}, holed).warnings.empty());
   }
-  std::ofstream(file.path.string() + ".msk") << "mask";
-  CHECK(contains(note(plain), "has a mask"));
+}
+
+TEST_CASE("each rule has a file that is read, noted or refused as it says") {
+  const File file;
+  const auto tell = [&](const Place& place, const Form& form = {}, const GeoTiffSettings& settings = {}) {
+    return file.read(form, place, height, settings).warnings;
+  };
+  const auto has = [&](const Place& place, const std::function<bool(const GeoTiff&)>& change) {
+    const GeoTiff found = file.read({}, place);
+    CHECK(change(found));
+    return found.warnings;
+  };
+  const auto first_is = [](double value) {
+    return [value](const GeoTiff& f) {
+      return static_cast<double>(f.raster.heights[0]) == support::relative(value, 1e-6);
+    };
+  };
+  const auto unit_is = [](double unit) {
+    return [unit](const GeoTiff& f) { return f.raster.pixel.x == support::relative(2 * unit, 1e-12); };
+  };
+  Place named = keyed({1026, 34737, 20, 0, 3072, 0, 1, 2263}), sized = keyed({3077, 34736, 1, 0});
+  named.texts = "NAD83 / New York (ftUS) + NAVD88 height|";
+  sized.numbers = {0.5};
+  Place flat = keyed({3072, 0, 1, 25832});
+  flat.scale[2] = 10;
+  const Form rgb{.format = SAMPLEFORMAT_UINT, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB};
+  const std::vector<test::FormatCase> cases{
+      {"GeoKey 1024", [&] { return has(keyed({}), [](const GeoTiff& f) { return f.warnings.empty(); }); }},
+      {"GeoKey 1024 = 2", [&] { return tell(keyed({}, 2)); }},
+      {"GeoKey 1024 = 3", [&] { return tell(keyed({}, 3)); }},
+      {"GeoKey 1025",
+       [&] {
+         return has(keyed({1025, 0, 1, 2}), [](const GeoTiff& f) { return f.raster.first.x == 1000; });
+       }},
+      {"GeoKey 1026", [&] { return has(named, unit_is(1200.0 / 3937)); }},
+      {"GeoKey 20*",
+       [&] {
+         return tell(keyed({2048, 0, 1, 4258, 3072, 0, 1, 25832}));
+       }},
+      {"GeoKey 3072",
+       [&] {
+         return has(keyed({3072, 0, 1, 25832}), [](const GeoTiff& f) { return f.epsg == 25832; });
+       }},
+      {"GeoKey 3072 alone",
+       [&] {
+         return tell(keyed({3072, 0, 1, 2263}));
+       }},
+      {"GeoKey 3076",
+       [&] {
+         return has(keyed({3076, 0, 1, 9003}), unit_is(1200.0 / 3937));
+       }},
+      {"GeoKey 3076 = other",
+       [&] {
+         return tell(keyed({3076, 0, 1, 9999}));
+       }},
+      {"GeoKey 3076 alone",
+       [&] {
+         return tell(keyed({3076, 0, 1, 9003}));
+       }},
+      {"GeoKey 3077", [&] { return has(sized, unit_is(0.5)); }},
+      {"GeoKey 30*",
+       [&] {
+         return tell(keyed({3059, 0, 1, 1, 3075, 0, 1, 8, 3096, 34736, 1, 0}));
+       }},
+      {"GeoKey 4096",
+       [&] {
+         return has(keyed({4096, 0, 1, 6360}), first_is(60 * 1200.0 / 3937));
+       }},
+      {"GeoKey 4096 = depth",
+       [&] {
+         return tell(keyed({4096, 0, 1, 5715}));
+       }},
+      {"GeoKey 4096 alone",
+       [&] {
+         return tell(keyed({4096, 0, 1, 32767}));
+       }},
+      {"GeoKey 4097",
+       [&] {
+         return tell(keyed({4097, 34737, 4, 0}));
+       }},
+      {"GeoKey 4098",
+       [&] {
+         return tell(keyed({4098, 0, 1, 5103}));
+       }},
+      {"GeoKey 4099",
+       [&] {
+         return has(keyed({4099, 0, 1, 9002}), first_is(60 * 0.3048));
+       }},
+      {"GeoKey 4099 = other",
+       [&] {
+         return tell(keyed({4099, 0, 1, 9999}));
+       }},
+      {"GeoKey 5120",
+       [&] {
+         return tell(keyed({5120, 34736, 1, 0}));
+       }},
+      {"item scale", [&] { return has(told(item("scale", "0.5")), first_is(30)); }},
+      {"item offset", [&] { return has(told(item("offset", "5")), first_is(65)); }},
+      {"item unittype", [&] { return has(told(item("unittype", "cm")), first_is(0.6)); }},
+      {"item unittype = other", [&] { return tell(told(item("unittype", "fathom"))); }},
+      {"item colorinterp", [&] { return tell(told(item("colorinterp", "Gray"))); }},
+      {"item description", [&] { return tell(told(item("description", "heights"))); }},
+      {"item scale_factor, add_offset",
+       [&] { return tell(told("<Item name=\"scale_factor\" sample=\"0\">0.01</Item>")); }},
+      {"mask",
+       [&] {
+         const GeoTiff found = file.read({.masked = 1});
+         CHECK(std::isnan(found.raster.heights[0]));
+         return found.warnings;
+       }},
+      {"mask of another size", [&] { return tell({}, {.masked = 1, .mask_rows = 7}); }},
+      {"colours", [&] { return tell({}, rgb); }},
+      {"colours, another band", [&] { return tell({}, rgb, {.band = 2}); }},
+      {"other image", [&] { return tell({}, {.masked = 1, .second_kind = FILETYPE_PAGE}); }},
+      {"first image = overview", [&] { return tell({}, {.kind = FILETYPE_REDUCEDIMAGE}); }},
+      {"tag 33550 z", [&] { return tell(flat); }},
+      {"tag 32997", [&] { return tell({}, {.depth = 2}); }},
+      {"tag 274", [&] { return tell({}, {.orientation = ORIENTATION_BOTLEFT}); }}};
+  test::check_rules(io::detail::geotiff_rules, cases);
+}
+
+TEST_CASE("keys and roles that no rule names are refused; private keys and other items are not") {
+  const File file;
+  for (const std::uint16_t key : Codes{1023, 1027, 2000, 2100, 3100, 4095, 4100, 5000, 5121, 32767}) {
+    CAPTURE(key);
+    if (key != 2000) CHECK(contains(file.refusal({}, keyed({key, 0, 1, 1})), "which is unknown"));
+  }
+  CHECK(file.refusal({}, keyed({32768, 0, 1, 1, 65535, 0, 1, 1})).empty());
+  CHECK(contains(file.refusal({}, told(item("curvature", "1"))), "'item curvature', which is unknown"));
+  CHECK(contains(file.refusal({}, told(item("colorinterp", "Red"))), "has the item 'colours'"));
+  CHECK(file.read({}, told("<Item name=\"add_offset\" sample=\"0\">0</Item>")).warnings.empty());
+  CHECK(file.read({}, told("<Item name=\"STATISTICS_MEAN\" sample=\"0\">7</Item>")).warnings.empty());
+}
+
+TEST_CASE("forty hostile masks, items and keys are refused, or give a sound raster") {
+  const File file;
+  std::size_t refused = 0;
+  const auto try_one = [&](const std::string& bytes) {
+    keep(file.path, bytes);
+    try {
+      read_geotiff(file.path).raster.validate();
+    } catch (const FileError& error) {
+      CHECK(error.path().starts_with(file.path.string()));
+      ++refused;
+    }
+  };
+  write(file.path, {.masked = 6, .mask_tiled = true}, told(item("scale", "2") + item("offset", "1")));
+  const std::string whole = support::content(file.path);
+  for (std::size_t i = 0; i < 40; ++i) try_one(whole.substr(0, whole.size() - 1 - i * whole.size() / 60));
+  support::Generator random(38);
+  for (int i = 0; i < 200; ++i) {  // the mask and the tags stand at the end
+    std::string bytes = whole;
+    for (std::uint64_t n = 1 + random.whole(3); n > 0; --n)
+      bytes[bytes.size() - 1 - random.whole(900)] = static_cast<char>(random.whole(256));
+    INFO("seed 38, file ", i);
+    try_one(bytes);
+  }
+  CHECK(refused > 60);
+  for (const char* text :
+       {"<Item ", "<Item name=\"", "<Item role=\"scale\" sample=\"0\"", "<Item role=\"scale\" sample=\"0\">",
+        "<Item name=\"a\" sample=\"70000\" role=\"scale\">2</Item>",
+        "<Item name=\"a\" sample=\"-1\" role=\"scale\">2</Item>"})
+    CHECK(file.read({}, {.metadata = text}).raster.heights[0] == 60);
+  Place text = keyed({1026, 34737, 65535, 65535, 3072, 0, 1, 25832});
+  text.texts = "ESRI PE String = ";
+  CHECK(file.read({}, text).warnings.size() == 1);  // no unit
+  text.texts = "ESRI PE String = PROJCS[\"x\",GEOGCS[\"y\",UNIT[\"Degree\",0.017]],UNIT[\"Foot_US\",0.3048006]]|";
+  text.keys[15] = 32767;
+  const GeoTiff found = file.read({}, text);
+  CHECK(found.reference.unit == 0.3048006);
+  CHECK(found.reference.wkt.starts_with("PROJCS["));
 }
 
 TEST_CASE("a strip with more rows than the raster needs gives the raster's heights") {
@@ -628,7 +956,7 @@ TEST_CASE("a strip with more rows than the raster needs gives the raster's heigh
       }
 }
 
-TEST_CASE("a world file places a raster without tags; pixels that may be in degrees are noted") {
+TEST_CASE("a world file places a raster without tags; pixels that may be in degrees are refused or noted") {
   const File file;
   const auto world = [&](const std::string& text) { std::ofstream(file.folder / "terrain.tfw") << text; };
   world("2\n0\n0\n-3\n1001\n1998.5\n");
@@ -646,9 +974,13 @@ TEST_CASE("a world file places a raster without tags; pixels that may be in degr
   world("2\n0.5\n0\n-3\n1001\n1998.5\n");
   write(file.path, {}, nowhere);
   CHECK_THROWS_AS((void)read_geotiff(file.path), FileError);
-  const GeoTiff globe = file.read({}, {.scale = {0.000278, 0.000278, 0}, .ties = {0, 0, 0, 8.5, 49.5, 0}, .keys = {}});
-  REQUIRE(globe.warnings.size() == 1);
-  CHECK(contains(globe.warnings[0], "is it in degrees?"));
+  std::filesystem::remove(file.folder / "terrain.tfw");
+  Place globe{.scale = {0.000278, 0.000278, 0}, .ties = {0, 0, 0, 8.5, 49.5, 0}, .keys = {}};
+  CHECK(contains(file.refusal({}, globe), "is it in degrees?"));
+  globe.keys = {1, 1, 0, 1, 1024, 0, 1, 1};  // projected
+  const GeoTiff local = file.read({}, globe);
+  REQUIRE(local.warnings.size() == 1);
+  CHECK(contains(local.warnings[0], "is it in degrees?"));
 }
 
 TEST_CASE("what is missing is NaN: by GDAL_NODATA, by the setting, by being none") {
@@ -727,7 +1059,7 @@ TEST_CASE("samples that can be no heights are refused") {
   };
   CHECK(contains(picture(1, 1, 1), "samples of 1 bits"));
   CHECK(contains(picture(12, 1, 1), "samples of 12 bits"));
-  CHECK(contains(picture(16, 1, PHOTOMETRIC_LOGL), "holds a picture"));
+  CHECK(contains(picture(16, 1, PHOTOMETRIC_LOGL), "not a picture"));
   CHECK(contains(picture(8, 12345, 1), "is compressed by scheme 12345"));
   CHECK(contains(picture(8, 1, 1), "has no georeference"));
 }

@@ -12,9 +12,11 @@
 #include <doctest/doctest.h>
 #include <stb/stb_image_write.h>
 
+#include <pulsecast/io/detail/raster_rules.hpp>
 #include <pulsecast/shape/height_field.hpp>
 
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/png_builder.hpp"
 #include "support/temporary_folder.hpp"
@@ -105,6 +107,42 @@ TEST_CASE("a world file beside the picture places its pixels, with rows to the s
   CHECK(read_png_heights(files.path, {.pixel = Vec2{30, 30}}).pixel == Vec2{30, 30});
   files.put_world("1e-9\n0\n0\n-1\n1e15\n0\n");
   CHECK(contains(files.refusal({}), "dem.png: Raster::pixel.x is 1e-09 m"));
+}
+
+TEST_CASE("a system beside the picture tells the unit of its place, and of its heights unless these have a scale") {
+  const Folder files;
+  files.put(grey_png(3, 2, 8, {1, 2, 3, 4, 5, 6}));
+  files.put_world("0.5\n0\n0\n-2\n1000\n2000\n");
+  const auto put = [&](const std::string& system) { std::ofstream(files.folder / "dem.prj") << system; };
+  const std::string feet = R"(PROJCS["x",GEOGCS["y",UNIT["Degree",0.0174]],UNIT["Foot",0.25]])";
+  put(feet);
+  CHECK(read_png_heights(files.path).pixel == Vec2{0.125, 0.5});
+  CHECK(read_png_heights(files.path).first == Vec2{250, 500});
+  CHECK(read_png_heights(files.path).packed.scale == 1);
+  put(feet + R"(,VERTCS["z",UNIT["Foot",0.5]])");
+  CHECK(read_png_heights(files.path).packed.scale == 0.5);
+  CHECK(read_png_heights(files.path, {.vertical_scale = 2}).packed.scale == 2);
+  put("GEOGCS[]");
+  CHECK(contains(files.refusal({}), "reference system in degrees"));
+  put("Projection UTM");
+  CHECK(contains(files.refusal({}), "names no unit"));
+  CHECK(read_png_heights(files.path, {.pixel = Vec2{1, 1}}).pixel == Vec2{1, 1});
+}
+
+TEST_CASE("each chunk of the rules is refused, others are not") {
+  const Folder files;
+  const auto with = [&](const std::string& type, std::size_t bytes) {
+    std::string png = grey_png(3, 2, 8, {1, 2, 3, 4, 5, 6});
+    files.put(png.insert(33, support::png_chunk(type, std::string(bytes, '\1'))));
+    (void)read_png_heights(files.path, {.pixel = Vec2{1, 1}});
+    return std::vector<std::string>{};
+  };
+  test::check_rules(io::detail::png_rules, std::vector<test::FormatCase>{{"tRNS", [&] { return with("tRNS", 2); }},
+                                                                         {"pCAL", [&] { return with("pCAL", 30); }},
+                                                                         {"sCAL", [&] { return with("sCAL", 5); }},
+                                                                         {"oFFs", [&] { return with("oFFs", 9); }},
+                                                                         {"acTL", [&] { return with("acTL", 8); }}});
+  for (const char* type : {"gAMA", "pHYs", "tEXt"}) CHECK(with(type, 9).empty());
 }
 
 TEST_CASE("pictures that are no heights are refused with a reason") {

@@ -69,6 +69,12 @@ TEST_CASE("a world file is found beside its picture by each of its names") {
   CHECK(world_file_of(place / "UP.PNG") == place / "UP.PGW");
 }
 
+TEST_CASE("other files beside a raster have its name") {
+  const auto files = side_files_of("a/dem.tif");
+  CHECK(std::vector<std::filesystem::path>(files.begin(), files.end()) ==
+        std::vector<std::filesystem::path>{"a/dem.tif.aux.xml", "a/dem.prj", "a/dem.PRJ", "a/dem.tif.msk"});
+}
+
 TEST_CASE("a spoilt world file is refused with its place, or gives a placement that a raster takes") {
   support::Generator random(8531);
   std::size_t refused = 0, read_all = 0;

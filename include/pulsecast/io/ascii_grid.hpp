@@ -9,6 +9,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
+#include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -25,14 +26,17 @@ struct AsciiGridSettings {
 struct AsciiGrid {
   Raster raster;                        ///< heights [m]
   std::vector<std::string> warnings{};  ///< oddities that could still be read
+  SpatialReference reference{};         ///< that of a file beside it, with its units
 };
 
 /// Reads an Esri ASCII grid, a raster of heights as text, in metres. Keywords of any case and order
 /// come first: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize`
 /// or `dx` and `dy`, and perhaps `NODATA_value`. Heights follow row by row from the north. Missing
-/// heights, NaN and values not within 1e15 m become NaN. @throws FileError with the line if known,
-/// for keywords that are unknown, repeated or missing, and too few, too many or no heights @throws
-/// SettingError Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; GDAL manual.
+/// heights, NaN and values not within 1e15 m become NaN. With a `.prj` or `.aux.xml` beside it,
+/// coordinates, and heights unless they have a scale by the settings, become metres. @throws FileError
+/// with the line if known, for keywords that are unknown, repeated or missing, too few, too many or no
+/// heights, and degrees @throws SettingError Source: Esri, ArcGIS documentation, "Esri ASCII raster format"; GDAL
+/// manual.
 [[nodiscard]] AsciiGrid read_ascii_grid(const std::filesystem::path& path, const AsciiGridSettings& settings = {});
 
 /// True for the extension `.asc`, in any case.
@@ -49,8 +53,8 @@ struct AsciiGrid {
 #include <limits>
 
 #include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/io/detail/side_files.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/world_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -65,6 +69,8 @@ class AsciiGridReader {
         file_(path, "an Esri ASCII grid, which begins with 'ncols'") {}
 
   [[nodiscard]] AsciiGrid read() && {
+    grid_.reference = read_side_files(path_, grid_.warnings);
+    if (settings_.vertical_scale == 1) settings_.vertical_scale = grid_.reference.vertical_unit;
     read_keys();
     place();
     read_heights();
@@ -73,11 +79,13 @@ class AsciiGridReader {
     } catch (const SettingError& error) {
       detail::fail(path_, error.what());
     }
-    if (const std::string question = degrees_question(grid_.raster); !question.empty()) warn(0, question);
+    const std::string question = degrees_question(grid_.raster);
+    if (!question.empty() && grid_.reference.wkt.empty()) detail::fail(path_, question);
     return std::move(grid_);
   }
 
  private:
+  // in the order of `ascii_grid_rules`
   enum Key { ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, cellsize, dx, dy, nodata_value, keys };
 
   struct Entry {
@@ -106,12 +114,15 @@ class AsciiGridReader {
   /// Reads the keywords; the last word is the first height then.
   void read_keys() {
     for (word_ = next(); is_name(word_); word_ = next()) {
-      const auto* const name =
-          std::ranges::find_if(names_, [&](const auto& one) { return text::is_same_word(one, word_); });
-      if (name == names_.end())
+      const auto* const rule = std::ranges::find_if(
+          ascii_grid_rules, [&](const FormatRule& one) { return text::is_same_word(one.name, word_); });
+      if (rule == ascii_grid_rules.end()) {
+        std::vector<std::string> names;
+        for (const FormatRule& one : ascii_grid_rules) names.emplace_back(one.name);
         fail(text::quoted(word_), ": expected a keyword of an Esri ASCII grid, or a height",
-             text::suggestion(word_, names_));
-      const auto key = static_cast<Key>(name - names_.begin());
+             text::suggestion(word_, names));
+      }
+      const auto key = static_cast<Key>(rule - ascii_grid_rules.begin());
       Entry& entry = entries_[key];
       if (entry.line > 0) fail(quoted(key), " is repeated: expected it in line ", entry.line, " only");
       const std::string_view text = next();
@@ -142,6 +153,8 @@ class AsciiGridReader {
     raster.pixel = {spacing(one_of(cellsize, dx)), spacing(one_of(cellsize, dy))};
     raster.first = {entries_[west].value + (west == xllcorner ? 0.5 : 0) * raster.pixel.x,
                     entries_[south].value + (raster.rows - (south == yllcorner ? 0.5 : 1)) * raster.pixel.y};
+    raster.pixel *= grid_.reference.unit;
+    raster.first *= grid_.reference.unit;
     // a height takes a digit and, but for the last, a separator
     const std::uint64_t most = file_.bytes().size() / 2 + 1;
     if (pixels() > most)
@@ -184,6 +197,7 @@ class AsciiGridReader {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     bool is_any = false;
     Oddity strange;
+    std::size_t unmarked = 0;
     for (; !word_.empty(); word_ = next()) {
       if (heights.size() == pixels())
         fail(text::quoted(word_), " is one height too many: expected ", pixels(), ", 'ncols' times 'nrows'");
@@ -192,12 +206,15 @@ class AsciiGridReader {
       const double height = *value * settings_.vertical_scale;
       const bool is_missing = std::isnan(height) || *value == missing, is_there = std::fabs(height) <= 1e15;
       if (!is_missing && !is_there) strange.at(line_);
+      unmarked += !is_missing && !settings_.missing && given.line == 0 && may_be_missing(*value) ? 1 : 0;
       is_any |= !is_missing && is_there;
       heights.push_back(!is_missing && is_there ? static_cast<float>(height) : nan);
     }
     if (heights.size() < pixels())
       fail("ends after ", heights.size(), " heights: expected ", pixels(), ", 'ncols' times 'nrows'");
     if (!is_any) detail::fail(path_, "has no height that is not missing: expected at least one");
+    if (unmarked > 0)
+      warn(0, unmarked, " heights are a number that often marks missing ones, as -32768, without NODATA_value");
     if (strange.count > 0)
       warn(strange.first, "a height is beyond 1e15 m, one of ", strange.count, ": they count as missing");
     if (!is_separator(file_.text().back())) warn(line_, "the last line has no line end: the file may be truncated");
@@ -205,11 +222,8 @@ class AsciiGridReader {
 
   void warn(std::size_t line, const auto&... oddity) { grid_.warnings.push_back(warning(path_, line, oddity...)); }
 
-  [[nodiscard]] std::string quoted(Key key) const { return text::quoted(names_[key]); }
+  [[nodiscard]] std::string quoted(Key key) const { return text::quoted(ascii_grid_rules[key].name); }
 
-  // in the order of `Key`
-  const std::array<std::string, keys> names_{"ncols",     "nrows",    "xllcorner", "xllcenter", "yllcorner",
-                                             "yllcenter", "cellsize", "dx",        "dy",        "NODATA_value"};
   AsciiGridSettings settings_;
   std::string path_;
   MappedFile file_;

@@ -30,26 +30,27 @@ struct GeoTiffSettings {
 /// Content of a GeoTIFF file.
 struct GeoTiff {
   Raster raster;                        ///< heights [m]
-  std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if any
+  std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system in metres, if any
   std::vector<Vec3> colours{};          ///< colour table by value (sRGB, from 0 to 1); or empty
   std::vector<std::string> warnings{};  ///< oddities that could still be read
+  SpatialReference reference{};         ///< that of the file, with its units
 };
 
-/// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, of
-/// integers of 8 to 64 bits or floating-point numbers of 16 to 64, with any compression of libtiff. Heights
-/// become `float`; missing ones, NaN and values not within 1e15 m become NaN. With `packed`, whole numbers of 8 and 16
-/// bits stay so, but not if tiles of 16 bits without a value for missing heights are left out. A picture with a colour
-/// table, such as a map of land cover, is a raster of numbers. Masks and alpha bands are not applied, with a warning.
-/// Throws a `FileError`, with the byte if known, for a raster that is incomplete, rotated, sheared, in degrees, in feet
-/// but for its heights, of depths, or without a place. Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); GDAL manual, GTiff
-/// driver.
+/// Reads a raster of heights in a projected reference system: the first image of a TIFF file, of integers of 8 to 64
+/// bits or floating-point numbers of 16 to 64, with any compression of libtiff. Coordinates and heights in feet and
+/// other units become metres. Heights become `float`; missing ones, those of a mask or of alpha 0, NaN and values not
+/// within 1e15 m become NaN. With `packed`, whole numbers of 8 and 16 bits stay so, but not if pixels are left out or
+/// masked and no number of 16 bits marks missing heights. A picture with a colour table, such as a map of land cover,
+/// is a raster of numbers. docs/formats.md lists what is read. Throws a `FileError`, with the byte if known, for a
+/// raster that is incomplete, rotated, sheared, in degrees, of depths, of colours, or without a place. Source:
+/// TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 
-/// EPSG code of the projected reference system, if any. @throws FileError as `read_geotiff`
-[[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
-
-/// Codes of the horizontal and the vertical reference system, 0 if unknown. @throws FileError as `read_geotiff`
+/// Reference system of a file, empty if unknown. @throws FileError as `read_geotiff`
 [[nodiscard]] SpatialReference read_geotiff_reference(const std::filesystem::path& path);
+
+/// EPSG code of the projected reference system in metres, if any. @throws FileError as `read_geotiff`
+[[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
 
 }  // namespace PULSECAST_NAMESPACE::io
 
@@ -69,20 +70,34 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
+/// Code of a horizontal system in metres.
+[[nodiscard]] inline std::optional<std::uint16_t> metric_epsg(const SpatialReference& reference) noexcept {
+  return reference.epsg != 0 && reference.unit == 1 ? std::optional(reference.epsg) : std::nullopt;
+}
+
 /// Reader of a file's heights, row by row from the north.
 class GeoTiffReader {
  public:
   GeoTiffReader(const std::filesystem::path& path, const GeoTiffSettings& settings)
-      : settings_(validated(settings)), file_(path), layout_(file_, settings_.band), epsg_(projected_epsg(file_)) {
-    const auto& scale = settings_.vertical_scale;
-    scale_ = scale ? HeightScale{*scale} : height_scale(file_, settings_.band);
+      : settings_(validated(settings)),
+        file_(path),
+        reference_(reference_of(file_, settings_.vertical_scale.has_value())),
+        layout_(file_, settings_.band) {
+    const BandItems items = band_items(file_, settings_.band, layout_.samples, reference_.vertical_unit);
+    const auto& [scale, offset, unit] = items.heights;
+    scale_ =
+        settings_.vertical_scale ? HeightScale{*settings_.vertical_scale} : HeightScale{scale * unit, offset * unit};
     const RasterCorner corner = raster_corner(file_, layout_);
     westward_ = corner.step_x < 0;
     northward_ = corner.step_y > 0;
-    raster_ = placed_raster(file_, layout_, corner);
-    if (const std::string question = degrees_question(raster_); !question.empty()) file_.warn(question);
+    raster_ = placed_raster(file_, layout_, corner, reference_.unit);
+    const std::string question = degrees_question(raster_);
+    if (!question.empty() && geo_key(file_, geotiff::model_type, 0) != 0)
+      file_.warn(question);
+    else if (!question.empty() && reference_.wkt.empty())
+      file_.fail(question);
     missing_ = settings_.missing ? settings_.missing : missing_value();
-    note_picture();
+    read_masks(items.alpha);
   }
 
   [[nodiscard]] GeoTiff read() {
@@ -105,22 +120,25 @@ class GeoTiffReader {
     return std::nullopt;
   }
 
-  /// Notes tags without effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
-  void note_picture() {
-    const auto meaning = file_.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_PALETTE)
-      file_.warn("is a picture of colours (photometric interpretation ", meaning, "); the numbers of band ",
-                 settings_.band, " are taken as heights");
-    std::uint16_t count = 0;
-    const std::uint16_t* kinds = nullptr;
-    if (TIFFGetField(file_.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) != 1 || kinds == nullptr) count = 0;
-    const bool has_alpha = std::any_of(
-        kinds, kinds + count, [](auto k) { return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA; });
+  /// Takes pixels outside masks as missing. Source: GDAL manual, GTiff driver, internal masks; RFC 15 of GDAL.
+  void read_masks(const std::vector<std::uint16_t>& alpha) {
+    const auto take = [&](const TiffFile& file, const RasterLayout& layout, std::uint16_t band) {
+      std::vector<bool> zeros = zeros_of(file, layout, band);
+      for (std::size_t i = 0; i < hidden_.size(); ++i) zeros[i] = zeros[i] || hidden_[i];
+      hidden_ = std::move(zeros);
+    };
+    const auto take_image = [&](const std::filesystem::path& path, std::uint16_t image) {
+      TiffFile file(path, image);
+      const RasterLayout layout(file, 1, true);
+      if (layout.columns != layout_.columns || layout.rows != layout_.rows) file_.keep("mask of another size");
+      take(file, layout, std::min(settings_.band, layout.samples));
+    };
+    for (const std::uint16_t band : alpha)
+      if (band != settings_.band) take(file_, layout_, band);
+    if (file_.mask() != 0) take_image(file_.path(), file_.mask());
     std::error_code ignored;
-    if (has_alpha || file_.has_mask() || std::filesystem::exists(file_.path() + ".msk", ignored))
-      file_.warn("has ", has_alpha ? "an alpha band" : "a mask",
-                 ", which is not applied: pixels without a height keep their numbers, unless these are those of "
-                 "missing heights");
+    if (const auto beside = side_files_of(file_.path()).back(); std::filesystem::exists(beside, ignored))
+      take_image(beside, 0);
   }
 
   template <class One, class Two, class Four, class Eight>
@@ -151,16 +169,16 @@ class GeoTiffReader {
     else if (sizeof(Sample) == 1)
       packed.missing = std::numeric_limits<std::uint16_t>::max();
     const bool is_small = std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15;
-    return scale_.scale > 0 && is_small && (packed.missing || is_complete());
+    return scale_.scale > 0 && is_small && (packed.missing || (hidden_.empty() && is_complete()));
   }
 
   /// True if no strip or tile of the band is left out.
   [[nodiscard]] bool is_complete() {
-    const RasterLayout& l = layout_;
-    for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north))
-      for (std::uint32_t west = 0; west < l.columns; west += std::min(l.chunk_columns, l.columns - west))
-        if (TIFFGetStrileByteCount(file_.handle(), chunk_at(west, north)) == 0) return false;
-    return true;
+    bool is_whole = true;
+    each_chunk(layout_, [&](std::uint32_t west, std::uint32_t north, auto...) {
+      is_whole = is_whole && TIFFGetStrileByteCount(file_.handle(), chunk_at(west, north)) != 0;
+    });
+    return is_whole;
   }
 
   /// `pixels`: of the raster, to be filled. `absent`: pixel of missing heights.
@@ -179,7 +197,7 @@ class GeoTiffReader {
                  " heights are a number that often marks missing ones, as -9999 or -32768, and the file "
                  "names no number for these; a number of missing heights is a setting");
     if (strange_ > 0) file_.warn(strange_, " values beyond 1e15 m, or infinite, count as missing");
-    return {std::move(raster_), epsg_, colour_table(file_), file_.take_warnings()};
+    return {std::move(raster_), metric_epsg(reference_), colour_table(file_), file_.take_warnings(), reference_};
   }
 
   /// Reads by strips, or rows of tiles; the raster grows meanwhile.
@@ -195,46 +213,25 @@ class GeoTiffReader {
     } catch (const std::bad_alloc&) {
       file_.fail("does not fit into memory: its raster has ", l.columns, " x ", l.rows, " pixels");
     }
-    for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north)) {
-      const std::uint32_t rows = std::min(l.chunk_rows, l.rows - north);
+    each_chunk(l, [&](std::uint32_t west, std::uint32_t north, std::uint32_t columns, std::uint32_t rows) {
       pixels.resize(std::size_t{l.columns} * (north + rows), absent);
-      for (std::uint32_t west = 0; west < l.columns; west += std::min(l.chunk_columns, l.columns - west)) {
-        const std::uint32_t columns = std::min(l.chunk_columns, l.columns - west);
-        Pixel* to = pixels.data() + std::size_t{north} * l.columns + west;
-        auto* from = in_place ? reinterpret_cast<unsigned char*>(to) : buffer.data();
-        const std::uint64_t bytes = l.tiled ? l.chunk_bytes : l.chunk_bytes / l.chunk_rows * rows;
-        if (!read_chunk(west, north, from, bytes)) continue;
-        for (std::size_t row = 0; row < rows; ++row) {
-          const unsigned char* samples = from + (row * l.chunk_columns * stride + first) * sizeof(Sample);
-          for (std::uint32_t i = 0; i < columns; ++i, samples += stride * sizeof(Sample))
-            to[row * l.columns + i] = pixel<Sample, Pixel>(samples);
-        }
+      Pixel* const to = pixels.data() + std::size_t{north} * l.columns + west;
+      auto* const from = in_place ? reinterpret_cast<unsigned char*>(to) : buffer.data();
+      const std::uint64_t bytes = l.tiled ? l.chunk_bytes : l.chunk_bytes / l.chunk_rows * rows;
+      if (!read_chunk(file_, l, chunk_at(west, north), from, bytes)) return;
+      for (std::size_t row = 0; row < rows; ++row) {
+        const unsigned char* samples = from + (row * l.chunk_columns * stride + first) * sizeof(Sample);
+        const std::size_t begin = (north + row) * l.columns + west;
+        for (std::uint32_t i = 0; i < columns; ++i, samples += stride * sizeof(Sample))
+          pixels[begin + i] = is_hidden(begin + i) ? absent : pixel<Sample, Pixel>(samples);
       }
-    }
+    });
   }
 
-  /// Number of the strip or tile of the band at a pixel.
+  [[nodiscard]] bool is_hidden(std::size_t index) const { return !hidden_.empty() && hidden_[index]; }
+
   [[nodiscard]] std::uint32_t chunk_at(std::uint32_t west, std::uint32_t north) const {
-    const auto plane = static_cast<std::uint16_t>(layout_.planes == PLANARCONFIG_CONTIG ? 0 : settings_.band - 1);
-    TIFF* tiff = file_.handle();
-    return layout_.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
-  }
-
-  /// Reads a strip or tile; false if it was left out.
-  [[nodiscard]] bool read_chunk(std::uint32_t west, std::uint32_t north, unsigned char* to, std::uint64_t bytes) {
-    TIFF* tiff = file_.handle();
-    const std::uint32_t chunk = chunk_at(west, north);
-    const std::uint64_t begin = TIFFGetStrileOffset(tiff, chunk), length = TIFFGetStrileByteCount(tiff, chunk);
-    if (length == 0) return false;
-    const auto fail = [&](const auto&... problem) {
-      file_.fail_at_byte(begin, layout_.chunk(), chunk, problem..., ": expected a complete file");
-    };
-    if (begin > file_.size() || length > file_.size() - begin)
-      fail(" should end at byte ", begin + length, ", but the file has ", file_.size());
-    const auto size = static_cast<tmsize_t>(bytes);
-    const auto read = layout_.tiled ? TIFFReadEncodedTile : TIFFReadEncodedStrip;
-    if (read(tiff, chunk, to, size) != size) fail(" cannot be read", file_.complaint());
-    return true;
+    return detail::chunk_at(file_, layout_, settings_.band, west, north);
   }
 
   template <class Sample, class Pixel>
@@ -267,8 +264,9 @@ class GeoTiffReader {
 
   GeoTiffSettings settings_;
   TiffFile file_;
+  SpatialReference reference_;
   RasterLayout layout_;
-  std::optional<std::uint16_t> epsg_;
+  std::vector<bool> hidden_;  ///< pixels outside masks, in the order of the file; empty without masks
   Raster raster_;
   HeightScale scale_;
   std::optional<double> missing_;              ///< value of missing heights
@@ -283,16 +281,13 @@ PULSECAST_INLINE GeoTiff read_geotiff(const std::filesystem::path& path, const G
   return reading(path, [&] { return detail::GeoTiffReader(path, settings).read(); });
 }
 
-PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) {
-  detail::TiffFile file(path);
-  return detail::projected_epsg(file);
-}
-
 PULSECAST_INLINE SpatialReference read_geotiff_reference(const std::filesystem::path& path) {
   detail::TiffFile file(path);
-  const std::uint16_t vertical = detail::geo_key(file, detail::geotiff::vertical, 0);
-  return {.epsg = detail::projected_epsg(file).value_or(0),
-          .vertical_epsg = vertical == detail::geotiff::user_defined ? std::uint16_t{0} : vertical};
+  return detail::reference_of(file, true);
+}
+
+PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) {
+  return detail::metric_epsg(read_geotiff_reference(path));
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

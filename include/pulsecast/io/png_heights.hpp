@@ -33,9 +33,9 @@ struct PngHeightSettings {
 };
 
 /// Reads a raster of packed heights from a PNG file of grey, 8 or 16 bits, north up, in metres. The
-/// place of pixels is that of the settings, or of a world file (`world_file_of`). Checksums are not
-/// compared. @throws SettingError @throws FileError for a file that is damaged, coloured,
-/// transparent, of fewer bits, too large, without a place, or without a height
+/// place of pixels is that of the settings, or of a world file (`world_file_of`), in metres or the units
+/// of a `.prj` beside it. Checksums are not compared. @throws SettingError @throws FileError for a file that is
+/// damaged, coloured, transparent, of fewer bits, too large, without a place, or without a height
 [[nodiscard]] Raster read_png_heights(const std::filesystem::path& path, const PngHeightSettings& settings = {});
 
 /// True for the extension `.png`, in any case.
@@ -53,7 +53,7 @@ struct PngHeightSettings {
 
 #include <stb/stb_image.h>
 
-#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/detail/side_files.hpp>
 #include <pulsecast/io/world_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -105,6 +105,7 @@ class PngHeightReader {
     if (bytes > 0x7FFFFFFF) fail("has more than 2^31 bytes: expected fewer");
     if (bytes <= colour || !std::equal(signature.begin(), signature.end(), data()))
       fail("is no PNG file: expected one of heights");
+    keep_chunks();
     if (stbi_info_from_memory(data(), size(), &width_, &height_, &channels_) == 0) fail_to_read();
     bits_ = data()[depth];
     if (data()[colour] != 0 || channels_ != 1 || (bits_ != 8 && bits_ != 16))
@@ -122,10 +123,26 @@ class PngHeightReader {
     raster_.rows = static_cast<std::uint32_t>(height_);
   }
 
+  /// Keeps to the rules of the chunks before the pixels. Source: PNG, second edition, 5.3.
+  void keep_chunks() {
+    const std::string_view all = file_.text();
+    for (std::size_t at = 8; at + 8 <= all.size() && all.substr(at + 4, 4) != "IDAT";) {
+      std::size_t length = 0;
+      for (const char byte : all.substr(at, 4)) length = length << 8 | static_cast<unsigned char>(byte);
+      if (rule_of(png_rules, all.substr(at + 4, 4)))
+        keep_rule(png_rules, path_, "chunk", all.substr(at + 4, 4), warnings_);
+      at += 12 + length;
+    }
+  }
+
   /// Sets the place of the pixels; true if the rows of the file go north.
   [[nodiscard]] bool place() {
     raster_.pixel = settings_.pixel.value_or(Vec2{1, 1});
     raster_.first = settings_.first.value_or(Vec2{});
+    const SpatialReference beside_it = read_side_files(path_, warnings_, !settings_.pixel);
+    if (!warnings_.empty() && beside_it.unit == 1)
+      fail("is beside a file that is not clear: ", warnings_.front(), "; expected the size of pixels as a setting");
+    if (settings_.vertical_scale == 1) raster_.packed.scale = beside_it.vertical_unit;
     if (settings_.pixel) return false;
     const std::filesystem::path beside = world_file_of(path_);
     if (beside.empty())
@@ -133,10 +150,11 @@ class PngHeightReader {
            std::filesystem::path(path_).replace_extension(".pgw").string(), ", or the size of pixels as a setting");
     const WorldFile world = read_world_file(beside);
     const bool is_northward = world.step.y > 0;
-    raster_.pixel = {world.step.x, std::fabs(world.step.y)};
-    if (!settings_.first)
-      raster_.first = {world.first.x, world.first.y + (is_northward ? (raster_.rows - 1) * world.step.y : 0)};
-    if (const std::string question = degrees_question(raster_); !question.empty())
+    raster_.pixel = beside_it.unit * Vec2(world.step.x, std::fabs(world.step.y));
+    const double south = is_northward ? (raster_.rows - 1) * world.step.y : 0;
+    if (!settings_.first) raster_.first = beside_it.unit * (world.first + Vec2(0, south));
+    const std::string question = degrees_question(raster_);
+    if (!question.empty() && beside_it.wkt.empty())
       fail("by its world file ", question, ", or the size of pixels as a setting");
     return is_northward;
   }
@@ -152,6 +170,7 @@ class PngHeightReader {
   PngHeightSettings settings_;
   std::filesystem::path path_;
   MappedFile file_;
+  std::vector<std::string> warnings_;
   int width_ = 0, height_ = 0, channels_ = 0, bits_ = 0;
   Raster raster_;
 };

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_WORLD_FILE_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -33,18 +34,35 @@ struct WorldFile {
 /// The first of them that exists; empty if there is none.
 [[nodiscard]] std::filesystem::path world_file_of(const std::filesystem::path& picture);
 
+/// Paths of other files beside a raster that its readers look for: GDAL's `.aux.xml`, `.prj`, also in capitals, and the
+/// mask of a GeoTIFF, `.msk`.
+[[nodiscard]] inline std::array<std::filesystem::path, 4> side_files_of(const std::filesystem::path& raster) {
+  const auto as = [&](const char* extension) { return std::filesystem::path(raster).replace_extension(extension); };
+  return {raster.string() + ".aux.xml", as(".prj"), as(".PRJ"), raster.string() + ".msk"};
+}
+
 namespace detail {
 
-/// Question about a raster that may be in degrees, as of pixels up to 0.0083 degrees; empty for
-/// others. Source: USGS, GTOPO30 documentation (30 arc seconds).
+/// Question about a raster that may be in degrees: on the globe, with pixels up to 0.0083 degrees, of whole minutes
+/// that are no whole millimetres, or around the globe; empty for others. Source: USGS, GTOPO30 documentation (30 arc
+/// seconds).
 [[nodiscard]] inline std::string degrees_question(const Raster& raster) {
   const Vec2 first = raster.first, pixel = raster.pixel;
-  const Vec2 last = first + Vec2(raster.columns * pixel.x, -(raster.rows * pixel.y));
+  const Vec2 last = first + Vec2((raster.columns - 1) * pixel.x, -((raster.rows - 1) * pixel.y));
   const bool on_globe =
-      std::max(std::fabs(first.x), std::fabs(last.x)) <= 360 && std::max(std::fabs(first.y), std::fabs(last.y)) <= 91;
-  if (!on_globe || pixel.x >= 0.01) return {};
+      std::max(std::fabs(first.x), std::fabs(last.x)) <= 361 && std::max(std::fabs(first.y), std::fabs(last.y)) <= 91;
+  const auto is_whole = [](double number) { return std::fabs(number - std::round(number)) < 1e-3; };
+  const bool has_minutes = is_whole(60 * pixel.x) && !is_whole(1000 * pixel.x);
+  const bool is_around = std::fabs(raster.columns * pixel.x - 360) < 0.5 * pixel.x;
+  if (!on_globe || (pixel.x >= 0.01 && !has_minutes && !is_around)) return {};
   return text::message("has pixels of ", pixel.x, " m at (", first.x, ", ", first.y,
-                       "): is it in degrees? Expected metres");
+                       "): is it in degrees? Expected metres; gdalwarp -t_srs EPSG:CODE makes them");
+}
+
+/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez
+/// et al. 2005, JPL D-31639, on SRTM (-32768); GDAL manual, DTED driver (-32767).
+[[nodiscard]] inline bool may_be_missing(double value) noexcept {
+  return value == -9999 || value == -32768 || value == -32767 || value == -99999 || value == -999999 || value == 65535;
 }
 
 }  // namespace detail
@@ -52,7 +70,6 @@ namespace detail {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_WORLD_FILE)
-#include <array>
 #include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>

@@ -8,11 +8,13 @@
 #include <span>
 #include <string_view>
 
+#include <pulsecast/io/detail/geotiff/rules.hpp>
 #include <pulsecast/io/detail/las/rules.hpp>
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>
-#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
+#include <pulsecast/io/detail/raster_rules.hpp>
 
 using namespace pulsecast::io;
 
@@ -33,4 +35,8 @@ int main() {
   print("points: PLY, named columns", detail::point_rules);
   print("PTX", detail::ptx_rules);
   print("DAE, FBX", detail::mesh_rules);
+  print("GeoTIFF", detail::geotiff_rules);
+  print("ASCII grid", detail::ascii_grid_rules);
+  print("PNG heights", detail::png_rules);
+  print("beside a raster", detail::side_file_rules);
 }

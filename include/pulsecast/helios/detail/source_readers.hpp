@@ -170,6 +170,7 @@ PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::file
                                                                  const GeoTiffSource& source) {
   add_files({file});
   add_files(io::world_files_of(file));
+  for (const std::filesystem::path& beside : io::side_files_of(file)) add_files({beside});
   if (io::is_ascii_grid(file)) {
     io::AsciiGrid grid =
         io::read_ascii_grid(file, {.vertical_scale = source.height_scale.value_or(1), .missing = source.missing});

@@ -15,23 +15,28 @@
 #include <tiffio.h>
 
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/detail/geotiff/rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// First image of a TIFF file, opened by libtiff, with the file's errors and warnings.
+/// Image of a TIFF file, the first by default, opened by libtiff, with the file's errors and warnings.
 class TiffFile : public InputFile {
  public:
-  explicit TiffFile(const std::filesystem::path& path) : InputFile(path, "a GeoTIFF"), tiff_(open()) {}
+  explicit TiffFile(const std::filesystem::path& path, std::uint16_t image = 0)
+      : InputFile(path, "a GeoTIFF"), tiff_(open(image)) {}
   TiffFile(const TiffFile&) = delete;
   TiffFile& operator=(const TiffFile&) = delete;
 
   [[nodiscard]] TIFF* handle() const noexcept { return tiff_.get(); }
 
-  /// True if another image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual.
-  [[nodiscard]] bool has_mask() const noexcept { return has_mask_; }
+  /// Number of the image that is the mask of the first; 0 if there is none.
+  [[nodiscard]] std::uint16_t mask() const noexcept { return mask_; }
+
+  /// Keeps to the rule for an item. True if it is to be read. @throws FileError by the rule
+  bool keep(std::string_view name) { return keep_rule(geotiff_rules, path(), "item", name, warnings_); }
 
   void warn(const auto&... oddity) { warnings_.push_back(warning(path(), 0, oddity...)); }
+  [[nodiscard]] std::vector<std::string>& warnings() noexcept { return warnings_; }
   [[nodiscard]] std::vector<std::string> take_warnings() noexcept { return std::exchange(warnings_, {}); }
 
   /// Error of libtiff, to end a sentence.
@@ -84,7 +89,7 @@ class TiffFile : public InputFile {
   }
   static int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) noexcept { return 1; }
 
-  [[nodiscard]] Handle open() {
+  [[nodiscard]] Handle open(std::uint16_t image) {
     const std::shared_ptr<TIFFOpenOptions> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
@@ -93,7 +98,8 @@ class TiffFile : public InputFile {
     // not mapped, as the file may be truncated
     Handle tiff(TIFFOpenExt(path().c_str(), "rm", options.get()), TIFFClose);
     if (!tiff) fail("is not a TIFF file that can be read", complaint(), ": expected a GeoTIFF");
-    look_for_mask(*tiff);
+    if (image == 0) look_at_images(*tiff);
+    if (TIFFSetDirectory(tiff.get(), image) != 1) fail("cannot be read again", complaint());
     // of a strip or tile with more than it needs, libdeflate leaves the end unread; zlib reads all
     std::uint16_t scheme = COMPRESSION_NONE;
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &scheme);
@@ -102,21 +108,25 @@ class TiffFile : public InputFile {
     return tiff;
   }
 
-  /// Looks at the images after the first, often overviews. An error of theirs is none of the first.
-  void look_for_mask(TIFF& tiff) {
-    if (TIFFLastDirectory(&tiff) != 0) return;
-    constexpr int most = 64;
-    for (int i = 0; i < most && !has_mask_ && TIFFReadDirectory(&tiff) == 1; ++i) {
+  /// Looks at the kinds of all images. An error of the others is none of the first. Source: TIFF 6.0, NewSubfileType.
+  void look_at_images(TIFF& tiff) {
+    constexpr std::uint16_t most = 64;
+    bool is_other = false;
+    for (std::uint16_t i = 0; i < most && (i == 0 || (TIFFLastDirectory(&tiff) == 0 && TIFFReadDirectory(&tiff) == 1));
+         ++i) {
       std::uint32_t kind = 0;
       TIFFGetFieldDefaulted(&tiff, TIFFTAG_SUBFILETYPE, &kind);
-      has_mask_ = (kind & FILETYPE_MASK) != 0;
+      const bool is_mask = (kind & FILETYPE_MASK) != 0, is_overview = (kind & FILETYPE_REDUCEDIMAGE) != 0;
+      if (i == 0 && (is_mask || is_overview)) keep("first image = overview");
+      if (is_mask && !is_overview && mask_ == 0) mask_ = i;
+      is_other = is_other || (i > 0 && !is_mask && !is_overview);
     }
     complaint_ = {};
-    if (TIFFSetDirectory(&tiff, 0) != 1) fail("cannot be read again", complaint());
+    if (is_other) keep("other image");
   }
 
   std::array<char, 256> complaint_{};  ///< first error of libtiff
-  bool has_mask_ = false;
+  std::uint16_t mask_ = 0;             ///< number of an image
   std::vector<std::string> warnings_;
   Handle tiff_;
 };
