@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/trajectory/rules.hpp>
 
 using namespace pulsecast::io;
 
@@ -21,4 +22,7 @@ void print(std::string_view format, std::span<const FormatRule> rules) {
 }
 }  // namespace
 
-int main() { print("glTF", detail::gltf_rules); }
+int main() {
+  print("glTF", detail::gltf_rules);
+  print("trajectory", detail::trajectory_rules);
+}
