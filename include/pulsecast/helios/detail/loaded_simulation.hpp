@@ -174,6 +174,35 @@ struct LoadedRepetition {
       scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = std::max(1e-3, duration)});
     add_new(warnings, built.warnings);
     warnings.insert(warnings.end(), compiled->warnings.begin(), compiled->warnings.end());
+    note_distance();
+  }
+
+ private:
+  /// Notes the first leg that stays farther from the scene than any channel measures.
+  void note_distance() {
+    double range = 0;
+    for (const ChannelSettings& channel : inputs->survey.scanner.channels)
+      range = std::max(range, range_of(channel, inputs->settings.library_physics));
+    const Box box = scene->bounds();
+    for (const CompiledSurvey::Leg& leg : compiled->legs) {
+      if (leg.first == leg.end || box.empty()) continue;
+      constexpr int steps = 64;
+      double nearest = std::numeric_limits<double>::infinity(), step = 0;
+      Vec3 before{};
+      for (int i = 0; i <= steps; ++i) {
+        const Tick t = Tick::of_seconds(leg.duration.seconds() * i / steps);
+        const Vec3 at = compiled->source.legs()[leg.number].path().at(t).position;
+        nearest = std::min(nearest, length(at - max(box.min, min(at, box.max))));
+        if (i > 0) step = std::max(step, length(at - before));
+        before = at;
+      }
+      if (nearest - step / 2 < 1.01 * range) continue;
+      const SurveyBuildOptions names{.leg_places = inputs->settings.leg_places};
+      warnings.push_back(text::joined({names.leg_name(leg.number), " is at least ", brief(nearest - step / 2),
+                                       " m from the scene, and the scanner measures up to ", brief(range),
+                                       " m, by rangeMax_m or the light of a white surface: no points"}));
+      return;
+    }
   }
 };
 

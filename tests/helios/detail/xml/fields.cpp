@@ -140,6 +140,14 @@ TEST_CASE("a mount has a position and turns in their order") {
   CHECK(from<MountSettings>("<m/>") == MountSettings{});
 }
 
+TEST_CASE("a turn by a part of pi in degrees gets a note") {
+  for (const char* angle : {"1.5708", "-1.57", "3.14159", "0.785398"})
+    CHECK(contains(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>"),
+                   "angle_deg is " + std::string(angle) + ": given in radians, not degrees?"));
+  for (const char* angle : {"90", "1.5", "3", "-2.5", "0", "6", "22.5"})
+    CHECK(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>").empty());
+}
+
 TEST_CASE("a mount takes the place of the one before, as a whole") {
   MountSettings mount{.position = {1, 2, 3}, .rotation = {.turns = {{Axis::x, 1}}, .local = true}};
   CHECK(told(R"(<m z="5"/>)", mount).empty());

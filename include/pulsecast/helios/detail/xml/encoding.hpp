@@ -40,6 +40,19 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return text.size();
 }
 
+/// Appends a character in UTF-8. Source: RFC 3629, 3.
+inline void append_utf8(std::string& text, std::uint32_t code) {
+  const auto more = [&](int shift) { return static_cast<char>(0x80 | (code >> shift & 0x3F)); };
+  if (code < 0x80)
+    text += static_cast<char>(code);
+  else if (code < 0x800)
+    text += {static_cast<char>(0xC0 | code >> 6), more(0)};
+  else if (code < 0x10000)
+    text += {static_cast<char>(0xE0 | code >> 12), more(6), more(0)};
+  else
+    text += {static_cast<char>(0xF0 | code >> 18), more(12), more(6), more(0)};
+}
+
 /// Text in UTF-8 of one in windows-1252, which holds ISO-8859-1 but for control characters.
 /// Source: WHATWG, Encoding Standard, index windows-1252.
 [[nodiscard]] inline std::string utf8_of_windows_1252(std::string_view text) {
@@ -51,14 +64,29 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     const unsigned code = byte >= 0x80 && byte < 0xA0 ? from_0x80[byte - 0x80U] : byte;
-    if (code < 0x80) {
-      made += c;
-    } else if (code < 0x800) {
-      made += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
-    } else {
-      made += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
-               static_cast<char>(0x80 | (code & 0x3F))};
+    append_utf8(made, code);
+  }
+  return made;
+}
+
+/// Text in UTF-8 of one in UTF-16 with a byte order mark; halves of pairs become U+FFFD. Empty for other texts.
+/// Source: RFC 2781.
+[[nodiscard]] inline std::optional<std::string> utf8_of_utf16(std::string_view text) {
+  const bool is_little = text.starts_with("\xFF\xFE");
+  if (!is_little && !text.starts_with("\xFE\xFF")) return std::nullopt;
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<unsigned char>(text[i]), second = static_cast<unsigned char>(text[i + 1]);
+    return static_cast<std::uint32_t>(is_little ? second << 8 | first : first << 8 | second);
+  };
+  std::string made;
+  for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+    std::uint32_t code = unit(i);
+    const std::uint32_t next = i + 3 < text.size() ? unit(i + 2) : 0;
+    if (code >= 0xD800 && code < 0xDC00 && next >= 0xDC00 && next < 0xE000) {
+      code = 0x10000 + ((code - 0xD800) << 10) + (next - 0xDC00);
+      i += 2;
     }
+    append_utf8(made, code >= 0xD800 && code < 0xE000 ? 0xFFFD : code);
   }
   return made;
 }
