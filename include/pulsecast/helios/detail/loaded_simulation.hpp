@@ -186,22 +186,16 @@ struct LoadedRepetition {
     const Box box = scene->bounds();
     for (const CompiledSurvey::Leg& leg : compiled->legs) {
       if (leg.first == leg.end || box.empty()) continue;
-      constexpr int steps = 64;
-      double nearest = std::numeric_limits<double>::infinity(), step = 0;
-      Vec3 before{};
-      for (int i = 0; i <= steps; ++i) {
-        const Tick t = Tick::of_seconds(leg.duration.seconds() * i / steps);
-        const Vec3 at = compiled->source.legs()[leg.number].path().at(t).position;
-        nearest = std::min(nearest, length(at - max(box.min, min(at, box.max))));
-        if (i > 0) step = std::max(step, length(at - before));
-        before = at;
-      }
-      if (nearest - step / 2 < 1.01 * range) continue;
+      Box way;
+      for (int i = 0; i <= 64; ++i)
+        way.extend(
+            compiled->source.legs()[leg.number].path().at(Tick::of_seconds(leg.duration.seconds() * i / 64)).position);
+      const double apart = length(max(max(box.min - way.max, way.min - box.max), Vec3{}));
+      if (apart < 1.01 * range) continue;
       const SurveyBuildOptions names{.leg_places = inputs->settings.leg_places};
-      warnings.push_back(text::joined({names.leg_name(leg.number), " is at least ", brief(nearest - step / 2),
-                                       " m from the scene, and the scanner measures up to ", brief(range),
-                                       " m, by rangeMax_m or the light of a white surface: no points"}));
-      return;
+      return warnings.push_back(text::joined({names.leg_name(leg.number), " is at least ", brief(apart),
+                                              " m from the scene, and the scanner measures up to ", brief(range),
+                                              " m, by rangeMax_m or the light of a white surface: no points"}));
     }
   }
 };

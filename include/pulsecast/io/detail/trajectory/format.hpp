@@ -103,16 +103,18 @@ void each_quantity_name(const auto& visit) {
 /// Assignment of quantities to columns.
 class TrajectoryColumns {
  public:
-  /// `names` in the order of the columns; those in `left_out` are ignored.
-  TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
+  /// `names` in the order of the columns; those in `left_out` are ignored, and with `more` all unknown ones.
+  TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles,
+                    bool more = false) {
     std::set<std::string> out;
     for (const std::string& name : left_out) out.insert(detail::plain(name));
     for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
       const bool is_out = out.contains(detail::plain(names[i]));
       columns_.push_back(is_out ? std::nullopt : trajectory_column(names[i], angles));
-      if (columns_.back())
-        put(i);
-      else if (!is_out)
+      if (columns_.back()) put(i);
+      if (columns_.back() || is_out) continue;
+      unknown_.push_back(i);
+      if (!more)
         blame(i, "is not a known column: did you mean '", nearest_trajectory_column(names[i]),
               "'? Others must be set as left out");
     }
@@ -123,6 +125,9 @@ class TrajectoryColumns {
 
   /// Column of the problem, from 0; empty if it concerns all.
   [[nodiscard]] std::optional<std::size_t> culprit() const noexcept { return culprit_; }
+
+  /// Columns that are neither known nor left out, from 0.
+  [[nodiscard]] const std::vector<std::size_t>& unknown() const noexcept { return unknown_; }
 
   /// Columns in the order of the file; empty for ignored ones.
   [[nodiscard]] const std::vector<std::optional<TrajectoryColumn>>& all() const noexcept { return columns_; }
@@ -172,6 +177,7 @@ class TrajectoryColumns {
 
   std::vector<std::optional<TrajectoryColumn>> columns_;
   std::array<std::optional<std::size_t>, std::tuple_size_v<decltype(QuantityValues::values)>> places_{};
+  std::vector<std::size_t> unknown_;
   std::string problem_;
   std::optional<std::size_t> culprit_;
 };

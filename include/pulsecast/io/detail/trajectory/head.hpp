@@ -70,7 +70,7 @@ class TrajectoryHead {
       std::vector<std::string> names(table_.cells().begin(), table_.cells().end());
       names.front().erase(0, names.front().find_first_not_of("# \t"));
       if (names.front().empty()) names.erase(names.begin());
-      named_ = names.size() <= max_columns && is_whole(columns_of(names, true));
+      named_ = names.size() <= max_columns && is_whole({names, format_.left_out, format_.angle_unit, true});
       if (named_) names_ = std::move(names);
     }
   }
@@ -103,6 +103,7 @@ class TrajectoryHead {
       understand();
     } catch (const FileError& problem) {
       named_ = false;
+      columns_.reset();
       if (!problem_ || known > known_) problem_ = problem;
       known_ = std::max(known_, known);
     }
@@ -143,64 +144,38 @@ class TrajectoryHead {
     understand();
   }
 
-  /// Columns of these names. Unknown ones may be left out.
-  [[nodiscard]] TrajectoryColumns columns_of(const std::vector<std::string>& names, bool leaves_out) const {
-    std::vector<std::string> out = format_.left_out;
-    for (const std::string& name : names)
-      if (leaves_out && !trajectory_column(name, format_.angle_unit)) out.push_back(name);
-    return {names, out, format_.angle_unit};
-  }
-
   /// Rule of an unknown column that is refused, by its name or unit; or null.
   [[nodiscard]] static const FormatRule* refusal_of(const std::string& name) {
     const std::string whole = plain(name);
-    const auto refusal = [](std::string_view item) {
-      const FormatRule* const rule = rule_of(trajectory_rules, item);
-      return rule->use == FormatUse::refused ? rule : nullptr;
-    };
-    const FormatRule* found = nullptr;
-    for (std::size_t at = whole.find('_'); !found && at != whole.npos; at = whole.find('_', at + 1))
-      found = refusal('[' + whole.substr(at + 1));
-    return found ? found : refusal(whole);
+    const FormatRule* rule = rule_of(trajectory_rules, whole);
+    for (std::size_t at = whole.find('_'); rule->use != FormatUse::refused && at != whole.npos;
+         at = whole.find('_', at + 1))
+      rule = rule_of(trajectory_rules, '[' + whole.substr(at + 1));
+    return rule->use == FormatUse::refused ? rule : nullptr;
   }
 
   void understand() {
     if (names_.size() > max_columns)
       table_.fail_here("has ", names_.size(), " columns: expected at most ", max_columns);
-    const auto is_left_out = [&](const std::string& name) {
-      return std::ranges::any_of(format_.left_out, [&](const std::string& out) { return plain(out) == plain(name); });
-    };
-    const bool has_all = is_whole(columns_of(names_, true));
+    columns_.emplace(names_, format_.left_out, format_.angle_unit, true);
     std::string unknown;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      if (trajectory_column(names_[i], format_.angle_unit) || is_left_out(names_[i])) continue;
-      const FormatRule* const rule = has_all ? nullptr : refusal_of(names_[i]);
+    for (const std::size_t i : columns_->unknown()) {
+      const FormatRule* const rule = is_whole(*columns_) ? nullptr : refusal_of(names_[i]);
       if (rule) table_.fail_here(i, text::quoted(names_[i]), ": expected ", rule->meaning);
       unknown += (unknown.empty() ? "" : ", ") + text::quoted(names_[i]);
     }
-    columns_.emplace(columns_of(names_, may_have_more()));
-    if (columns_->problem().empty()) {
-      left_out_ = std::move(unknown);
-      return;
-    }
-    const TrajectoryColumns wrong = *std::exchange(columns_, std::nullopt);
-    const std::optional<std::size_t> at = wrong.culprit();
-    if (!at) table_.fail_here(wrong.problem(), unknown_names());
-    table_.fail_here(*at, text::quoted(names_[*at]), " ", wrong.problem());
+    if (!may_have_more()) columns_.emplace(names_, format_.left_out, format_.angle_unit);
+    if (columns_->problem().empty()) return void(left_out_ = std::move(unknown));
+    if (const auto at = columns_->culprit()) table_.fail_here(*at, text::quoted(names_[*at]), " ", columns_->problem());
+    if (!unknown.empty())
+      unknown = "; not understood: " + unknown + "; a survey may give columns by number, as with zIndex";
+    table_.fail_here(columns_->problem(), unknown);
   }
 
   /// True for columns of a time, a position and, unless the format has none, an attitude.
   [[nodiscard]] bool is_whole(const TrajectoryColumns& columns) const {
     const auto is_roll = [](const std::string& name) { return name.starts_with("roll"); };
     return columns.problem().empty() && (columns.has_attitude() || std::ranges::none_of(format_.columns, is_roll));
-  }
-
-  /// Names that are not those of columns, to end a message.
-  [[nodiscard]] std::string unknown_names() const {
-    std::string all;
-    for (const std::string& name : names_)
-      if (!trajectory_column(name, format_.angle_unit)) all += (all.empty() ? "" : ", ") + text::quoted(name);
-    return all.empty() ? all : "; not understood: " + all + "; a survey may give columns by number, as with zIndex";
   }
 
   const TrajectoryFormat& format_;

@@ -61,12 +61,8 @@ inline constexpr auto units = std::to_array<Unit>({
 
 /// Other items. Columns that are refused are left out of files whose others make a whole pose.
 inline constexpr auto other_rules = std::to_array<FormatRule>({
-    {"[ft*", FormatUse::refused, "metres: feet are international ones or those of the US survey"},
-    {"[us_*", FormatUse::refused, "metres, not feet of the US survey"},
-    {"[usft*", FormatUse::refused, "metres, not feet of the US survey"},
-    {"[feet*", FormatUse::refused, "metres: feet are international ones or those of the US survey"},
-    {"[grad*", FormatUse::refused, "degrees or radians"},
-    {"[gon*", FormatUse::refused, "degrees or radians"},
+    {"[f*", FormatUse::refused, "metres: feet are international ones or those of the US survey"},
+    {"[us*", FormatUse::refused, "metres, not feet of the US survey"},
     {"lat*", FormatUse::refused, "easting and northing in metres, of the reference system of the scene"},
     {"lon*", FormatUse::refused, "easting and northing in metres, of the reference system of the scene"},
     {"omega*", FormatUse::refused, "roll, pitch and yaw, not the angles of photogrammetry"},

@@ -150,22 +150,20 @@ class TrajectoryReader {
   /// True if angles taken as degrees are all as small as those in radians, which fit the course of the platform better.
   [[nodiscard]] bool turns_by_radians() const {
     const auto is_degree = [](const auto& column) { return column && column->per_si == degrees(1); };
-    if (std::ranges::none_of(head_.columns().all(), is_degree)) return false;
+    if (rows_.size() < 5 || std::ranges::none_of(head_.columns().all(), is_degree)) return false;
     double way = 0, along = 0, along_by_radians = 0;
     for (std::size_t i = 1; i < rows_.size(); ++i) {
       const Rotation& turn = rows_[i - 1].pose.rotation;
-      RollPitchYaw angles = roll_pitch_yaw(turn, format_.angles);
-      for (double* const angle : {&angles.roll, &angles.pitch, &angles.yaw}) {
-        if (std::fabs(*angle) > radians(3.2)) return false;
-        *angle = degrees(*angle);
-      }
-      Vec3 step = rows_[i].pose.position - rows_[i - 1].pose.position;
-      step.z = 0;
+      const RollPitchYaw a = roll_pitch_yaw(turn, format_.angles);
+      if (std::fabs(a.roll) > radians(3.2) || std::fabs(a.pitch) > radians(3.2) || std::fabs(a.yaw) > radians(3.2))
+        return false;
+      const Rotation by_radians = rotation_of({degrees(a.roll), degrees(a.pitch), degrees(a.yaw)}, format_.angles);
+      const Vec3 step = (rows_[i].pose.position - rows_[i - 1].pose.position) * Vec3{1, 1, 0};
       way += length(step);
       along += dot(turn * axis::forward, step);
-      along_by_radians += dot(rotation_of(angles, format_.angles) * axis::forward, step);
+      along_by_radians += dot(by_radians * axis::forward, step);
     }
-    return rows_.size() > 4 && along < 0.9 * way && along_by_radians > along;
+    return along < 0.9 * way && along_by_radians > along;
   }
 
   /// Cuts the poses to the window and starts its clock.
