@@ -10,7 +10,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>

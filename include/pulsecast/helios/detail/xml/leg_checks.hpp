@@ -137,17 +137,10 @@ class LegChecks {
                              " deg: expected verticalAngleMin_deg below "
                              "verticalAngleMax_deg"}));
     const double width = 2 * rotating->effective_angle_max.value_or(device.scan_angle_max);
-    const double sweep = std::min(device.scan_angle_max, pi),
-                 share = (std::min(high, sweep) - std::max(low, -sweep)) / (2 * sweep);
     if (s.vertical_angle_min && s.vertical_angle_max && width >= radians(30) && is_radians({low, high}, pi))
       io.warn("verticalAngleMin_deg", text::joined({"verticalAngleMin_deg and verticalAngleMax_deg are ", shortest(low),
                                                     " and ", shortest(high), ", and the scanner has ",
                                                     in_degrees(width), " deg: given in radians, not degrees?"}));
-    else if (s.scan_rate > 0 && low < high && share < 0.05)
-      io.warn(
-          "verticalAngleMin_deg",
-          text::joined({"only ", brief(100 * share), " % of the pulses leave, those from ", shortest(low), " to ",
-                        shortest(high), " deg: the mirror sweeps from -", shortest(sweep), " to ", shortest(sweep)}));
     if (is_limited)
       io.warn("verticalAngleMin_deg",
               text::joined({"verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's ",
