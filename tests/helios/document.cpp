@@ -459,6 +459,25 @@ TEST_CASE("vertical angles that are further apart than the scanner's are limited
   CHECK(warnings(R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")").empty());
 }
 
+TEST_CASE("angles that can hardly be degrees get a note") {
+  const auto notes = [](const char* angles) { return read_text(survey_text("", leg(angles))).warnings; };
+  for (const char* angles :
+       {R"(verticalAngleMin_deg="-0.7" verticalAngleMax_deg="1.05")", R"(scanAngle_deg="0.35")",
+        R"(scanAngle_deg="1.5708")", R"(headRotateStart_deg="-1.5708")", R"(headRotateStart_deg="3.14")"}) {
+    CAPTURE(angles);
+    const std::vector<std::string> found = notes(angles);
+    REQUIRE(found.size() == 1);
+    CHECK(contains(found[0], "given in radians, not degrees?"));
+  }
+  for (const char* angles :
+       {R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")",
+        R"(verticalAngleMin_deg="-4.5" verticalAngleMax_deg="2")", R"(scanAngle_deg="3.5")",
+        R"(headRotateStart_deg="-3")", R"(headRotateStart_deg="90")", R"(headRotateStart_deg="5.5")"}) {
+    CAPTURE(angles);
+    CHECK(notes(angles).empty());
+  }
+}
+
 TEST_CASE("a platform that moves may stay where it is") {
   const auto told = [](const std::string& legs) {
     const std::string text = survey_text(R"(platform="surveys/assets.xml#quadcopter")", legs);

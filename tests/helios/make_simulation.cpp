@@ -84,6 +84,22 @@ TEST_CASE("each pulse that points down at a plane has one echo on it, on any num
   CHECK(same.points == cloud.points);
 }
 
+TEST_CASE("a leg that stays farther from the scene than the scanner measures gets a note") {
+  SurveySettings s = survey();
+  const auto notes = [&](double from, double range_max, double power) {
+    s.legs[0].platform.position.z = from;
+    s.scanner.channels[0].range_max = range_max;
+    s.scanner.channels[0].average_power = power;
+    return make_simulation(s, {.meshes = {plane()}})->warnings();
+  };
+  CHECK(notes(29, 30, 4).empty());
+  REQUIRE(notes(31, 30, 4).size() == 1);
+  CHECK(notes(31, 30, 4)[0].find("leg 0 is at least 31 m from the scene, and the scanner measures up to 30 m") == 0);
+  // P D^2 eta / (4 R^2) is the threshold of 1e-13 W at 236 m, without the air's loss
+  CHECK(notes(220, 1e9, 1e-6).empty());
+  CHECK(notes(245, 1e9, 1e-6).size() == 1);
+}
+
 TEST_CASE("ideal receivers have no noise, and those of the survey keep it") {
   SurveySettings s = survey();
   s.scanner.channels[0].accuracy = 1;

@@ -717,6 +717,35 @@ TEST_CASE("noise of the platform is reported alone, as the settings say, and can
   CHECK(length(turned.source.pulse(0)->reported->direction(axis::forward) + axis::right) < 1e-12);
 }
 
+TEST_CASE("a mount that is reported wrongly moves points about the axes of the platform, whichever way the beam goes") {
+  SurveySettings s = survey_of(PlatformKind::linear_path, {{0, 0, 500}, {0, 100, 500}});
+  s.legs[0].scanner.scan_rate = 0;
+  const double height = 500, error = 0.001;
+  for (const double aside : {0.0, 27.0}) {  // beam down, and to the right [deg]
+    s.platform.mount = {.position = {1, 2, 3},
+                        .rotation = {.turns = {{Axis::x, radians(-90)}, {Axis::y, -radians(aside)}}}};
+    const auto moved = [&](const MountErrorSettings& wrong) {
+      s.platform.mount_error = wrong;
+      const auto pulse = compile_survey(s, flat).source.pulse(7);
+      REQUIRE((pulse && pulse->reported));
+      const double range = height / std::cos(radians(aside));
+      return pulse->reported->position + range * pulse->reported->direction(axis::forward) - pulse->pose.position -
+             range * pulse->direction();
+    };
+    CAPTURE(aside);
+    const double right = height * std::tan(radians(aside));
+    const double sine = std::sin(error), versine = 1 - std::cos(error);
+    const Vec3 front_up{0, height * sine, height * versine}, clockwise{-right * versine, -right * sine, 0},
+        right_down{-right * versine - height * sine, 0, height * versine - right * sine};
+    CHECK(length(moved({.pitch = error}) - front_up) < 1e-9);
+    CHECK(length(moved({.heading = error}) - clockwise) < 1e-9);
+    CHECK(length(moved({.roll = error}) - right_down) < 1e-9);
+    CHECK(length(moved({.position = {0.1, 0.2, -0.3}}) - Vec3{0.1, 0.2, -0.3}) < 1e-9);
+    CHECK(length(moved({.position = {0.1, 0, 0}, .pitch = error}) - front_up - Vec3{0.1, 0, 0}) < 1e-9);
+  }
+  CHECK_FALSE(compile_survey(s, flat, {.platform_noise = false}).source.pulse(7)->reported);
+}
+
 TEST_CASE("no two legs have the same noise") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}});
   for (LegSettings& leg : s.legs) leg.duration_max = 1;

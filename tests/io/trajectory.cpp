@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -160,6 +161,68 @@ TEST_CASE("a gap of more than 20 times the median interval gets a note, with its
         std::string::npos);
   CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {4, 29}).empty());
   CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {30, 33}).empty());
+}
+
+/// Warnings of rows of `time,x,y,z,roll,pitch,yaw`.
+std::vector<std::string> notes(const std::string& rows, const TrajectoryFormat& format = csv_format()) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.csv", std::ios::binary) << "time,x,y,z,roll,pitch,yaw\n" << rows;
+  return read_trajectory(folder / "t.csv", format).warnings;
+}
+
+TEST_CASE("times count on where those of a GPS week begin anew, with a note") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.csv") << "time,x,y,z,roll,pitch,yaw\n604799,0,0,0,0,0,0\n604799.5,1,0,0,0,0,0\n"
+                                     "0,2,0,0,0,0,0\n0.5,3,0,0,0,0,0\n";
+  const TrajectoryTable table = read_trajectory(folder / "t.csv");
+  REQUIRE(table.poses.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(table.poses[i].time == 0.5 * static_cast<double>(i));
+    CHECK(table.poses[i].position.x == static_cast<double>(i));
+  }
+  REQUIRE(table.warnings.size() == 1);
+  CHECK(table.warnings[0].find("line 4: begins a GPS week, the first of 1: times count on, beyond 604800 s") !=
+        std::string::npos);
+  CHECK(notes("604799,0,0,0,0,0,0\n604801,1,0,0,0,0,0\n").empty());
+  for (const char* unsorted : {"700000,0,0,0,0,0,0\n95201,1,0,0,0,0,0\n", "604799,0,0,0,0,0,0\n3601,1,0,0,0,0,0\n"}) {
+    REQUIRE(notes(unsorted).size() == 1);
+    CHECK(notes(unsorted)[0].find("is earlier than the previous pose") != std::string::npos);
+  }
+}
+
+TEST_CASE("angles that fit the course as radians get a note, and those of a course near north do not") {
+  const auto flight = [](double heading, double factor, double course) {
+    std::string rows;
+    for (int i = 0; i < 9; ++i) {
+      const double way = 10 * i;
+      std::ostringstream row;
+      row << i << ',' << way * std::sin(course) << ',' << way * std::cos(course) << ",50,0.01,-0.02,"
+          << heading * factor << '\n';
+      rows += row.str();
+    }
+    return rows;
+  };
+  const double degree = degrees(1);
+  for (const double heading : {0.5, 1.5, 3.1, -2.0}) {
+    CAPTURE(heading);
+    CHECK(notes(flight(heading, degree, heading)).empty());
+    const std::vector<std::string> found = notes(flight(heading, 1, heading));
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].find("given in radians? Name such columns roll_rad") != std::string::npos);
+    TrajectoryFormat radian = csv_format();
+    radian.angle_unit = AngleUnit::radian;
+    CHECK(notes(flight(heading, 1, heading), radian).empty());
+  }
+  CHECK(notes(flight(0.02, degree, 0.02)).empty());
+  CHECK(notes(flight(0.05, degree, 0.05)).empty());
+  CHECK(notes(flight(0, 1, 1.5)).empty());  // no attitude in the file
+}
+
+TEST_CASE("poses that are a thousand seconds apart may be nanoseconds apart, which a note says") {
+  const std::string rows = "0,0,0,0,0,0,0\n5000000,1,0,0,0,0,0\n10000000,2,0,0,0,0,0\n15000000,3,0,0,0,0,0\n";
+  const std::vector<std::string> found = notes(rows + "20000000,4,0,0,0,0,0\n");
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].find("name their column time_ns") != std::string::npos);
 }
 
 TEST_CASE("what is written is read: every format, convention, axis and separator") {

@@ -239,6 +239,23 @@ struct NoiseSettings {
   bool operator==(const NoiseSettings&) const = default;
 };
 
+/// Calibration error, reported minus true mount, about the axes of the platform: `<mountError>`.
+struct MountErrorSettings {
+  Vec3 position{};     ///< of the lever arm: right, forward, up; `x`, `y`, `z` [m]
+  double roll = 0;     ///< of the boresight, right side down; `roll_deg` [rad]
+  double pitch = 0;    ///< front up; `pitch_deg` [rad]
+  double heading = 0;  ///< clockwise from above; `heading_deg` [rad]
+
+  void fields(FieldIo& io) {
+    if (io.reads()) *this = {};
+    io.components(position);
+    io.number("roll_deg", roll, units::degree, -180, 180);
+    io.number("pitch_deg", pitch, units::degree, -180, 180);
+    io.number("heading_deg", heading, units::degree, -180, 180);
+  }
+  bool operator==(const MountErrorSettings&) const = default;
+};
+
 /// `<platform>`, with the overrides of the survey.
 struct PlatformSettings {
   std::string id{};                                              ///< `id`
@@ -249,6 +266,7 @@ struct PlatformSettings {
   RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`... [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`... [rad]
+  MountErrorSettings mount_error{};                              ///< `<mountError>`
 
   bool operator==(const PlatformSettings&) const = default;
 };

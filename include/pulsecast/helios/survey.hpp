@@ -104,6 +104,7 @@ class SurveyCompiler {
       if (options_.platform_noise) {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
+        noise.mount = survey_.platform.mount_error;
       }
       const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
       legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), active, start});

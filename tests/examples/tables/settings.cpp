@@ -49,6 +49,7 @@ int main() {
   print<MountSettings>("MountSettings");
   print<AxisTurn>("AxisTurn");
   print<NoiseSettings>("NoiseSettings");
+  print<MountErrorSettings>("MountErrorSettings");
   print<TrajectorySettings>("TrajectorySettings");
   print<TrajectoryIndices>("TrajectoryIndices");
   print<ChannelSettings>("ChannelSettings", {.optic = ConicOptic{}});

@@ -10,6 +10,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>
@@ -48,14 +49,17 @@ struct SurveyPath {
 
 static_assert(Trajectory<SurveyPath>);
 
-/// Noise of a platform's pose: reported pose minus true pose.
+/// Errors of a platform's pose: reported pose minus true pose.
 struct SurveyNoise {
   using AxisNoise = std::array<std::optional<NoiseSettings>, 3>;
   AxisNoise position{};  ///< along x, y and z of the world [m]
   AxisNoise attitude{};  ///< about right, forward and up of the beam [rad]
+  MountErrorSettings mount{};
   std::uint64_t seed = 0;
 
-  [[nodiscard]] bool none() const { return position == AxisNoise{} && attitude == AxisNoise{}; }
+  [[nodiscard]] bool none() const {
+    return position == AxisNoise{} && attitude == AxisNoise{} && mount == MountErrorSettings{};
+  }
 
   [[nodiscard]] Vec3 draw(const AxisNoise& noise, PulseIndex slot, Purpose purpose) const noexcept {
     Vec3 out{};
@@ -81,6 +85,7 @@ class SurveyLeg {
             std::optional<Tick> known = {})
       : truth_(std::move(path), mount, std::move(instrument)),
         noise_(std::move(noise)),
+        mount_error_(error_of(noise_.mount, mount)),
         noisy_(!noise_.none()),
         known_(std::min(known.value_or(truth_.duration()), truth_.duration())) {}
 
@@ -97,6 +102,10 @@ class SurveyLeg {
       const PulseIndex slot = (i + lane) / truth_.source().channels();
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
       auto reported = out.reports[lane] != 0 ? out.reported[lane] : out.pose[lane];
+      if (mount_error_) {
+        const auto body = path().at(out.tick[lane]);
+        reported = body * *mount_error_ * body.inverse() * reported;
+      }
       reported.position += noise_.draw(noise_.position, slot, Purpose::position_noise);
       reported.rotation = reported.rotation * rotation_about(axis::right, turn.x) *
                           rotation_about(axis::forward, turn.y) * rotation_about(axis::up, turn.z);
@@ -115,8 +124,19 @@ class SurveyLeg {
   [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the known path
 
  private:
+  using InBody = Pose<frame::Body, frame::Body>;
+
+  /// Pose that turns the true mount to the reported one; none without an error.
+  [[nodiscard]] static std::optional<InBody> error_of(const MountErrorSettings& error, const Mount& mount) {
+    if (error == MountErrorSettings{}) return std::nullopt;
+    const Rotation turn =
+        io::rotation_of({.roll = error.roll, .pitch = error.pitch, .yaw = error.heading}, io::heading_pitch_roll);
+    return InBody{turn, mount.lever_arm + error.position - turn * mount.lever_arm};
+  }
+
   Platform<SurveyPath, Instrument> truth_;
   SurveyNoise noise_;
+  std::optional<InBody> mount_error_;
   bool noisy_;
   Tick known_;
 };

@@ -175,6 +175,29 @@ struct LoadedRepetition {
       scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = std::max(1e-3, duration)});
     add_new(warnings, built.warnings);
     warnings.insert(warnings.end(), compiled->warnings.begin(), compiled->warnings.end());
+    note_distance();
+  }
+
+ private:
+  /// Notes the first leg that stays farther from the scene than any channel measures.
+  void note_distance() {
+    double range = 0;
+    for (const ChannelSettings& channel : inputs->survey.scanner.channels)
+      range = std::max(range, range_of(channel, inputs->settings.library_physics));
+    const Box box = scene->bounds();
+    for (const CompiledSurvey::Leg& leg : compiled->legs) {
+      if (leg.first == leg.end || box.empty()) continue;
+      Box way;
+      for (int i = 0; i <= 64; ++i)
+        way.extend(
+            compiled->source.legs()[leg.number].path().at(Tick::of_seconds(leg.duration.seconds() * i / 64)).position);
+      const double apart = length(max(max(box.min - way.max, way.min - box.max), Vec3{}));
+      if (apart < 1.01 * range) continue;
+      const SurveyBuildOptions names{.leg_places = inputs->settings.leg_places};
+      return warnings.push_back(text::joined({names.leg_name(leg.number), " is at least ", brief(apart),
+                                              " m from the scene, and the scanner measures up to ", brief(range),
+                                              " m, by rangeMax_m or the light of a white surface: no points"}));
+    }
   }
 };
 

@@ -10,6 +10,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
@@ -88,6 +89,15 @@ namespace detail {
   out.returns_kept = channel.returns_kept;
   out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
   return out;
+}
+
+/// Maximum range of a channel, to 1 %: that of its gate, or that of the echo of a white surface [m].
+[[nodiscard]] inline double range_of(const ChannelSettings& channel, bool library_physics) {
+  const LinkBudget budget(survey_receiver(channel, library_physics), survey_laser(channel, {}));
+  const double least = survey_waveform(channel, 0, library_physics).threshold;
+  double range = 1;
+  while (range < channel.range_max && range < 1e8 && budget.power(1, 1, range) > least) range *= 1.01;
+  return std::min(range, channel.range_max);
 }
 
 /// True if two channels have equal receivers; their lasers may differ.

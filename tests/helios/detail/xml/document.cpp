@@ -40,6 +40,16 @@ std::string fault(const std::string& text) {
 
 std::string at(const XmlPlace& place) { return std::to_string(place.line) + ":" + std::to_string(place.column); }
 
+/// A text in UTF-16 with a byte order mark.
+std::string utf16(std::u16string_view text, bool is_little) {
+  std::string bytes = is_little ? "\xFF\xFE" : "\xFE\xFF";
+  for (const char16_t unit : text) {
+    const char low = static_cast<char>(unit & 0xFF), high = static_cast<char>(unit >> 8);
+    bytes += is_little ? std::string{low, high} : std::string{high, low};
+  }
+  return bytes;
+}
+
 /// A survey that refers to documents in a folder of assets.
 struct Library {
   Library() {
@@ -73,6 +83,24 @@ struct Library {
 };
 
 }  // namespace
+
+TEST_CASE("UTF-16 with a byte order mark is read as UTF-8, whatever its characters and its order of bytes") {
+  for (const bool is_little : {true, false}) {
+    const auto read = document(
+        utf16(u"<?xml version=\"1.0\" encoding=\"UTF-16\"?>\r\n<a b=\"M\u00FCnchen \u20AC \U0001F332\"/>", is_little));
+    CHECK(read->root().attribute("b").value() == std::string("M\xC3\xBCnchen \xE2\x82\xAC \xF0\x9F\x8C\xB2"));
+    CHECK(at(read->place(read->root())) == "2:2");
+    CHECK_FALSE(read->oddity());
+    std::string halved = utf16(u"<a b=\"\xD83C\"/>", is_little);
+    CHECK(document(halved)->root().attribute("b").value() == std::string("\xEF\xBF\xBD"));
+    halved = utf16(u"<a b=\"\xDF32\xD83C", is_little);
+    CHECK(contains(fault(halved), "not well-formed"));
+    CHECK(contains(fault(halved + "x"), "not well-formed"));
+    CHECK(contains(fault(halved.substr(2)), "byte order mark"));
+  }
+  CHECK_FALSE(fault("\xFF\xFE").empty());
+  CHECK(contains(fault(std::string("\xFF\xFE\0\0<\0\0\0", 8)), "binary data"));
+}
 
 TEST_CASE("every element and attribute has its place") {
   const auto xml = document(

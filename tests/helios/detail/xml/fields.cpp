@@ -123,10 +123,10 @@ int all_refused_beyond_limits(const Settings&... defaults) {
 TEST_CASE("each number of all settings has its limits in programs and in documents") {
   CHECK(all_refused_beyond_limits(
             AxisTurn{}, MountSettings{}, ChannelSettings{.optic = OscillatingOptic{}}, RotatingOptic{}, LineOptic{},
-            RisleyOptic{}, FullWaveformSettings{}, NoiseSettings{}, MulticopterDynamics{}, LegOffsetSettings{},
-            LegPlatformSettings{}, LegScannerSettings{}, TrajectorySettings{}, TrajectoryIndices{}, SceneSettings{},
-            PartSettings{}, LightSettings{}, MediumSettings{}, MotionSequenceSettings{}, SwapSettings{},
-            MaterialSource{}, GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}) > 90);
+            RisleyOptic{}, FullWaveformSettings{}, NoiseSettings{}, MountErrorSettings{}, MulticopterDynamics{},
+            LegOffsetSettings{}, LegPlatformSettings{}, LegScannerSettings{}, TrajectorySettings{}, TrajectoryIndices{},
+            SceneSettings{}, PartSettings{}, LightSettings{}, MediumSettings{}, MotionSequenceSettings{},
+            SwapSettings{}, MaterialSource{}, GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}) > 90);
 }
 
 // ------------------------------------------------------------------------------ mounts, directions
@@ -138,6 +138,14 @@ TEST_CASE("a mount has a position and turns in their order") {
   CHECK(mount.rotation.local);
   CHECK(mount.rotation.turns == std::vector<AxisTurn>{{Axis::z, radians(90)}, {Axis::x, 0}});
   CHECK(from<MountSettings>("<m/>") == MountSettings{});
+}
+
+TEST_CASE("a turn by a part of pi in degrees gets a note") {
+  for (const char* angle : {"1.5708", "-1.57", "3.14159", "0.785398"})
+    CHECK(contains(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>"),
+                   "angle_deg is " + std::string(angle) + ": given in radians, not degrees?"));
+  for (const char* angle : {"90", "1.5", "3", "-2.5", "0", "6", "22.5"})
+    CHECK(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>").empty());
 }
 
 TEST_CASE("a mount takes the place of the one before, as a whole") {
@@ -253,6 +261,11 @@ TEST_CASE("a platform that says nothing has the defaults of the format") {
       from<PlatformSettings>("<platform id=\"p\" type=\"static\"><attitudeYNoise stdev=\"0.1\"/></platform>");
   CHECK(noisy.attitude_noise[1] == NoiseSettings{.deviation = 0.1});
   CHECK_FALSE(noisy.attitude_noise[0]);
+  const PlatformSettings wrong = from<PlatformSettings>(
+      R"(<platform id="p" type="static"><mountError y="0.5" roll_deg="1" pitch_deg="-2" heading_deg="3"/></platform>)");
+  CHECK(wrong.mount_error == MountErrorSettings{{0, 0.5, 0}, radians(1), radians(-2), radians(3)});
+  CHECK(contains(told<PlatformSettings>(R"(<platform id="p" type="static"><mountError yaw_deg="1"/></platform>)"),
+                 "attribute 'yaw_deg' of <mountError> is not known"));
 }
 
 TEST_CASE("of a platform, what cannot be is told") {

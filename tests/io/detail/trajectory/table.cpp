@@ -175,9 +175,8 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
                  "expected the index, from 0, of one of"));
   CHECK(error("#TIME_COLUMN: two\n1,2,3,4,5,6,7\n", helios_format()).place() == "line 1");
   CHECK(error("0,1,2,3,4,5\n", helios_format()).problem() == "has 6 columns: expected 7");
-  CHECK(
-      error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"yaw_m\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format()).place() ==
-      "line 2, column 7");
+  CHECK(error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"quality\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format())
+            .place() == "line 2, column 7");
   TrajectoryFormat radian = helios_format();
   radian.angle_unit = AngleUnit::radian;
   CHECK(same(read("0,0.1,0.2,0.3,4,5,6\n", radian).poses[0].rotation, rotation_of({0.1, 0.2, 0.3}, helios_arinc_705)));
@@ -418,12 +417,12 @@ TEST_CASE("a name that ends in height is a height, and columns that were not und
     REQUIRE(table.poses.size() == 1);
     CHECK(table.poses[0].position == Vec3{1, 2, 50});
   }
-  CHECK(error("TIME,EASTING,NORTHING,H-ELL,ROLL,PITCH,HEADING" + row, helios_format())
+  CHECK(error("TIME,EASTING,NORTHING,H-GEO,ROLL,PITCH,HEADING" + row, helios_format())
             .problem()
-            .ends_with("up or down; not understood: 'H-ELL'; a survey may give columns by number, as with zIndex"));
+            .ends_with("up or down; not understood: 'H-GEO'; a survey may give columns by number, as with zIndex"));
   CHECK(
       contains(error("TIME,EASTING,NORTHING,ELLIPSOID HEIGHT (ft),ROLL,PITCH,HEADING" + row, helios_format()).problem(),
-               "not understood: 'ELLIPSOID HEIGHT (ft)'"));
+               "'ELLIPSOID HEIGHT (ft)': expected metres"));
   CHECK(contains(error("t,east,north,ellipsoid height,height,x" + row).problem(), "duplicates column 4"));
 }
 

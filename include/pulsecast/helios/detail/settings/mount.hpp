@@ -25,6 +25,9 @@ struct AxisTurn {
     io.require({"axis", "angle_deg"});
     io.choice("axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}});
     io.number("angle_deg", angle, units::degree, -36000, 36000);
+    if (looks_like_radians(angle))
+      io.warn("angle_deg",
+              "angle_deg is " + xml_number(units::degree.number(angle)) + ": given in radians, not degrees?");
   }
   bool operator==(const AxisTurn&) const = default;
 };

@@ -75,10 +75,12 @@ class XmlDocument {
     if (file.size() > max_file_size)
       file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
     text_ = file.take_rest();
+    const std::optional<std::string> of_utf16 = xml::utf8_of_utf16(text_);
+    if (of_utf16) text_ = *of_utf16;
     find_line_ends();
     if (const std::size_t zero = text_.find('\0'); zero != text_.npos)
-      fail_at(zero, "holds binary data: expected an XML document");
-    decode();
+      fail_at(zero, "holds binary data: expected an XML document; UTF-16 begins with a byte order mark");
+    if (!of_utf16) decode();
     constexpr unsigned options = pugi::parse_default | pugi::parse_doctype;
     const auto status = document_.load_buffer(text_.data(), text_.size(), options, pugi::encoding_utf8);
     const char* const hint = status.status == pugi::status_end_element_mismatch
@@ -123,7 +125,9 @@ class XmlDocument {
     const bool is_ascii = std::ranges::none_of(text_, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     if (is_ascii || (is_utf8 && odd == text_.size())) return;
     if (!is_utf8 && !is_one_of("iso-8859-1", "latin1", "windows-1252", "cp1252"))
-      fail_at(0, "has the encoding " + text::quoted(declared) + ": expected UTF-8, ISO-8859-1 or windows-1252");
+      fail_at(0, "has the encoding " + text::quoted(declared) +
+                     ": expected UTF-8, ISO-8859-1 or windows-1252, to "
+                     "which iconv converts it");
     if (odd == text_.size()) {
       oddity_ = {place(), "names the encoding " + text::quoted(declared) + ", and is UTF-8, as which it is taken"};
       return;

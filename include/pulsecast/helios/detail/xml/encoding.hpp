@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include <pugixml.hpp>
+
 #include <pulsecast/base/text.hpp>
 
 /// Encodings of XML documents.
@@ -47,20 +49,32 @@ namespace PULSECAST_NAMESPACE::helios::xml {
       0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
       0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
       0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
-  std::string made;
+  std::wstring made;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const unsigned code = byte >= 0x80 && byte < 0xA0 ? from_0x80[byte - 0x80U] : byte;
-    if (code < 0x80) {
-      made += c;
-    } else if (code < 0x800) {
-      made += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
-    } else {
-      made += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
-               static_cast<char>(0x80 | (code & 0x3F))};
-    }
+    made += static_cast<wchar_t>(byte >= 0x80 && byte < 0xA0 ? from_0x80[byte - 0x80U] : byte);
   }
-  return made;
+  return pugi::as_utf8(made);
+}
+
+/// Text in UTF-8 of one in UTF-16 with a byte order mark; halves of pairs become U+FFFD. None for other texts.
+/// Source: RFC 2781.
+[[nodiscard]] inline std::optional<std::string> utf8_of_utf16(std::string_view text) {
+  const bool is_little = text.starts_with("\xFF\xFE");
+  if (!is_little && !text.starts_with("\xFE\xFF")) return std::nullopt;
+  std::wstring made;
+  for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+    const auto first = static_cast<unsigned char>(text[i]), second = static_cast<unsigned char>(text[i + 1]);
+    const int unit = is_little ? second << 8 | first : first << 8 | second;
+    const int before = made.empty() ? 0 : static_cast<int>(made.back());
+    if (before >= 0xD800 && before < 0xDC00 && unit >= 0xDC00 && unit < 0xE000)
+      made.back() = static_cast<wchar_t>(0x10000 + ((before - 0xD800) << 10) + unit - 0xDC00);
+    else
+      made += static_cast<wchar_t>(unit);
+  }
+  std::ranges::replace_if(
+      made, [](wchar_t c) { return c >= 0xD800 && c < 0xE000; }, wchar_t{0xFFFD});
+  return pugi::as_utf8(made);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml

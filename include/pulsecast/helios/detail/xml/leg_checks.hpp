@@ -48,6 +48,9 @@ class LegChecks {
     check_head(io, device, settings, i);
     if (!s.active) return;
     check_rates(io, device, s, resolution);
+    if (s.scan_angle && device.scan_angle_max >= radians(15) && is_radians({*s.scan_angle}, pi / 2))
+      io.warn("scanAngle_deg", "scanAngle_deg is " + shortest(*s.scan_angle) + ", and the scanner's maximum " +
+                                   shortest(device.scan_angle_max) + ": given in radians, not degrees?");
     if (s.scan_angle && scan_angle_of(device, s) < *s.scan_angle)
       io.warn("scanAngle_deg",
               "scanAngle_deg exceeds the scanner's maximum: it is limited to " + shortest(device.scan_angle_max));
@@ -60,6 +63,13 @@ class LegChecks {
 
   /// Angle as documents give it.
   [[nodiscard]] static std::string shortest(double angle) { return xml_number(units::degree.number(angle)); }
+
+  /// True for angles whose degrees are at most `largest`, not all whole.
+  [[nodiscard]] static bool is_radians(std::initializer_list<double> angles, double largest) {
+    const auto given = [](double angle) { return units::degree.number(angle); };
+    return std::ranges::all_of(angles, [&](double angle) { return std::fabs(given(angle)) <= largest + 1e-3; }) &&
+           std::ranges::any_of(angles, [&](double angle) { return given(angle) != std::round(given(angle)); });
+  }
 
   void check_way(const FieldIo& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
@@ -127,6 +137,10 @@ class LegChecks {
                              " deg: expected verticalAngleMin_deg below "
                              "verticalAngleMax_deg"}));
     const double width = 2 * rotating->effective_angle_max.value_or(device.scan_angle_max);
+    if (s.vertical_angle_min && s.vertical_angle_max && width >= radians(30) && is_radians({low, high}, pi))
+      io.warn("verticalAngleMin_deg", text::joined({"verticalAngleMin_deg and verticalAngleMax_deg are ", shortest(low),
+                                                    " and ", shortest(high), ", and the scanner has ",
+                                                    in_degrees(width), " deg: given in radians, not degrees?"}));
     if (is_limited)
       io.warn("verticalAngleMin_deg",
               text::joined({"verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's ",
@@ -142,6 +156,8 @@ class LegChecks {
       if (looks_like_degrees(angle))
         io.warn(name, text::joined({name, " is ", brief(degrees(angle)), ", ", brief(angle / (2 * pi)),
                                     " turns of the head: given in degrees, not radians?"}));
+      else if (looks_like_radians(angle))
+        io.warn(name, text::joined({name, " is ", shortest(angle), ": given in radians, not degrees?"}));
     if (s.head_rate != speed)
       io.warn("headRotatePerSec_deg",
               device.head_rate_max == 0

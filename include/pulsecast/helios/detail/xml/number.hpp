@@ -12,6 +12,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Numbers and units in documents.
@@ -58,6 +59,13 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
 /// True for an angle beyond a turn that is whole in radians, as if given in degrees [rad].
 [[nodiscard]] inline bool looks_like_degrees(double angle) noexcept {
   return std::fabs(angle) > max_angle && angle == std::round(angle);
+}
+
+/// True for an angle whose degrees are an eighth, quarter, half ... turn in radians, as if given in them [rad].
+[[nodiscard]] inline bool looks_like_radians(double angle) noexcept {
+  const double given = std::fabs(degrees(angle)), eighths = std::round(given / (pi / 4));
+  const bool is_usual = eighths >= 1 && eighths <= 8 && eighths != 5 && eighths != 7;
+  return is_usual && std::fabs(given - eighths * pi / 4) < 6e-4 * given;  // of 3.14, off by 5e-4
 }
 
 /// Number as text, without an exponent where that is legible.

@@ -9,7 +9,7 @@
 /// `<platform>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
-/// Six noise elements, of a platform or of a survey; a later one replaces an earlier one.
+/// Six noise elements and the error of the mount, of a platform or of a survey; a later one replaces an earlier one.
 inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
   static constexpr std::array position{"positionXNoise", "positionYNoise", "positionZNoise"};
   static constexpr std::array attitude{"attitudeXNoise", "attitudeYNoise", "attitudeZNoise"};
@@ -19,6 +19,8 @@ inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
   };
   for (std::size_t i = 0; i < 3; ++i) one(position[i], platform.position_noise[i]);
   for (std::size_t i = 0; i < 3; ++i) one(attitude[i], platform.attitude_noise[i]);
+  if (io.reads() || platform.mount_error != MountErrorSettings{})
+    io.element("mountError", [&](FieldIo& inner) { platform.mount_error.fields(inner); });
 }
 
 /// Convention of angles, of an interpolated platform.

@@ -66,8 +66,13 @@ class TextTable {
  public:
   /// `expected` content, as in "a trajectory". @throws FileError for no file, or an empty one
   TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
-      : file_(path, expected), expected_(expected) {
+      : file_(path, expected), expected_(expected), is_fixed_(separator) {
     if (separator) cells_ = cells_between(*separator);
+  }
+
+  /// Finds the separator anew, in the next line whose cells are asked for, unless it is given.
+  void forget_separator() noexcept {
+    if (!is_fixed_) cells_.reset();
   }
 
   /// Advances to the next line that is not blank; false at the end.
@@ -136,6 +141,7 @@ class TextTable {
 
   InputFile file_;
   std::string expected_;
+  bool is_fixed_;
   std::string_view line_text_;
   std::optional<RowCells> cells_;
   std::vector<std::string_view> unquoted_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,11 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/detail/trajectory/rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 
 /// Columns of trajectory files, their names and units, and formats.
 namespace PULSECAST_NAMESPACE::io {
-
-/// Content of a column of a trajectory file.
-enum class Quantity { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw, longitude, latitude };
 
 /// Value of each quantity in SI units; 0 if not set.
 struct QuantityValues {
@@ -41,58 +40,18 @@ struct TrajectoryColumn {
 
 namespace detail {
 
-/// Names of the columns of each quantity, in the order of `Quantity`; the first is preferred.
-inline constexpr std::array<std::string_view, 17> quantity_names{"time t gps_time gpstime timestamp",
-                                                                 "x",
-                                                                 "y",
-                                                                 "z",
-                                                                 "east easting",
-                                                                 "north northing",
-                                                                 "up height altitude",
-                                                                 "down",
-                                                                 "roll",
-                                                                 "pitch",
-                                                                 "yaw heading",
-                                                                 "qx",
-                                                                 "qy",
-                                                                 "qz",
-                                                                 "qw",
-                                                                 "longitude lon",
-                                                                 "latitude lat"};
-
 /// Calls `visit` with each name and its quantity.
 void each_quantity_name(const auto& visit) {
-  for (std::size_t i = 0; i < quantity_names.size(); ++i)
-    for (std::string_view left = quantity_names[i]; !left.empty();)
+  for (std::size_t i = 0; i < column_rules.size(); ++i)
+    for (std::string_view left = column_rules[i].name; !left.empty();)
       visit(text::take_word(left), static_cast<Quantity>(i));
 }
-
-enum class Dimension : std::uint8_t { time, length, angle, number };
 
 [[nodiscard]] constexpr Dimension dimension_of(Quantity quantity) noexcept {
   if (quantity == Quantity::time) return Dimension::time;
   if (quantity <= Quantity::down) return Dimension::length;
   return quantity <= Quantity::yaw || quantity >= Quantity::longitude ? Dimension::angle : Dimension::number;
 }
-
-struct Unit {
-  std::string_view name;
-  Dimension dimension;
-  double per_si;
-};
-
-inline constexpr auto units = std::to_array<Unit>({
-    {"s", Dimension::time, 1},
-    {"ms", Dimension::time, 1e3},
-    {"us", Dimension::time, 1e6},
-    {"ns", Dimension::time, 1e9},
-    {"m", Dimension::length, 1},
-    {"cm", Dimension::length, 1e2},
-    {"mm", Dimension::length, 1e3},
-    {"km", Dimension::length, 1e-3},
-    {"deg", Dimension::angle, degrees(1)},
-    {"rad", Dimension::angle, 1},
-});
 
 /// Normal form of a name: small letters, an underscore for each run of others, as in "roll_deg".
 [[nodiscard]] inline std::string plain(std::string_view name) {
@@ -122,7 +81,8 @@ inline constexpr auto units = std::to_array<Unit>({
     const bool in_degrees = dimension == detail::Dimension::angle && angles == AngleUnit::degree;
     if (unit.empty()) column = {quantity, in_degrees ? degrees(1) : 1};
     for (const detail::Unit& u : detail::units)
-      if (u.dimension == dimension && unit.starts_with('_') && u.name == unit.substr(1)) column = {quantity, u.per_si};
+      if (u.dimension == dimension && unit.starts_with('_') && u.name() == unit.substr(1))
+        column = {quantity, u.per_si};
   });
   const std::size_t height = whole.rfind("_height");
   if (column || height == whole.npos) return column;
@@ -136,7 +96,7 @@ inline constexpr auto units = std::to_array<Unit>({
   detail::each_quantity_name([&](std::string_view known, Quantity quantity) {
     names.emplace_back(known);
     for (const detail::Unit& unit : detail::units)
-      if (unit.dimension == detail::dimension_of(quantity)) names.push_back(text::message(known, '_', unit.name));
+      if (unit.dimension == detail::dimension_of(quantity)) names.push_back(text::message(known, '_', unit.name()));
   });
   return std::string(text::nearest_name(whole, names).name);
 }
@@ -144,17 +104,26 @@ inline constexpr auto units = std::to_array<Unit>({
 /// Assignment of quantities to columns.
 class TrajectoryColumns {
  public:
-  /// `names` in the order of the columns; those in `left_out` are ignored.
-  TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
+  /// `names` in the order of the columns; those in `left_out` are ignored, and with `more` all unknown ones.
+  TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles,
+                    bool more = false) {
+    std::set<std::string> out;
+    for (const std::string& name : left_out) out.insert(detail::plain(name));
     for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
-      const auto same = [&](const std::string& other) { return detail::plain(other) == detail::plain(names[i]); };
-      columns_.push_back(std::ranges::any_of(left_out, same) ? std::nullopt : trajectory_column(names[i], angles));
-      if (columns_.back())
-        put(i);
-      else if (std::ranges::none_of(left_out, same))
+      const bool is_out = out.contains(detail::plain(names[i]));
+      columns_.push_back(is_out ? std::nullopt : trajectory_column(names[i], angles));
+      if (columns_.back()) put(i);
+      if (columns_.back() || is_out) continue;
+      unknown_.push_back(i);
+      if (!more)
         blame(i, "is not a known column: did you mean '", nearest_trajectory_column(names[i]),
               "'? Others must be set as left out");
     }
+    using enum Quantity;
+    const bool is_placed = count({x, y, z}) == 3 || count({east, north}) == 2;
+    for (const Quantity degrees : {longitude, latitude})
+      if (more && is_placed && has(degrees)) leave_out(degrees);
+    std::ranges::sort(unknown_);
     if (problem_.empty()) require_whole();
   }
 
@@ -163,6 +132,9 @@ class TrajectoryColumns {
   /// Column of the problem, from 0; empty if it concerns all.
   [[nodiscard]] std::optional<std::size_t> culprit() const noexcept { return culprit_; }
 
+  /// Columns that are neither known nor left out, from 0.
+  [[nodiscard]] const std::vector<std::size_t>& unknown() const noexcept { return unknown_; }
+
   /// Columns in the order of the file; empty for ignored ones.
   [[nodiscard]] const std::vector<std::optional<TrajectoryColumn>>& all() const noexcept { return columns_; }
 
@@ -170,11 +142,26 @@ class TrajectoryColumns {
     return places_[static_cast<std::size_t>(quantity)].has_value();
   }
 
+  [[nodiscard]] bool has_attitude() const {
+    using enum Quantity;
+    return has(qw) || count({roll, pitch, yaw}) == 3;
+  }
+
  private:
   void put(std::size_t i) {
     std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
-    if (place) blame(i, "duplicates column ", *place + 1, ": expected one of them, the other set as left out");
+    if (place)
+      blame(i, "duplicates column ", *place + 1,
+            ": expected one of them, the other set as left out, or columns by number, as with zIndex of a "
+            "survey");
     place = i;
+  }
+
+  void leave_out(Quantity quantity) {
+    std::optional<std::size_t>& place = places_[static_cast<std::size_t>(quantity)];
+    columns_[*place].reset();
+    unknown_.push_back(*place);
+    place.reset();
   }
 
   void blame(std::size_t column, const auto&... problem) {
@@ -207,6 +194,7 @@ class TrajectoryColumns {
 
   std::vector<std::optional<TrajectoryColumn>> columns_;
   std::array<std::optional<std::size_t>, std::tuple_size_v<decltype(QuantityValues::values)>> places_{};
+  std::vector<std::size_t> unknown_;
   std::string problem_;
   std::optional<std::size_t> culprit_;
 };

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/detail/trajectory/format.hpp>
+#include <pulsecast/io/detail/trajectory/head.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -41,27 +41,16 @@ class TrajectoryReader {
  public:
   TrajectoryReader(const std::filesystem::path& path, const TrajectoryFormat& format)
       : format_(validated(format)),
-        names_(format_.columns),
-        table_(path, "a trajectory", format_.fixed_separator ? std::optional(format_.separator) : std::nullopt) {}
+        table_(path, "a trajectory", format_.fixed_separator ? std::optional(format_.separator) : std::nullopt),
+        head_(format_, table_) {}
 
   [[nodiscard]] TrajectoryTable read(const TimeWindow& window) {
-    while (table_.next()) {
-      if (table_.text().starts_with('#')) {
-        if (format_.names == ColumnNames::comments && !columns_) comment(table_.text());
-      } else if (!columns_ && format_.names == ColumnNames::first_line) {
-        take_names();
-      } else if (!columns_ && format_.more_columns && has_names_only()) {
-        if (format_.names == ColumnNames::comments && !named_) {
-          named_ = true;
-          take_names();
-        }
-      } else {
-        if (!columns_) settle_names();
-        row();
-      }
-    }
+    while (table_.next())
+      if (head_.is_row()) row();
+    head_.finish();
     if (rows_.empty()) table_.fail("holds no pose: expected at least one line of numbers");
     if (table_.line_is_open()) table_.warn(table_.line(), "has no line end: the file may be truncated");
+    count_weeks();
     sort();
     remarks();
     cut(validated(window));
@@ -75,114 +64,24 @@ class TrajectoryReader {
     std::size_t line = 0;
   };
 
-  /// Reads `#HEADER: "t", "roll"`, the column names, and `#TIME_COLUMN: 0`, the column of the time.
-  void comment(std::string_view text) {
-    if (text.starts_with("#HEADER:")) {
-      named_ = true;
-      names_.clear();
-      for (text.remove_prefix(8); !text.empty();) {
-        const std::size_t end = std::min(text.find(','), text.size());
-        names_.emplace_back(text.substr(0, end));
-        std::erase_if(names_.back(), [](char c) { return c == '"' || c == ' ' || c == '\t'; });
-        text.remove_prefix(std::min(end + 1, text.size()));
-      }
-    } else if (text.starts_with("#TIME_COLUMN:")) {
-      text = text::trimmed(text.substr(13));
-      const double number = text::finite_number_in(text).value_or(-1);
-      if (number < 0 || number > 1000 || number != std::floor(number))
-        table_.fail_here(text::quoted(text), " is not a column index: expected a whole number from 0 to 1000");
-      time_place_ = static_cast<std::size_t>(number);
-    }
-  }
-
-  /// True if the line could be a header without a comment mark.
-  [[nodiscard]] bool has_names_only() {
-    return std::ranges::none_of(table_.cells(), [](std::string_view cell) {
-      return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || text::finite_number_in(cell);
-    });
-  }
-
-  void take_names() {
-    const std::vector<std::string_view>& cells = table_.cells();
-    if (text::finite_number_in(cells.front()))
-      table_.fail_here(
-          "has numbers: expected the names of the columns, as in "
-          "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
-    names_.assign(cells.begin(), cells.end());
-    understand();
-  }
-
-  /// Settles the column names before the first row of a file without them.
-  void settle_names() {
-    const auto is_time = [&](const std::string& name) {
-      const std::optional<TrajectoryColumn> column = trajectory_column(name, format_.angle_unit);
-      return column && column->quantity == Quantity::time;
-    };
-    if (time_place_ && !named_) std::erase_if(names_, is_time);
-    if (time_place_ && *time_place_ >= names_.size() + (named_ ? 0 : 1))
-      table_.fail_here("#TIME_COLUMN is ", *time_place_, ": expected the index, from 0, of one of ", names_.size(),
-                       " columns");
-    if (time_place_ && named_ && !is_time(names_[*time_place_])) names_[*time_place_] = "t";
-    if (time_place_ && !named_) names_.insert(names_.begin() + static_cast<std::ptrdiff_t>(*time_place_), "t");
-    understand();
-  }
-
-  void understand() {
-    if (may_have_more()) leave_out_unknown();
-    columns_.emplace(names_, format_.left_out, format_.angle_unit);
-    if (columns_->problem().empty()) return;
-    const std::optional<std::size_t> at = columns_->culprit();
-    if (!at) table_.fail_here(columns_->problem(), unknown_names());
-    table_.fail_here(*at, text::quoted(names_[*at]), " ", columns_->problem());
-  }
-
-  /// Names that are not those of columns, to end a message.
-  [[nodiscard]] std::string unknown_names() const {
-    std::string all;
-    for (const std::string& name : names_)
-      if (!trajectory_column(name, format_.angle_unit)) all += (all.empty() ? "" : ", ") + text::quoted(name);
-    return all.empty() ? all : "; not understood: " + all + "; a survey may give columns by number, as with zIndex";
-  }
-
-  /// True if extra columns are allowed: the file or the format names the others.
-  [[nodiscard]] bool may_have_more() const noexcept {
-    return format_.more_columns && (named_ || format_.names != ColumnNames::comments);
-  }
-
-  void leave_out_unknown() {
-    std::string unknown;
-    std::vector<std::string>& out = format_.left_out;
-    const auto is = [this](const std::string& name, Quantity first, Quantity last) {
-      const std::optional<TrajectoryColumn> column = trajectory_column(name, format_.angle_unit);
-      return column && column->quantity >= first && column->quantity <= last;
-    };
-    using enum Quantity;
-    const bool is_placed = std::ranges::any_of(names_, [&](const std::string& name) { return is(name, x, north); });
-    for (const std::string& name : names_) {
-      const bool is_known = is(name, time, is_placed ? qw : latitude);  // degrees may stand beside metres
-      if (is_known || std::ranges::find(out, name) != out.end()) continue;
-      out.push_back(name);
-      unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
-    }
-    if (!unknown.empty()) table_.warn(0, "unknown columns are left out: ", unknown.substr(0, 1000));
-  }
-
   void row() {
     const std::vector<std::string_view>& cells = table_.cells();
-    if (cells.size() < names_.size() || (cells.size() > names_.size() && !may_have_more()))
-      table_.fail_here("has ", cells.size(), " columns: expected ", names_.size());
+    const std::vector<std::string>& names = head_.names();
+    if (cells.size() < names.size() || (cells.size() > names.size() && !head_.may_have_more()))
+      table_.fail_here("has ", cells.size(), " columns: expected ", names.size());
     QuantityValues values;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      const std::optional<TrajectoryColumn>& column = columns_->all()[i];
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::optional<TrajectoryColumn>& column = head_.columns().all()[i];
       if (!column) continue;
       const std::optional<double> number = text::finite_number_in(cells[i]);
       if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
-        table_.fail_here(i, text::quoted(cells[i]), " in column ", names_[i],
-                         ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
+        table_.fail_here(i, text::quoted(cells[i]), " in column ", names[i],
+                         ": expected a finite number, with a decimal point, within 1e12 s, m or rad",
+                         column->quantity == Quantity::time ? "; nanoseconds in a column named time_ns" : "");
       values[column->quantity] = *number / column->per_si;
     }
     TimedPose pose{values[Quantity::time], position(values), rotation(values)};
-    if (columns_->has(Quantity::longitude)) project(values, pose);
+    if (head_.columns().has(Quantity::longitude)) project(values, pose);
     rows_.push_back({pose, table_.line()});
   }
 
@@ -205,18 +104,35 @@ class TrajectoryReader {
 
   [[nodiscard]] Vec3 position(const QuantityValues& values) const {
     using enum Quantity;
-    if (columns_->has(x)) return format_.axes.swapped({values[x], values[y], values[z]});
-    return {values[east], values[north], columns_->has(up) ? values[up] : -values[down]};
+    if (head_.columns().has(x)) return format_.axes.swapped({values[x], values[y], values[z]});
+    return {values[east], values[north], head_.columns().has(up) ? values[up] : -values[down]};
   }
 
   [[nodiscard]] Rotation rotation(const QuantityValues& values) {
     using enum Quantity;
-    if (!columns_->has(qw)) return rotation_of({values[roll], values[pitch], values[yaw]}, format_.angles);
+    if (!head_.columns().has(qw)) return rotation_of({values[roll], values[pitch], values[yaw]}, format_.angles);
     const Rotation given = pulsecast::detail::rotation_wxyz(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3)) table_.fail_here("the quaternion has the norm ", length(given), ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
+  }
+
+  /// Counts times on where those of a GPS week begin anew, within an hour of its end.
+  void count_weeks() {
+    constexpr double week = 604800, longest = 3600;  // [s]
+    Oddity begins;
+    double before = -1, added = 0;
+    for (Row& row : rows_) {
+      const double time = row.pose.time;
+      if (time >= 0 && before <= week && before - time > week - longest) {
+        added += week;
+        begins.at(row.line);
+      }
+      before = time;
+      row.pose.time += added;
+    }
+    table_.warn(begins, "begins a GPS week", ": times count on, beyond 604800 s");
   }
 
   void sort() {
@@ -234,13 +150,39 @@ class TrajectoryReader {
   }
 
   void remarks() {
+    if (!head_.left_out().empty())
+      table_.warn(0, rule_of(trajectory_rules, "*")->meaning, ": ", head_.left_out().substr(0, 1000));
     table_.warn(unsorted_, "is earlier than the previous pose", ": the poses were sorted by time");
     table_.warn(repeated_, "repeats a pose", ": it is left out");
     table_.warn(not_unit_, "has a quaternion that is not unit", ": it is normalized");
-    if (columns_->has(Quantity::qw)) return;
+    if (head_.columns().has(Quantity::qw)) return;
+    if (turns_by_radians())
+      table_.warn(
+          0,
+          "roll, pitch and yaw are all within 3.2 degrees, and head elsewhere than the poses: given in radians? "
+          "Name such columns roll_rad, pitch_rad, heading_rad, or set toRadians=\"false\"");
     for (const auto& [quantity, name] :
          {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
-      if (!columns_->has(quantity)) table_.warn(0, "no column for the ", name, ": 0 is assumed");
+      if (!head_.columns().has(quantity)) table_.warn(0, "no column for the ", name, ": 0 is assumed");
+  }
+
+  /// True if angles taken as degrees are all as small as those in radians, which fit the course of the platform better.
+  [[nodiscard]] bool turns_by_radians() const {
+    const auto is_degree = [](const auto& column) { return column && column->per_si == degrees(1); };
+    if (rows_.size() < 5 || std::ranges::none_of(head_.columns().all(), is_degree)) return false;
+    double way = 0, along = 0, along_by_radians = 0;
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+      const Rotation& turn = rows_[i - 1].pose.rotation;
+      const RollPitchYaw a = roll_pitch_yaw(turn, format_.angles);
+      if (std::fabs(a.roll) > radians(3.2) || std::fabs(a.pitch) > radians(3.2) || std::fabs(a.yaw) > radians(3.2))
+        return false;
+      const Rotation by_radians = rotation_of({degrees(a.roll), degrees(a.pitch), degrees(a.yaw)}, format_.angles);
+      const Vec3 step = (rows_[i].pose.position - rows_[i - 1].pose.position) * Vec3{1, 1, 0};
+      way += length(step);
+      along += dot(turn * axis::forward, step);
+      along_by_radians += dot(by_radians * axis::forward, step);
+    }
+    return along < 0.9 * way && along_by_radians > along;
   }
 
   /// Cuts the poses to the window and starts its clock.
@@ -282,6 +224,8 @@ class TrajectoryReader {
     const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
     std::ranges::nth_element(intervals, middle);
     const auto gaps = std::ranges::count_if(intervals, [&](double one) { return one > 20 * *middle; });
+    if (*middle >= 1000)
+      table_.warn(0, "poses are ", *middle, " s apart: if times are in nanoseconds, name their column time_ns");
     if (gaps > 0)
       table_.warn(0, "no pose between ", poses[longest - 1].time, " s and ", poses[longest].time, " s, the longest of ",
                   gaps,
@@ -299,11 +243,8 @@ class TrajectoryReader {
   }
 
   TrajectoryFormat format_;
-  std::vector<std::string> names_;
-  bool named_ = false;                     // by a #HEADER
-  std::optional<std::size_t> time_place_;  // index from 0
   TextTable table_;
-  std::optional<TrajectoryColumns> columns_;
+  TrajectoryHead head_;
   std::vector<Row> rows_;
   Oddity unsorted_, repeated_, not_unit_;
   TrajectoryTable result_;
