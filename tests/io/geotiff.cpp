@@ -888,6 +888,17 @@ TEST_CASE("each rule has a file that is read, noted or refused as it says") {
   test::check_rules(io::detail::geotiff_rules, cases);
 }
 
+TEST_CASE("the place of one band in a vertical system scales and shifts its heights") {
+  const File file;
+  Place place = keyed({3072, 0, 1, 25832, 4096, 0, 1, 7837});
+  const float plain = file.read({}, place).raster.heights[0];
+  place.scale[2] = 10;
+  place.ties[2] = 3;
+  place.ties[5] = 7;
+  CHECK(file.read({}, place).raster.heights[0] == doctest::Approx(7 + 10 * (double{plain} - 3)));
+  CHECK(file.read({}, place, height, {.vertical_scale = 2}).raster.heights[0] == doctest::Approx(2 * double{plain}));
+}
+
 TEST_CASE("keys and roles that no rule names are refused; private keys and other items are not") {
   const File file;
   for (const std::uint16_t key : Codes{1023, 1027, 2000, 2100, 3100, 4095, 4100, 5000, 5121, 32767}) {

@@ -85,9 +85,10 @@ class GeoTiffReader {
         layout_(file_, settings_.band) {
     const BandItems items = band_items(file_, settings_.band, layout_.samples, reference_.vertical_unit);
     const auto& [scale, offset, unit] = items.heights;
-    scale_ =
-        settings_.vertical_scale ? HeightScale{*settings_.vertical_scale} : HeightScale{scale * unit, offset * unit};
-    const RasterCorner corner = raster_corner(file_, layout_);
+    const bool is_scaled_by_place = layout_.samples == 1 && reference_.vertical_epsg != 0 && scale == 1 && offset == 0;
+    const RasterCorner corner = raster_corner(file_, layout_, is_scaled_by_place);
+    scale_ = settings_.vertical_scale ? HeightScale{*settings_.vertical_scale}
+                                      : HeightScale{scale * corner.step_z * unit, (offset + corner.z) * unit};
     westward_ = corner.step_x < 0;
     northward_ = corner.step_y > 0;
     raster_ = placed_raster(file_, layout_, corner, reference_.unit);

@@ -187,14 +187,15 @@ inline void read_vertical(TiffFile& file, SpatialReference& made, bool is_scaled
 /// True if a tie is the centre of a pixel. Source: OGC GeoTIFF 1.1, 7.1.3 (PixelIsPoint).
 [[nodiscard]] inline bool is_point(const TiffFile& file) { return geo_key(file, geotiff::raster_type, 1) == 2; }
 
-/// Corner of the first pixel of a file, and steps of columns to the east and rows to the north [m].
+/// Corner of the first pixel of a file, and steps of columns to the east and rows to the north [m]; height of a number.
 struct RasterCorner {
-  double x = 0, y = 0, step_x = 0, step_y = 0;
+  double x = 0, y = 0, step_x = 0, step_y = 0, step_z = 1, z = 0;
 };
 
-/// Position of the pixels of a file, by its tags or a world file. Source: OGC GeoTIFF 1.1, 7.1.1.
-/// @throws FileError without a georeference, and for rows that do not go east
-[[nodiscard]] inline RasterCorner raster_corner(TiffFile& file, const RasterLayout& layout) {
+/// Position of the pixels of a file, by its tags or a world file; heights are scaled in a vertical system alone.
+/// Source: OGC GeoTIFF 1.1, 7.1.1; GDAL manual, GTiff driver. @throws FileError without a georeference, and for rows
+/// that do not go east
+[[nodiscard]] inline RasterCorner raster_corner(TiffFile& file, const RasterLayout& layout, bool has_heights) {
   const auto scale = file.tags<double>(geotiff::pixel_scale), ties = file.tags<double>(geotiff::tie_points),
              matrix = file.tags<double>(geotiff::transformation);
   if (matrix.size() >= 16) {
@@ -208,9 +209,17 @@ struct RasterCorner {
     if (scale[1] < 0)
       file.warn("ModelPixelScale has a negative height of the pixel; its magnitude is taken, as GDAL does");
     if (scale[0] < 0) file.fail("has pixels of a negative width: expected a positive one");
-    if ((scale.size() >= 3 && scale[2] != 0 && scale[2] != 1) || ties[2] != 0 || ties[5] != 0) file.keep("tag 33550 z");
     const double step_x = scale[0], step_y = -std::fabs(scale[1]);
-    return {.x = ties[3] - ties[0] * step_x, .y = ties[4] - ties[1] * step_y, .step_x = step_x, .step_y = step_y};
+    RasterCorner made{
+        .x = ties[3] - ties[0] * step_x, .y = ties[4] - ties[1] * step_y, .step_x = step_x, .step_y = step_y};
+    const double step_z = scale.size() >= 3 && scale[2] != 0 ? scale[2] : 1, z = ties[5] - ties[2] * step_z;
+    if (has_heights && std::fabs(z) <= 1e15 && std::fabs(step_z) <= 1e15) {
+      made.step_z = step_z;
+      made.z = z;
+    } else if (step_z != 1 || ties[2] != 0 || ties[5] != 0) {
+      file.keep("tag 33550 z");
+    }
+    return made;
   }
   if (const std::filesystem::path beside = world_file_of(file.path()); ties.empty() && !beside.empty()) {
     const auto& [first, step] = read_world_file(beside);

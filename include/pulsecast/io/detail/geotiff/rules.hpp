@@ -46,7 +46,7 @@ inline constexpr std::array<FormatRule, 37> geotiff_rules{{
     {"colours, another band", FormatUse::noted, "the numbers of a picture's band are taken as heights"},
     {"other image", FormatUse::noted, "the first is read: gdal_translate GTIFF_DIR:2:FILE takes the next"},
     {"first image = overview", FormatUse::refused, "the raster first: gdal_translate GTIFF_DIR:2:FILE"},
-    {"tag 33550 z", FormatUse::noted, "vertical scale and shift of the place have no effect"},
+    {"tag 33550 z", FormatUse::noted, "vertical scale and shift of the place have no effect without a vertical system"},
     {"tag 32997", FormatUse::refused, "one layer, not a volume (ImageDepth 1)"},
     {"tag 274", FormatUse::refused, "rows from the top (Orientation 1): gdal_translate writes it"},
 }};

@@ -152,13 +152,14 @@ class MeshFileMaker {
 
   /// Refuses a mesh of more than a quad's vertices at one point: its numbers are not understood.
   void require_extent(const RawMesh& mesh) const {
-    const auto is_first = [&](const Float3& v) {
-      const Float3& first = mesh.vertices[0];
-      return std::equal_to<float>()(v.x, first.x) && std::equal_to<float>()(v.y, first.y) &&
-             std::equal_to<float>()(v.z, first.z);
+    const auto coincide = [](const auto& all) {
+      return all.size() > 4 && std::ranges::all_of(all, [&](const auto& v) {
+               return !(v.x < all[0].x) && !(v.x > all[0].x) && !(v.y < all[0].y) && !(v.y > all[0].y) &&
+                      !(v.z < all[0].z) && !(v.z > all[0].z);
+             });
     };
-    if (mesh.vertices.size() > 4 && std::ranges::all_of(mesh.vertices, is_first))
-      detail::fail(path_, "has the mesh ", text::quoted(mesh.name), " of ", mesh.vertices.size(),
+    if (coincide(mesh.vertices) || coincide(mesh.precise))
+      detail::fail(path_, "has the mesh ", text::quoted(mesh.name), " of ", mesh.vertex_count(),
                    " vertices, all at one place, as in an encoding that is not known: expected coordinates that "
                    "differ, as in an OBJ file that its program exports");
   }
