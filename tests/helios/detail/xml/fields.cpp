@@ -144,7 +144,7 @@ TEST_CASE("a turn by a part of pi in degrees gets a note") {
   for (const char* angle : {"1.5708", "-1.57", "3.14159", "0.785398"})
     CHECK(contains(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>"),
                    "angle_deg is " + std::string(angle) + ": given in radians, not degrees?"));
-  for (const char* angle : {"90", "1.5", "3", "-2.5", "0", "6", "22.5"})
+  for (const char* angle : {"90", "1.5", "3", "-2.5", "0", "6", "22.5", "2.356", "-6.28"})
     CHECK(told<MountSettings>(R"(<m><rot axis="x" angle_deg=")" + std::string(angle) + "\"/></m>").empty());
 }
 

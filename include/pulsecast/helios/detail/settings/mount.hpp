@@ -25,7 +25,7 @@ struct AxisTurn {
     io.require({"axis", "angle_deg"});
     io.choice("axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}});
     io.number("angle_deg", angle, units::degree, -36000, 36000);
-    if (looks_like_radians(angle))
+    if (looks_like_radians(angle, false))
       io.warn("angle_deg",
               "angle_deg is " + xml_number(units::degree.number(angle)) + ": given in radians, not degrees?");
   }

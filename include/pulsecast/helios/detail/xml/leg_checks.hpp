@@ -156,7 +156,7 @@ class LegChecks {
       if (looks_like_degrees(angle))
         io.warn(name, text::joined({name, " is ", brief(degrees(angle)), ", ", brief(angle / (2 * pi)),
                                     " turns of the head: given in degrees, not radians?"}));
-      else if (looks_like_radians(angle))
+      else if (looks_like_radians(angle, true))
         io.warn(name, text::joined({name, " is ", shortest(angle), ": given in radians, not degrees?"}));
     if (s.head_rate != speed)
       io.warn("headRotatePerSec_deg",

@@ -61,10 +61,11 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
   return std::fabs(angle) > max_angle && angle == std::round(angle);
 }
 
-/// True for an angle whose degrees are an eighth, quarter, half ... turn in radians, as if given in them [rad].
-[[nodiscard]] inline bool looks_like_radians(double angle) noexcept {
+/// True for an angle whose degrees are an eighth, a quarter, half of a turn or, if `turns` may be, a whole one in
+/// radians, as if given in them [rad].
+[[nodiscard]] inline bool looks_like_radians(double angle, bool turns) noexcept {
   const double given = std::fabs(degrees(angle)), eighths = std::round(given / (pi / 4));
-  const bool is_usual = eighths >= 1 && eighths <= 8 && eighths != 5 && eighths != 7;
+  const bool is_usual = eighths == 1 || eighths == 2 || eighths == 4 || (turns && eighths == 8);
   return is_usual && std::fabs(given - eighths * pi / 4) < 6e-4 * given;  // of 3.14, off by 5e-4
 }
 

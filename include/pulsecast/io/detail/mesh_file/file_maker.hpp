@@ -87,6 +87,8 @@ class MeshFileMaker {
     if (reshaped_ > 0)
       warn(reshaped_, " nodes shear, mirror or stretch their meshes, which become ", shapes_, " meshes of their own");
     if (flattened_ > 0) warn(flattened_, " nodes whose transforms flatten their meshes are left out");
+    if (empty_ > 0 && file_.placements.empty())
+      detail::fail(path_, "has triangles, and none with an area: expected a mesh");
     if (empty_ > 0) warn(empty_, " meshes have triangles, and none with an area");
     const double rounding = farthest_ * 0x1p-24;  // of 24 bits. Source: IEEE 754-2019, binary32
     if (rounding > 1e-3)
