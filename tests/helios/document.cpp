@@ -472,7 +472,7 @@ TEST_CASE("angles that can hardly be degrees get a note") {
   for (const char* angles :
        {R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")",
         R"(verticalAngleMin_deg="-4.5" verticalAngleMax_deg="2")", R"(scanAngle_deg="3.5")",
-        R"(headRotateStart_deg="-3")", R"(headRotateStart_deg="90")", R"(headRotateStart_deg="5.5")"}) {
+        R"(headRotateStart_deg="-3")", R"(headRotateStart_deg="-90")", R"(headRotateStart_deg="-5.5")"}) {
     CAPTURE(angles);
     CHECK(notes(angles).empty());
   }
