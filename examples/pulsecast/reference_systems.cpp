@@ -11,6 +11,7 @@
 #include <pulsecast/io/reference.hpp>
 #else
 #include <pulsecast/io/detail/las/reference.hpp>
+#include <pulsecast/io/detail/side_files.hpp>
 #endif
 
 using namespace pulsecast;
@@ -29,13 +30,10 @@ std::string text_of(const std::filesystem::path& path) {
 }
 
 #if !defined(PULSECAST_REFERENCE)
-/// Value of the last UNIT in a well-known text, that of its coordinates [m]. Source: OGC 01-009, 7.
-double last_unit(std::string_view text, const std::filesystem::path& path) {
-  const std::size_t at = text.rfind("UNIT["), comma = at == text.npos ? at : text.find(',', at);
-  if (comma == text.npos) io::detail::fail(path, "has no UNIT[name, metres]: expected one");
-  const std::string_view number = text.substr(comma + 1, text.find_first_of(",]", comma + 1) - comma - 1);
-  const std::optional<double> metres = text::finite_number_in(text::trimmed(number));
-  if (!metres || !(*metres > 0)) io::detail::fail(path, "has the unit ", text::quoted(number), ": expected metres");
+/// Unit of the coordinates in a well-known text [m]. @throws FileError without one
+double unit_in(std::string_view text, const std::filesystem::path& path) {
+  const std::optional<double> metres = io::detail::last_unit(text);
+  if (!metres) io::detail::fail(path, "has no UNIT[name, metres] from 1e-6 to 1e6: expected one");
   return *metres;
 }
 #endif
@@ -60,8 +58,8 @@ io::SpatialReference completed(const io::SpatialReference& given, const std::fil
     all.wkt = text_of(wkt);
     if (all.wkt.starts_with("GEOG")) io::detail::fail(wkt, "is in degrees: expected a projected reference system");
     const std::size_t heights = std::min(all.wkt.find("VERT_CS["), all.wkt.size());
-    all.unit = last_unit(std::string_view(all.wkt).substr(0, heights), wkt);
-    if (heights < all.wkt.size()) all.vertical_unit = last_unit(all.wkt, wkt);
+    all.unit = unit_in(std::string_view(all.wkt).substr(0, heights), wkt);
+    if (heights < all.wkt.size()) all.vertical_unit = unit_in(all.wkt, wkt);
   } else if (io::detail::las_utm(all.epsg).empty() || all.vertical_epsg != 0) {
     notes.warn("built without PROJ (Debian package: libproj-dev): LAS 1.4 does not name EPSG:" +
                std::to_string(all.epsg) + (all.vertical_epsg == 0 ? "" : "+" + std::to_string(all.vertical_epsg)) +
