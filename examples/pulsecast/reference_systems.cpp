@@ -11,7 +11,7 @@
 #include <pulsecast/io/reference.hpp>
 #else
 #include <pulsecast/io/detail/las/reference.hpp>
-#include <pulsecast/io/detail/side_files.hpp>
+#include <pulsecast/io/detail/reference_reader.hpp>
 #endif
 
 using namespace pulsecast;
@@ -28,15 +28,6 @@ std::string text_of(const std::filesystem::path& path) {
   if (text.empty()) io::detail::fail(path, "is blank: expected the text (WKT) of a reference system");
   return text;
 }
-
-#if !defined(PULSECAST_REFERENCE)
-/// Unit of the coordinates in a well-known text [m]. @throws FileError without one
-double unit_in(std::string_view text, const std::filesystem::path& path) {
-  const std::optional<double> metres = io::detail::last_unit(text);
-  if (!metres) io::detail::fail(path, "has no UNIT[name, metres] from 1e-6 to 1e6: expected one");
-  return *metres;
-}
-#endif
 
 }  // namespace
 
@@ -55,11 +46,9 @@ io::MapProjector projector_of(const Options& options) {
 io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& notes) {
   io::SpatialReference all = given;
   if (!wkt.empty()) {
-    all.wkt = text_of(wkt);
-    if (all.wkt.starts_with("GEOG")) io::detail::fail(wkt, "is in degrees: expected a projected reference system");
-    const std::size_t heights = std::min(all.wkt.find("VERT_CS["), all.wkt.size());
-    all.unit = unit_in(std::string_view(all.wkt).substr(0, heights), wkt);
-    if (heights < all.wkt.size()) all.vertical_unit = unit_in(all.wkt, wkt);
+    std::vector<std::string> warnings;
+    all = io::detail::ReferenceReader(wkt, io::detail::HeightUnit::metre, warnings).by_text(text_of(wkt));
+    notes.warn(warnings);
   } else if (io::detail::las_utm(all.epsg).empty() || all.vertical_epsg != 0) {
     notes.warn("built without PROJ (Debian package: libproj-dev): LAS 1.4 does not name EPSG:" +
                std::to_string(all.epsg) + (all.vertical_epsg == 0 ? "" : "+" + std::to_string(all.vertical_epsg)) +

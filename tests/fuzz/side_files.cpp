@@ -12,7 +12,8 @@ FUZZ_TARGET(side_files) {
     const std::filesystem::path beside = fuzz::file(data, size, name);
     fuzz::may_refuse([&] {
       std::vector<std::string> warnings;
-      const SpatialReference found = io::detail::read_side_files(beside.parent_path() / "dem.tif", warnings);
+      const SpatialReference found =
+          io::detail::read_side_files(beside.parent_path() / "dem.tif", warnings, io::detail::HeightUnit::metre);
       for (const double unit : {found.unit, found.vertical_unit}) fuzz::expect(unit >= 1e-6 && unit <= 1e6);
       fuzz::expect(found.wkt.size() <= size);
     });

@@ -109,7 +109,7 @@ TEST_CASE("a system beside the grid tells the unit of coordinates and heights") 
   CHECK(high.warnings.empty());
   CHECK(scaled.raster.heights[1] == 4);
   CHECK(support::contains(support::file_error([&] { (void)with(R"(GEOGCS["y",UNIT["Degree",0.0174]])"); }).problem(),
-                          "reference system in degrees"));
+                          "projected coordinates, not degrees"));
 }
 
 TEST_CASE("heights that often mark missing ones are noted without NODATA_value") {

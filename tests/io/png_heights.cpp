@@ -123,9 +123,9 @@ TEST_CASE("a system beside the picture tells the unit of its place, and of its h
   CHECK(read_png_heights(files.path).packed.scale == 0.5);
   CHECK(read_png_heights(files.path, {.vertical_scale = 2}).packed.scale == 2);
   put("GEOGCS[]");
-  CHECK(contains(files.refusal({}), "reference system in degrees"));
+  CHECK(contains(files.refusal({}), "projected coordinates, not degrees"));
   put("Projection UTM");
-  CHECK(contains(files.refusal({}), "names no unit"));
+  CHECK(contains(files.refusal({}), "no well-known text"));
   CHECK(read_png_heights(files.path, {.pixel = Vec2{1, 1}}).pixel == Vec2{1, 1});
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/reference.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <proj.h>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/las.hpp>
 
 #include "support/las_reader.hpp"
@@ -214,6 +216,43 @@ TEST_CASE("operations that err by more than 0.1 m, or whose grid is missing, are
   CHECK(contains(place_refusal(4258, 25832, std::nan(""), 50), "has no place at"));
   CHECK(place_refusal(4258, 25832, 13.8, 50).empty());  // Bavaria, in a zone that ends at 12 degrees
   CHECK(place_refusal(0, 3832, -170, 20).empty());      // across the date line
+}
+
+TEST_CASE("readers ask PROJ for the units of codes that stand alone") {
+  const auto read = [](std::uint16_t epsg, std::uint16_t vertical) {
+    const std::array<std::uint16_t, 12> keys{1, 1, 0, 2, 3072, 0, 1, epsg, 4096, 0, 1, vertical};
+    std::vector<std::string> warnings;
+    return detail::ReferenceReader("a.las", detail::HeightUnit::metre, warnings).by_keys({keys, {}, {}});
+  };
+  const SpatialReference found = read(2263, 6360), indian = read(24370, 5773);
+  CHECK(std::fabs(found.unit / us_foot - 1) < 1e-12);
+  CHECK(std::fabs(found.vertical_unit / us_foot - 1) < 1e-12);
+  CHECK(std::fabs(indian.unit - 0.914398530744441) < 1e-12);
+  CHECK(indian.vertical_unit == 1);
+}
+
+TEST_CASE("the systems that readers take for ones in metres are so by PROJ, and those of depths go down") {
+  const detail::Proj proj("EPSG");
+  const auto axis_of = [&](int code, int index) {
+    const detail::ProjObject system(
+        proj_create_from_database(proj, "EPSG", std::to_string(code).c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+    return system ? proj.axis(proj.part(system.get(), index).get(), 0) : detail::Proj::Axis{};
+  };
+  int known = 0;
+  const auto& ranges = detail::systems_in_metres;
+  REQUIRE(std::ranges::is_sorted(ranges));
+  for (std::size_t i = 0; i < ranges.size(); i += 2)
+    for (int code = ranges[i]; code <= ranges[i + 1]; code += 3)
+      for (const int part : {0, 1}) {
+        const detail::Proj::Axis axis = axis_of(code, part);
+        if (axis.direction.empty() || axis.unit < 0.1) continue;  // of degrees
+        INFO("EPSG:", code);
+        CHECK(axis.unit == 1);
+        CHECK(axis.direction != "down");
+        ++known;
+      }
+  CHECK(known > 1000);
+  for (const std::uint16_t code : detail::systems_of_depths) CHECK(axis_of(code, 0).direction == "down");
 }
 
 TEST_CASE("threads have contexts of their own") {

@@ -69,8 +69,9 @@ class AsciiGridReader {
         file_(path, "an Esri ASCII grid, which begins with 'ncols'") {}
 
   [[nodiscard]] AsciiGrid read() && {
-    grid_.reference = read_side_files(path_, grid_.warnings);
-    if (settings_.vertical_scale == 1) settings_.vertical_scale = grid_.reference.vertical_unit;
+    const bool is_scaled = settings_.vertical_scale != 1;
+    grid_.reference = read_side_files(path_, grid_.warnings, is_scaled ? HeightUnit::by_setting : HeightUnit::metre);
+    if (!is_scaled) settings_.vertical_scale = grid_.reference.vertical_unit;
     read_keys();
     place();
     read_heights();

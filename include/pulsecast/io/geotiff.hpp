@@ -81,7 +81,7 @@ class GeoTiffReader {
   GeoTiffReader(const std::filesystem::path& path, const GeoTiffSettings& settings)
       : settings_(validated(settings)),
         file_(path),
-        reference_(reference_of(file_, settings_.vertical_scale.has_value())),
+        reference_(reference_of(file_, settings_.vertical_scale ? HeightUnit::by_setting : HeightUnit::metre)),
         layout_(file_, settings_.band) {
     const BandItems items = band_items(file_, settings_.band, layout_.samples, reference_.vertical_unit);
     const auto& [scale, offset, unit] = items.heights;
@@ -93,7 +93,7 @@ class GeoTiffReader {
     northward_ = corner.step_y > 0;
     raster_ = placed_raster(file_, layout_, corner, reference_.unit);
     const std::string question = degrees_question(raster_);
-    if (!question.empty() && geo_key(file_, geotiff::model_type, 0) != 0)
+    if (!question.empty() && geo_keys(file_).code(1024) != 0)
       file_.warn(question);
     else if (!question.empty() && reference_.wkt.empty())
       file_.fail(question);
@@ -284,7 +284,7 @@ PULSECAST_INLINE GeoTiff read_geotiff(const std::filesystem::path& path, const G
 
 PULSECAST_INLINE SpatialReference read_geotiff_reference(const std::filesystem::path& path) {
   detail::TiffFile file(path);
-  return detail::reference_of(file, true);
+  return detail::reference_of(file, detail::HeightUnit::by_setting);
 }
 
 PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) {

@@ -139,10 +139,12 @@ class PngHeightReader {
   [[nodiscard]] bool place() {
     raster_.pixel = settings_.pixel.value_or(Vec2{1, 1});
     raster_.first = settings_.first.value_or(Vec2{});
-    const SpatialReference beside_it = read_side_files(path_, warnings_, !settings_.pixel);
+    const bool is_scaled = settings_.vertical_scale != 1;
+    const SpatialReference beside_it =
+        read_side_files(path_, warnings_, is_scaled ? HeightUnit::by_setting : HeightUnit::metre, !settings_.pixel);
     if (!warnings_.empty() && beside_it.unit == 1)
       fail("is beside a file that is not clear: ", warnings_.front(), "; expected the size of pixels as a setting");
-    if (settings_.vertical_scale == 1) raster_.packed.scale = beside_it.vertical_unit;
+    if (!is_scaled) raster_.packed.scale = beside_it.vertical_unit;
     if (settings_.pixel) return false;
     const std::filesystem::path beside = world_file_of(path_);
     if (beside.empty())

@@ -11,7 +11,8 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 
-/// Reference systems by PROJ, without network. Each call has a context of its own.
+/// Reference systems by PROJ, without network. Each call has a context of its own. In a program that includes this
+/// header, readers of files ask PROJ for the units of systems that these name by codes alone.
 namespace PULSECAST_NAMESPACE::io {
 
 /// Reference by a text, or else by codes, also of a compound system, with its units, codes and WKT 1 for LAS. Heights
@@ -230,6 +231,11 @@ inline SpatialReference complete_reference(const SpatialReference& given, const 
   found.wkt = wkt;
   return found;
 }
+
+namespace detail {
+/// Lets readers ask PROJ.
+inline const bool is_database_set = (reference_database = &complete_reference) != nullptr;
+}  // namespace detail
 
 inline MapProjector map_projector(std::uint16_t from, std::uint16_t to) {
   const auto shared = std::make_shared<detail::ProjProjector>(from, to);

@@ -37,6 +37,14 @@ struct MapPoint {
 /// Place on a map of a longitude and a latitude [deg], as by `map_projector`. Heights are kept.
 using MapProjector = std::function<MapPoint(double longitude, double latitude)>;
 
+namespace detail {
+
+/// `complete_reference` in a program that includes `io/reference.hpp`, else null: readers ask it for the units of
+/// systems that files name by codes alone. Set before `main`.
+inline SpatialReference (*reference_database)(const SpatialReference& codes, const std::string& name) = nullptr;
+
+}  // namespace detail
+
 }  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -15,6 +15,7 @@
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>
 #include <pulsecast/io/detail/raster_rules.hpp>
+#include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/detail/trajectory/rules.hpp>
 
 using namespace pulsecast::io;
@@ -40,5 +41,6 @@ int main() {
   print("ASCII grid", detail::ascii_grid_rules);
   print("PNG heights", detail::png_rules);
   print("beside a raster", detail::side_file_rules);
+  print("reference system", detail::reference_rules);
   print("trajectory", detail::trajectory_rules);
 }

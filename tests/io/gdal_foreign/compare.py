@@ -157,7 +157,7 @@ def main():
                 refused[reason] = refused.get(reason, 0) + 1
                 continue
             problem = difference(path, line)
-            if problem and "its unit is not told" in line:
+            if problem and "coordinates without a unit" in line:
                 noted += 1
             elif problem:
                 wrong += 1

@@ -35,12 +35,8 @@ inline constexpr std::array<FormatRule, 5> png_rules{{
 
 /// Files beside a raster: its reference system, and elements of GDAL's `.aux.xml`. Source: OGC 01-009; GDAL manual,
 /// Persistent Auxiliary Metadata.
-inline constexpr std::array<FormatRule, 11> side_file_rules{{
+inline constexpr std::array<FormatRule, 7> side_file_rules{{
     {"reference system", FormatUse::read, "`.prj`, or `<SRS>` of `.aux.xml`: coordinates and heights become metres"},
-    {"reference system in degrees", FormatUse::refused, "projected coordinates: gdalwarp -t_srs EPSG:CODE makes them"},
-    {"reference system of depths", FormatUse::refused, "heights, not depths: gdal_calc.py --calc=-A makes them"},
-    {"reference system without a unit", FormatUse::noted, "it names no unit: metres are assumed"},
-    {"reference system not in metres, without heights", FormatUse::noted, "heights without a unit are taken as metres"},
     {"<GeoTransform>", FormatUse::refused, "the place in the raster or a world file: gdal_translate writes it there"},
     {"<GCPList", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one of control points"},
     {"<GeodataXform", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one"},

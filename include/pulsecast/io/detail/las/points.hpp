@@ -12,8 +12,8 @@
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/las/rules.hpp>
-#include <pulsecast/io/detail/las/units.hpp>
 #include <pulsecast/io/detail/laz/reader.hpp>
+#include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -171,13 +171,15 @@ class LasPoints {
   void read_units(bool prefers_wkt) {
     const unsigned format = places_.format;
     if (format == 4 || format == 5 || format > 8) ask("waveforms");
-    detail::LasUnits units(path(), notes_);
+    detail::ReferenceReader reader(path(), detail::HeightUnit::of_coordinates, notes_);
+    SpatialReference found;
     if (!wkt_.empty() && (prefers_wkt || keys_.empty()))
-      unit_ = units.by_wkt(wkt_);
+      found = std::move(reader).by_text(wkt_);
     else if (!keys_.empty())
-      unit_ = units.by_keys(keys_);
+      found = std::move(reader).by_keys({keys_, key_numbers_, key_texts_});
     else if (scale_.x < 1e-5)
       ask("steps below 1e-5");
+    unit_ = {found.unit, found.unit, found.vertical_unit};
   }
 
   void ask(std::string_view item) { keep_rule(detail::las_rules, path(), "item", item, notes_); }
@@ -196,11 +198,20 @@ class LasPoints {
           file_.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, InputFile::block_size))));
       if (user == "LASF_Projection" || name == "lascompatible 22204") ask(name);
       if (name == "LASF_Projection 2112") wkt_ = body.c_str();
-      if (name == "LASF_Projection 34735") keys_ = body;
+      if (name == "LASF_Projection 34735") keys_ = numbers_of<std::uint16_t>(body);
+      if (name == "LASF_Projection 34736") key_numbers_ = numbers_of<double>(body);
+      if (name == "LASF_Projection 34737") key_texts_ = body;
       if (name == "laszip encoded 22204") descriptor_ = body;
       if (name == "LASF_Spec 4" && wants.objects) find_objects(body);
       at += head + std::min(size, file_.size());
     }
+  }
+
+  template <class Number>
+  [[nodiscard]] static std::vector<Number> numbers_of(std::string_view bytes) {
+    std::vector<Number> all(bytes.size() / sizeof(Number));
+    std::memcpy(all.data(), bytes.data(), all.size() * sizeof(Number));
+    return all;
   }
 
   /// Finds the extra bytes ObjectId. Source: LAS 1.4 R15, Extra Bytes.
@@ -239,9 +250,11 @@ class LasPoints {
   detail::LasPlaces places_;
   Vec3 scale_{}, offset_{}, unit_{1, 1, 1};
   std::uint64_t count_ = 0, taken_ = 0;
-  std::array<std::uint64_t, 4> tallies_{};  // withheld, synthetic, low noise, high noise
-  std::uint64_t at_ = 0;                    // offset of the current point, or its chunk [byte]
-  std::string wkt_, keys_, descriptor_;     // bodies of records
+  std::array<std::uint64_t, 4> tallies_{};    // withheld, synthetic, low noise, high noise
+  std::uint64_t at_ = 0;                      // offset of the current point, or its chunk [byte]
+  std::string wkt_, key_texts_, descriptor_;  // bodies of records
+  std::vector<std::uint16_t> keys_;
+  std::vector<double> key_numbers_;
   std::vector<std::string> notes_;
   std::optional<detail::LazReader> laz_;
   std::string_view record_;

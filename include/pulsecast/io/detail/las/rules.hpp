@@ -7,10 +7,7 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-inline constexpr std::string_view las_in_degrees = "metres, not degrees; pdal translate with filters.reprojection",
-                                  las_geocentric = "z to be the height; pdal translate with filters.reprojection";
-
-/// Items of LAS, LAZ and COPC files. Source: ASPRS LAS 1.4 R15; OGC GeoTIFF 1.1; OGC 01-009 and 18-010 (WKT); LASzip.
+/// Items of LAS, LAZ and COPC files. Source: ASPRS LAS 1.4 R15; LASzip.
 inline constexpr FormatRule las_rules[]{
     {"withheld points", FormatUse::noted, "marked as withheld and left out"},
     {"synthetic points", FormatUse::noted, "marked as synthetic, and taken like measured ones"},
@@ -23,23 +20,9 @@ inline constexpr FormatRule las_rules[]{
     {"LASF_Projection 2111", FormatUse::refused, "points that need no transform (OGC Math Transform WKT)"},
     {"LASF_Projection 2112", FormatUse::read, "reference system as well-known text, for its units"},
     {"LASF_Projection 34735", FormatUse::read, "reference system as GeoTIFF keys, if there is no text"},
-    {"LASF_Projection 34736", FormatUse::read, "numbers of GeoTIFF keys, of which none is needed"},
-    {"LASF_Projection 34737", FormatUse::read, "texts of GeoTIFF keys, of which none is needed"},
+    {"LASF_Projection 34736", FormatUse::read, "numbers of GeoTIFF keys"},
+    {"LASF_Projection 34737", FormatUse::read, "texts of GeoTIFF keys"},
     {"lascompatible 22204", FormatUse::noted, "classes above 31 are in extra bytes; laszip restores them"},
-    {"WKT PROJ*", FormatUse::read, "projected: its unit is that of x and y"},
-    {"WKT LOCAL_CS", FormatUse::read, "its unit is that of x and y"},
-    {"WKT ENGCRS", FormatUse::read, "its unit is that of x and y"},
-    {"WKT GEOG*", FormatUse::refused, las_in_degrees},
-    {"WKT GEO*", FormatUse::refused, las_geocentric},
-    {"WKT VERT*", FormatUse::read, "its unit is that of z; without it, that of x and y"},
-    {"GeoKey 1024: 1", FormatUse::read, "projected"},
-    {"GeoKey 1024: 2", FormatUse::refused, las_in_degrees},
-    {"GeoKey 1024: 3", FormatUse::refused, las_geocentric},
-    {"GeoKey 1024: *", FormatUse::noted, "a projected system is assumed"},
-    {"GeoKey 3076", FormatUse::read, "unit of x and y; without it, metres"},
-    {"GeoKey 4099", FormatUse::read, "unit of z; without it, that of x and y"},
-    {"unit of *", FormatUse::noted, "coordinates become metres"},
-    {"other unit of *", FormatUse::refused, "metres or feet; pdal translate with filters.reprojection"},
     {"LAZ compressor 1", FormatUse::refused, "chunks of points, as by laszip"},
     {"LAZ compressor 2", FormatUse::read, "chunks of points of formats 0 to 3"},
     {"LAZ compressor 3", FormatUse::read, "chunks of layers of formats 6 to 10, also of COPC"},
