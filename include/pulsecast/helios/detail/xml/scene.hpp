@@ -116,7 +116,8 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.know({"rotation"});
       if (const pugi::xml_node param = filter.param("rotation"))
         io.inside(param, [&](XmlInput& list) {
-          list.know({"type", "key", "value"});
+          list.know({"type", "key"});
+          list.without_effect({"value"});
           transform.rotations.emplace_back().fields(list);
         });
     } else if (is("translate")) {
