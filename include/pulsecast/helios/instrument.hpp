@@ -3,17 +3,10 @@
 #ifndef PULSECAST_HELIOS_INSTRUMENT_HPP
 #define PULSECAST_HELIOS_INSTRUMENT_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/channels.hpp>
-#include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/survey.hpp>
 
 /// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
 namespace PULSECAST_NAMESPACE::helios {
@@ -86,8 +79,6 @@ template <EchoWidth Width = NoWidth>
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
-
-#include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

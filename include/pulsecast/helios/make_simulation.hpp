@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
-#include <functional>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>
 

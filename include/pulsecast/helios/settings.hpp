@@ -3,12 +3,6 @@
 #ifndef PULSECAST_HELIOS_SETTINGS_HPP
 #define PULSECAST_HELIOS_SETTINGS_HPP
 
-#include <filesystem>
-
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/settings/fields.hpp>
-#include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 

@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_PTX_HPP
 #define PULSECAST_IO_PTX_HPP
 
-#include <algorithm>
-#include <array>
-
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

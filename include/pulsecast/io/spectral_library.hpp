@@ -3,14 +3,8 @@
 #ifndef PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 #define PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -39,11 +33,8 @@ struct SpectrumFile {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>
 

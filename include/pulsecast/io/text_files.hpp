@@ -3,13 +3,7 @@
 #ifndef PULSECAST_IO_TEXT_FILES_HPP
 #define PULSECAST_IO_TEXT_FILES_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 /// Text files of points, pulses, subrays and waveforms.
 namespace PULSECAST_NAMESPACE::io {

@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_TRAJECTORY_HPP
 #define PULSECAST_IO_TRAJECTORY_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/detail/trajectory/table.hpp>
-#include <pulsecast/io/output_file.hpp>
-#include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -3,18 +3,12 @@
 #ifndef PULSECAST_PAGE_PAGE_HPP
 #define PULSECAST_PAGE_PAGE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/page/detail/columns.hpp>
-#include <pulsecast/page/detail/json.hpp>
-#include <pulsecast/page/detail/sample.hpp>
 #include <pulsecast/version.hpp>
 
 #if !__has_include(<pulsecast/page/detail/assets.hpp>)

@@ -5,18 +5,9 @@
 
 #include <sys/random.h>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
 #include <mutex>
-#include <stdexcept>
-#include <thread>
-
-#include <httplib.h>
 
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/local_server.hpp>
 #include <pulsecast/page/page.hpp>
 #include <pulsecast/run.hpp>

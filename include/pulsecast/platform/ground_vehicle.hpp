@@ -3,12 +3,8 @@
 #ifndef PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
-#include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/rolling_wheel.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
 

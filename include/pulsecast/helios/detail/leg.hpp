@@ -3,13 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LEG_HPP
 #define PULSECAST_HELIOS_DETAIL_LEG_HPP
 
-#include <algorithm>
-#include <variant>
-
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/instrument.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
@@ -17,7 +12,6 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
-#include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -3,21 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 #define PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 
-#include <algorithm>
-#include <variant>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/fiber_array.hpp>
-#include <pulsecast/deflector/fixed_beam.hpp>
-#include <pulsecast/deflector/oscillating_mirror.hpp>
-#include <pulsecast/deflector/palmer_mirror.hpp>
-#include <pulsecast/deflector/polygon_mirror.hpp>
-#include <pulsecast/deflector/risley_prisms.hpp>
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/survey_optic.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/scanner/scanner.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

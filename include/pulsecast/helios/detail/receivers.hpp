@@ -3,15 +3,10 @@
 #ifndef PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 #define PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/radiometry.hpp>
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 

@@ -3,12 +3,7 @@
 #ifndef PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 #define PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>

@@ -4,9 +4,7 @@
 #define PULSECAST_PLATFORM_DETAIL_SPEED_PROFILE_HPP
 
 #include <span>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/platform/detail/piecewise_cubic.hpp>
 
 namespace PULSECAST_NAMESPACE {

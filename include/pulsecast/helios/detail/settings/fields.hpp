@@ -6,13 +6,9 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
 /// Tables of settings: `fields(FieldIo&)` of a struct has a row for each member, with its name,

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 
-#include <algorithm>
-#include <vector>
-
-#include <pugixml.hpp>
-
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/detail/xml/encoding.hpp>
 #include <pulsecast/helios/detail/xml/faults.hpp>
 #include <pulsecast/io/input_file.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 #include <pulsecast/helios/settings.hpp>

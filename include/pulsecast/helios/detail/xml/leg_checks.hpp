@@ -3,12 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 
-#include <algorithm>
-#include <variant>
-
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -5,13 +5,7 @@
 
 #include <memory>
 #include <unordered_map>
-#include <vector>
 
-#include <pugixml.hpp>
-
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/helios/detail/asset_search.hpp>
-#include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

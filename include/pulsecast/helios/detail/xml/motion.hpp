@@ -3,12 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
 
-#include <variant>
-
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<dmotion>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

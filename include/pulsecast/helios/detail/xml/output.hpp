@@ -3,17 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <vector>
-
 #include <pugixml.hpp>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_XML_PLATFORM_HPP
 
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<platform>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

@@ -3,17 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_SCENE_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_SCENE_HPP
 
-#include <algorithm>
-#include <variant>
-
-#include <pugixml.hpp>
-
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/asset_search.hpp>
-#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/motion.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<scene>`, its parts, and their placing filters.
 namespace PULSECAST_NAMESPACE::helios::xml {

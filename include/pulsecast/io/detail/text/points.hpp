@@ -3,17 +3,12 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 #define PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/text/text_point_columns.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

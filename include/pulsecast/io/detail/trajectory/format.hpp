@@ -3,17 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
-#include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <set>
-#include <string>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_HEAD_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_HEAD_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
 

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/head.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
