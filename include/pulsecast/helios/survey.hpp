@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_SURVEY_HPP
 
 #include <pulsecast/helios/detail/leg.hpp>
-#include <pulsecast/helios/detail/survey_options.hpp>
 #include <pulsecast/platform/legs.hpp>
 
 /// Compilation of survey settings to pulses.

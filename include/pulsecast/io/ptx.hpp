@@ -29,12 +29,11 @@ struct PtxScan {
   }
 };
 
-/// Writes scans as PTX, one after another: a header with columns, rows and pose, then a line for each
-/// row of each column: x y z [m] in the frame of the scanner, and reflectance up to 1, with 6
-/// decimals. The point is the first echo of the slot; without one the line is `0 0 0 0.5`. Echoes of
-/// slots without a place, and further ones of a slot, are counted and left out.
-/// `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: ten lines of header;
-/// rows of the 4 by 4 matrix are the images of the axes, and the translation.
+/// Writes scans as PTX, one after another: a header with columns, rows and pose, then a line for each row of each
+/// column: x y z [m] in the frame of the scanner, and reflectance up to 1, with 6 decimals. The point is the first echo
+/// of the slot; without one the line is `0 0 0 0.5`. Echoes of slots without a place, and further ones of a slot, are
+/// counted and left out. `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: ten lines of
+/// header; rows of the 4 by 4 matrix are the images of the axes, and the translation.
 class PtxWriter {
  public:
   /// Scans are in ascending order of slots. @throws SettingError, also for others @throws FileError

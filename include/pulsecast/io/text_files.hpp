@@ -128,10 +128,9 @@ static_assert(EchoSink<PulseTextWriter>);
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
-/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point
-/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9;
-/// cosIncidence and backscatter as in `Hit`, 6 each; object and class. Subrays without a hit have
-/// no line. `close()` completes the file: see `OutputFile`.
+/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point [m], 4 decimals; range
+/// [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and backscatter as in `Hit`, 6
+/// each; object and class. Subrays without a hit have no line. `close()` completes the file: see `OutputFile`.
 class SubrayTextWriter {
  public:
   /// Opens the file. @throws FileError

@@ -128,10 +128,9 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
   return out;
 }
 
-/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and
-/// point attributes. Works in any browser since 2023, without a network. The file depends on echoes
-/// and settings alone. `PageSample` thins larger clouds; `page_columns` states the accuracy. Only
-/// `close()` makes the file: see `OutputFile`.
+/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes.
+/// Works in any browser since 2023, without a network. The file depends on echoes and settings alone. `PageSample`
+/// thins larger clouds; `page_columns` states the accuracy. Only `close()` makes the file: see `OutputFile`.
 class PageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

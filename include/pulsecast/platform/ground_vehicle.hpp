@@ -133,11 +133,10 @@ class FootingFinder {
   FootingFinder(const G& ground, const GroundVehicleSettings& settings)
       : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
 
-  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the
-  /// four wheels. As their contact depends on the attitude, the plane is iterated from the footing
-  /// before; each round leaves about the square of the slope of the error. Wheels keep to the level
-  /// that this footing leads to. Throws a `SettingError` where there is no ground. Source: slopes
-  /// of a plane through a rectangle are differences of the means of opposite sides.
+  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. As their
+  /// contact depends on the attitude, the plane is iterated from the footing before; each round leaves about the square
+  /// of the slope of the error. Wheels keep to the level that this footing leads to. Throws a `SettingError` where
+  /// there is no ground. Source: slopes of a plane through a rectangle are differences of the means of opposite sides.
   [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
     Footing expected = before_;
     expected.height += step * expected.ahead;

@@ -7,7 +7,6 @@
 
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
-#include <pulsecast/helios/detail/survey_options.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -196,9 +196,8 @@ struct OpticBuilder {
   return error;
 }
 
-/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the
-/// mount: they add up, and `boresight` (instrument on the body) does not turn it.
-/// @throws SettingError with the attribute at fault
+/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the mount: they add up,
+/// and `boresight` (instrument on the body) does not turn it. @throws SettingError with the attribute at fault
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {

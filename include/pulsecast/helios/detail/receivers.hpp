@@ -63,11 +63,10 @@ namespace detail {
                                                  : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }
 
-/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and
-/// `maxFullwaveRange_ns` are one-way times of light and count twice; `binSize_ns` is two-way time.
-/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks:
-/// a mean range between water and its bottom is meaningless. The library's threshold replaces that of
-/// HELIOS++, which is less than a photon.
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
+/// one-way times of light and count twice; `binSize_ns` is two-way time. Echoes are timed by true ranges, but with the
+/// library's physics or multi-bounce light by peaks: a mean range between water and its bottom is meaningless. The
+/// library's threshold replaces that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;

@@ -11,8 +11,6 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/helios/detail/xml/motion.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
 
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
 

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
 #include <pulsecast/io/output_file.hpp>
