@@ -9,12 +9,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Settings of a trajectory file.
-struct TrajectoryFileSettings {
-  double start_time = 0;  ///< clock time at tick 0 [s]
-
-  void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
-};
+using TrajectoryFileSettings = TextFileSettings;  ///< settings of a trajectory file, which has no waveforms
 
 /// Calls `record` with record times of a leg: multiples of `interval` [s] from 0, and `duration`.
 void for_each_record(const Tick& duration, double interval, const auto& record) {
