@@ -40,8 +40,7 @@ class Instrument {
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range;
-  /// empty without errors.
+  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range; or empty.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;

@@ -97,9 +97,9 @@ namespace detail {
 
 }  // namespace detail
 
-/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi).
-/// Poses are in order of time, with a jump's time twice; `start_time` [s] is added to times.
-/// @throws SettingError @throws FileError for unordered, too large or non-unit poses
+/// Writes a trajectory for `read_trajectory`, in all digits, yaw in [0, 2 pi). Poses are in order of time, a jump's
+/// time twice; `start_time` [s] is added. @throws SettingError @throws FileError for unordered, too large or non-unit
+/// poses
 inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
                              const TrajectoryFormat& format = csv_format(), double start_time = 0) {
   format.validate();

@@ -42,8 +42,7 @@ struct LegPath {
   std::optional<double> clock{};  ///< start by the clock of a trajectory, if it counts [s]
 };
 
-/// Paths of all legs of a survey on a ground. Settings and options must outlive it.
-/// @throws SettingError with leg and attribute, FileError of a trajectory
+/// Paths of the legs of a survey, which must outlive them. @throws SettingError with leg and attribute, FileError
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)

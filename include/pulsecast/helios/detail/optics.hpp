@@ -38,8 +38,7 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of
-/// the device about the same centre.
+/// Gate of a leg: too wide, it is cut to the sweep of the mirror, then to the width of the device about its centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
                                             const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);

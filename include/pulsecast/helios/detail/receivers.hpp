@@ -116,8 +116,7 @@ struct ReceiverGroups {
     }
   }
 
-  /// Receivers for `Survey`: `make(channel)` of one channel of each group. Those of `scanner` may
-  /// have been changed, all of a group in the same way.
+  /// Receivers for `Survey`: `make(channel)` of a channel of each group. `scanner` may differ, but not within a group.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;

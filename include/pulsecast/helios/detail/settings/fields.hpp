@@ -67,8 +67,7 @@ inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, ki
   return std::fabs(angle) > max_angle && angle == std::round(angle);
 }
 
-/// True for an angle whose degrees are an eighth, a quarter, half of a turn or, if `turns` may be, a whole one in
-/// radians, as if given in them [rad].
+/// True for degrees that are pi/4, pi/2, pi or, if `turns` may be, 2 pi: given in radians? [rad]
 [[nodiscard]] inline bool looks_like_radians(double angle, bool turns) noexcept {
   const double given = std::fabs(degrees(angle)), eighths = std::round(given / (pi / 4));
   const bool is_usual = eighths == 1 || eighths == 2 || eighths == 4 || (turns && eighths == 8);

@@ -58,8 +58,7 @@ namespace PULSECAST_NAMESPACE::helios::xml {
   return pugi::as_utf8(made);
 }
 
-/// Text in UTF-8 of one in UTF-16 with a byte order mark; halves of pairs become U+FFFD. None for other texts.
-/// Source: RFC 2781.
+/// Text in UTF-8 of one in UTF-16 with a byte order mark, half pairs as U+FFFD; none for others. Source: RFC 2781.
 [[nodiscard]] inline std::optional<std::string> utf8_of_utf16(std::string_view text) {
   const bool is_little = text.starts_with("\xFF\xFE");
   if (!is_little && !text.starts_with("\xFE\xFF")) return std::nullopt;

@@ -11,8 +11,7 @@
 /// Reading of elements. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. `finish`
-/// reports names that were not requested.
+/// Reads an element; `params` of a filter (`<param key value>`) as attributes. `finish` reports names not requested.
 class XmlInput final : public FieldIo {
  public:
   using Read = std::function<void(XmlInput&)>;

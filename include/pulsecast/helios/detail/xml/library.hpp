@@ -16,8 +16,7 @@ namespace PULSECAST_NAMESPACE::helios {
   return folders;
 }
 
-/// Document of a survey or of assets, with its elements by id. Its files are searched in the
-/// folders of assets, the folder of the survey, and its own.
+/// Document, its elements by id. Its files are searched in the folders of assets, of the survey, and its own.
 class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders,

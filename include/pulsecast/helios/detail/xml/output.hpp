@@ -9,8 +9,7 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Writes an element, as `XmlInput` reads it: what that would refuse is a `SettingError`, what it
-/// would warn of is a note.
+/// Writes an element as `XmlInput` reads it: what that refuses is a `SettingError`, what it warns of a note.
 class XmlOutput final : public FieldCheck {
  public:
   explicit XmlOutput(pugi::xml_node node, bool params = false) : node_(node), params_(params) {}

@@ -20,8 +20,7 @@ inline constexpr std::array<FormatRule, 5> ptx_rules{{
 }};
 }  // namespace detail
 
-/// Reader of the points of a PTX file: scans of columns x rows lines, placed by their transforms. Throws a `FileError`
-/// with path and line.
+/// Reader of the points of a PTX file: scans of columns x rows, placed by transforms. @throws FileError with path, line
 class PtxPoints {
  public:
   /// True if the file begins as a scan: two lines are whole numbers, and the third is none.

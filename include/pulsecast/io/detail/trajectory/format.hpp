@@ -237,8 +237,7 @@ struct TrajectoryFormat {
 /// CSV: columns in any order, with names and units in the first line.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees.
-/// Other columns may be between, if named.
+/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees, other columns named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
   return {.names = ColumnNames::comments,
           .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},

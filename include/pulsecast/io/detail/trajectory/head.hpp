@@ -116,8 +116,7 @@ class TrajectoryHead {
     return 2 * static_cast<std::size_t>(numbers) > cells.size();
   }
 
-  /// Takes a line before the first row: names of columns, their units, or a preamble, which is skipped. False for a
-  /// row.
+  /// Takes a line before the first row: names of columns, their units, or a preamble, to skip. False for a row.
   bool takes_line() {
     const std::vector<std::string_view>& cells = table_.cells();
     const auto is_known = [&](std::string_view name) {
