@@ -5,14 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <ctime>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/detail/sample_statistics.hpp>
@@ -179,8 +172,7 @@ class RunForecaster {
     return blocks;
   }
 
-  /// Sampling weights: number of blocks of the survey per block of a sample, by the kind of its first slot. Source:
-  /// Horvitz & Thompson 1952.
+  /// Blocks of the survey per block of a sample, by the kind of its first slot. Source: Horvitz & Thompson 1952.
   [[nodiscard]] std::vector<double> weights_of(std::span<const Kind::Value> begin_at) const {
     detail::BySlotKind number{};
     for (const Kind::Value kind : begin_at) ++number[kind];

@@ -3,14 +3,10 @@
 #ifndef PULSECAST_REFINEMENTS_HPP
 #define PULSECAST_REFINEMENTS_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/lanes.hpp>
@@ -172,8 +168,7 @@ PULSECAST_OPTIONAL_MEMBER(VisitsMaterials, "void visit_materials(const Visitor&)
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
 PULSECAST_OPTIONAL_CONSTANT(UniformGeometry, uniform_surface)
 
-/// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at
-/// random.
+/// Geometry whose hits do not depend on the key of the rays (seed, pulse and subray): nothing is drawn at random.
 PULSECAST_OPTIONAL_CONSTANT(DeterministicGeometry, deterministic)
 
 /// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
@@ -214,12 +209,10 @@ concept PreparesForLasers = requires(D& detector, const Laser& laser) {
 };
 PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepare, (std::declval<const Laser&>()))
 
-/// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections
-/// only.
+/// Detector that is asked for every pulse sent, also without returned light. Others need reflections.
 PULSECAST_OPTIONAL_CONSTANT(RunsWithoutReflections, runs_without_reflections)
 
-/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a target with
-/// `SceneQueries`.
+/// Detector that reads `Reflection::velocity`: of a transport that `TracesVelocity`, and a target with `SceneQueries`.
 PULSECAST_OPTIONAL_CONSTANT(ReadsVelocity, reads_velocity)
 
 struct WaveformMoments;
@@ -233,8 +226,7 @@ concept MomentWidthMeasure = requires(const W w, const WaveformMoments& moments)
 PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width,
                           (std::declval<const WaveformMoments&>()), && false)
 
-/// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be
-/// sampled.
+/// Measure of width that needs no samples below a share of the highest: the tail of a waveform need not be sampled.
 template <class W>
 concept TruncatedWidthMeasure = requires(const W w) {
   { w.min_share() } noexcept -> std::same_as<double>;

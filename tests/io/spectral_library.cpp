@@ -138,6 +138,13 @@ TEST_CASE("a file that is no spectrum gives one error, with its line") {
   CHECK(contains(problem("1e-320 0.2\n1 0.1\n"), "line 1"));
   CHECK(contains(problem("Y Units: Transmittance (percent)\n0.5 0.2\n"),
                  "line 1: 'Y Units: Transmittance (percent)': expected"));
+  CHECK(
+      contains(problem("nm;reflectance\n400,5;0,25\n"), "line 2: '400,5;0,25': expected numbers with a decimal point"));
+  CHECK(contains(problem("400,5 0,25\n"), "decimal point"));
+  CHECK(problem("400, 0.2, 0.1\n").empty());
+  CHECK(contains(problem("nm, transmittance, reflectance\n400,0.7,0.2\n"),
+                 "line 1: 'nm, transmittance, reflectance': expected reflectance after"));
+  CHECK(contains(problem("Wavelength (Angstrom) Reflectance\n4000 0.2\n"), "expected wavelengths in nm"));
   CHECK(contains(problem(std::string("0.5 0.2\n\0\0\n", 11)), "binary"));
   CHECK_THROWS_AS((void)read_spectrum(folder / "none"), FileError);
 }

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_DOCUMENT_HPP
 #define PULSECAST_HELIOS_DOCUMENT_HPP
 
-#include <filesystem>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/xml/faults.hpp>
 #include <pulsecast/helios/settings.hpp>

@@ -3,17 +3,10 @@
 #ifndef PULSECAST_HELIOS_INSTRUMENT_HPP
 #define PULSECAST_HELIOS_INSTRUMENT_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/channels.hpp>
-#include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/survey.hpp>
 
 /// Scanners of documents as stages of the library, for user-defined platforms, maps and surveys.
 namespace PULSECAST_NAMESPACE::helios {
@@ -47,8 +40,7 @@ class Instrument {
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
-  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range;
-  /// empty without errors.
+  /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range; or empty.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
@@ -86,8 +78,6 @@ template <EchoWidth Width = NoWidth>
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_INSTRUMENT)
-
-#include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
-#include <functional>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
@@ -17,8 +15,7 @@ struct SurveySettings;
 /// Gives the parts of a repetition's scene: the result of `build`, or an equal earlier one.
 using PartProvider = std::function<BuiltParts(int repetition, const std::function<BuiltParts()>& build)>;
 
-/// Loads the scene of a survey and plans its legs, for the first repetition.
-/// @throws SettingError with leg or part and attribute, or FileError
+/// Loads the scene and plans the legs of repetition 0. @throws SettingError with leg or part and attribute, FileError
 [[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
                                                           const Simulation::Settings& settings = {},
                                                           const PartProvider& provider = {});

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_SCENE_HPP
 #define PULSECAST_HELIOS_SCENE_HPP
 
-#include <filesystem>
-#include <functional>
 #include <set>
 
 #include <pulsecast/base/compiled.hpp>

@@ -3,18 +3,11 @@
 #ifndef PULSECAST_HELIOS_SETTINGS_HPP
 #define PULSECAST_HELIOS_SETTINGS_HPP
 
-#include <filesystem>
-
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/settings/fields.hpp>
-#include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// Settings of a survey document, in SI units and radians; templates, references and inheritance
-/// are resolved. The comment of a member names its attribute or element, `fields` its limits, which
-/// `check_fields` checks. A 0 may mean a default or none.
+/// Settings of a survey document, in SI units and radians, without templates and references. The comment of a member
+/// names its attribute or element, `fields` its limits, which `check_fields` checks. A 0 may mean a default or none.
 namespace PULSECAST_NAMESPACE::helios {
 
 /// Column of each quantity, from 0.
@@ -283,8 +276,7 @@ struct LegOffsetSettings {
   bool operator==(const LegOffsetSettings&) const = default;
 };
 
-/// `<survey>`. Its overrides of scanner and platform (`<FWFSettings>`, `<detectorSettings>`,
-/// `<scannerMount>`, noise) are stored there.
+/// `<survey>`. Overrides (`<FWFSettings>`, `<detectorSettings>`, `<scannerMount>`, noise) are in scanner and platform.
 struct SurveySettings {
   std::string name{};                             ///< default: that of the file; `name`
   std::optional<std::uint64_t> seed{};            ///< `seed`

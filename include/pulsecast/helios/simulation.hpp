@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_SIMULATION_HPP
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
-#include <filesystem>
-
 #include <pulsecast/any_survey.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>

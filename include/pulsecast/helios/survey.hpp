@@ -3,10 +3,7 @@
 #ifndef PULSECAST_HELIOS_SURVEY_HPP
 #define PULSECAST_HELIOS_SURVEY_HPP
 
-#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
-#include <pulsecast/helios/detail/survey_options.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/platform/legs.hpp>
 
 /// Compilation of survey settings to pulses.
@@ -41,16 +38,10 @@ struct CompiledSurvey {
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINES(HELIOS_SURVEY)
-#include <algorithm>
 #include <unordered_set>
 
 #include <pulsecast/helios/detail/leg_paths.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/xml/writer.hpp>
-#include <pulsecast/helios/instrument.hpp>
-#include <pulsecast/platform/platform.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

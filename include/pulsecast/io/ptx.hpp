@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_PTX_HPP
 #define PULSECAST_IO_PTX_HPP
 
-#include <algorithm>
-#include <array>
-
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -34,12 +29,11 @@ struct PtxScan {
   }
 };
 
-/// Writes scans as PTX, one after another: a header with columns, rows and pose, then a line for each
-/// row of each column: x y z [m] in the frame of the scanner, and reflectance up to 1, with 6
-/// decimals. The point is the first echo of the slot; without one the line is `0 0 0 0.5`. Echoes of
-/// slots without a place, and further ones of a slot, are counted and left out.
-/// `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: ten lines of header;
-/// rows of the 4 by 4 matrix are the images of the axes, and the translation.
+/// Writes scans as PTX, one after another: a header with columns, rows and pose, then a line for each row of each
+/// column: x y z [m] in the frame of the scanner, and reflectance up to 1, with 6 decimals. The point is the first echo
+/// of the slot; without one the line is `0 0 0 0.5`. Echoes of slots without a place, and further ones of a slot, are
+/// counted and left out. `close()` completes the file: see `OutputFile`. Source: Leica Cyclone, PTX: ten lines of
+/// header; rows of the 4 by 4 matrix are the images of the axes, and the translation.
 class PtxWriter {
  public:
   /// Scans are in ascending order of slots. @throws SettingError, also for others @throws FileError

@@ -3,14 +3,8 @@
 #ifndef PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 #define PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/material/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -39,11 +33,8 @@ struct SpectrumFile {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 #include <pulsecast/io/detail/text/table.hpp>
 
@@ -86,6 +77,9 @@ class SpectrumReader {
     while (table_.next()) row();
     if (samples_.empty()) table_.fail("holds no row of two numbers: expected wavelength and reflectance, side by side");
     if (!unit_ || !scale_) titles();
+    if (titles_.find("angstrom") != titles_.npos || titles_.find("frequency") != titles_.npos)
+      fail_at(table_.path(), titles_line_, text::quoted(titles_),
+              ": expected wavelengths in nm, um or m, or wavenumbers in cm-1");
     SpectrumFile file;
     const std::string wavelengths = take_wavelengths();
     file.report = warning(table_.path(), 0, wavelengths, "; ", take_reflectances(file.scale));
@@ -122,8 +116,20 @@ class SpectrumReader {
       return;
     }
     begun_ = true;
+    if (has_decimal_commas(text)) table_.refuse(text, "numbers with a decimal point");
     if (!(*wavelength >= 1e-12 && *wavelength <= 1e12)) table_.refuse(text, "a wavelength greater than 0");
     if (!std::isnan(*reflectance)) samples_.push_back({{*wavelength, *reflectance}, table_.line()});
+  }
+
+  /// True for a comma between digits where a semicolon or blanks separate numbers.
+  [[nodiscard]] static bool has_decimal_commas(std::string_view text) {
+    const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+    bool commas = false, others = false;
+    for (std::size_t i = 1; i < text.size(); ++i) {
+      commas = commas || (text[i] == ',' && is_digit(i - 1) && is_digit(i + 1));
+      others = others || text[i] == ';' || (text::is_blank(text[i]) && is_digit(i - 1) && is_digit(i + 1));
+    }
+    return commas && others;
   }
 
   void header(std::string_view text) {
@@ -140,6 +146,9 @@ class SpectrumReader {
 
   /// Takes units from the line above the numbers if no key named them.
   void titles() {
+    for (const std::string_view other : {"transmit", "absor", "emiss"})
+      if (titles_.find(other) < titles_.find("reflect"))
+        fail_at(table_.path(), titles_line_, text::quoted(titles_), ": expected reflectance after the wavelength");
     if (!unit_) unit_ = wavelength_unit_in(titles_);
     if (scale_ || titles_.find("reflect") == titles_.npos) return;
     scale_ = reflectance_scale_in(titles_);

@@ -3,25 +3,10 @@
 #ifndef PULSECAST_IO_TEXT_FILES_HPP
 #define PULSECAST_IO_TEXT_FILES_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 /// Text files of points, pulses, subrays and waveforms.
 namespace PULSECAST_NAMESPACE::io {
-
-/// Settings of a text file.
-struct TextFileSettings {
-  double start_time = 0;  ///< clock time at tick 0 [s]
-  /// Samples of each waveform: shorter ones end with zeros, longer ones are cut; 0: as they are
-  std::uint32_t waveform_samples = 0;
-
-  void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
-};
 
 namespace detail {
 
@@ -134,10 +119,9 @@ static_assert(EchoSink<PulseTextWriter>);
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
-/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point
-/// [m], 4 decimals; range [m], 4; intensity: received power of a pulse without length [nW], 9;
-/// cosIncidence and backscatter as in `Hit`, 6 each; object and class. Subrays without a hit have
-/// no line. `close()` completes the file: see `OutputFile`.
+/// fullwaveIndex: slot of the pulse; subray: number in the footprint, from 0; x, y, z: hit point [m], 4 decimals; range
+/// [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and backscatter as in `Hit`, 6
+/// each; object and class. Subrays without a hit have no line. `close()` completes the file: see `OutputFile`.
 class SubrayTextWriter {
  public:
   /// Opens the file. @throws FileError

@@ -3,23 +3,13 @@
 #ifndef PULSECAST_IO_TRAJECTORY_HPP
 #define PULSECAST_IO_TRAJECTORY_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/detail/trajectory/table.hpp>
-#include <pulsecast/io/output_file.hpp>
-#include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Settings of a trajectory file.
-struct TrajectoryFileSettings {
-  double start_time = 0;  ///< clock time at tick 0 [s]
-
-  void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
-};
+using TrajectoryFileSettings = TextFileSettings;  ///< settings of a trajectory file, which has no waveforms
 
 /// Calls `record` with record times of a leg: multiples of `interval` [s] from 0, and `duration`.
 void for_each_record(const Tick& duration, double interval, const auto& record) {
@@ -107,9 +97,9 @@ namespace detail {
 
 }  // namespace detail
 
-/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi).
-/// Poses are in order of time, with a jump's time twice; `start_time` [s] is added to times.
-/// @throws SettingError @throws FileError for unordered, too large or non-unit poses
+/// Writes a trajectory for `read_trajectory`, in all digits, yaw in [0, 2 pi). Poses are in order of time, a jump's
+/// time twice; `start_time` [s] is added. @throws SettingError @throws FileError for unordered, too large or non-unit
+/// poses
 inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses,
                              const TrajectoryFormat& format = csv_format(), double start_time = 0) {
   format.validate();

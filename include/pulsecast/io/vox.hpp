@@ -57,10 +57,7 @@ struct VoxelFile {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_VOX)
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>

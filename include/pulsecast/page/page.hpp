@@ -3,18 +3,12 @@
 #ifndef PULSECAST_PAGE_PAGE_HPP
 #define PULSECAST_PAGE_PAGE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/page/detail/columns.hpp>
-#include <pulsecast/page/detail/json.hpp>
-#include <pulsecast/page/detail/sample.hpp>
 #include <pulsecast/version.hpp>
 
 #if !__has_include(<pulsecast/page/detail/assets.hpp>)
@@ -134,10 +128,9 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
   return out;
 }
 
-/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and
-/// point attributes. Works in any browser since 2023, without a network. The file depends on echoes
-/// and settings alone. `PageSample` thins larger clouds; `page_columns` states the accuracy. Only
-/// `close()` makes the file: see `OutputFile`.
+/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes.
+/// Works in any browser since 2023, without a network. The file depends on echoes and settings alone. `PageSample`
+/// thins larger clouds; `page_columns` states the accuracy. Only `close()` makes the file: see `OutputFile`.
 class PageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

@@ -5,18 +5,9 @@
 
 #include <sys/random.h>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
 #include <mutex>
-#include <stdexcept>
-#include <thread>
-
-#include <httplib.h>
 
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/local_server.hpp>
 #include <pulsecast/page/page.hpp>
 #include <pulsecast/run.hpp>
@@ -129,8 +120,7 @@ class PageServer {
     return out;
   }
 
-  /// True if a request has the right host name, as others may resolve to this machine ("DNS
-  /// rebinding"), and does not come from another page.
+  /// True if a request names this host, as others may resolve to it ("DNS rebinding"), and comes from no other page.
   [[nodiscard]] bool is_ours(const httplib::Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (host != "127.0.0.1" + host_ && host != "localhost" + host_) return false;

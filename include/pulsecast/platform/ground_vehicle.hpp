@@ -3,13 +3,8 @@
 #ifndef PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/detail/curved_path.hpp>
-#include <pulsecast/platform/detail/piecewise_cubic.hpp>
-#include <pulsecast/platform/detail/rolling_wheel.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -107,6 +102,36 @@ class GroundVehicleDrive {
 
 namespace detail {
 
+/// Lowest point [m] that a wheel of a radius `r` [m] reaches as it rolls along a profile: the
+/// closing of the profile with the wheel's disc, which is the ground itself wherever that bends
+/// less than the wheel. `at(way)` is the height a way ahead [m], minus infinity without ground;
+/// `below` is that at the wheel. Source: ISO 16610-41:2015, closing with a disk.
+[[nodiscard]] std::optional<double> lowest_of_wheel(double r, const auto& at, const std::optional<double>& below) {
+  constexpr double nothing = -std::numeric_limits<double>::infinity();
+  if (below) {
+    const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
+        heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
+    const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
+    bool touched = true;  // the ground stays below a parabola of half the wheel's curvature
+    for (std::size_t k = 0; k < 4; ++k)
+      touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
+    if (touched) return below;
+  }
+  constexpr int n = 12;  // samples of a radius
+  std::array<double, 4 * n + 1> profile{};
+  for (int k = -2 * n; k <= 2 * n; ++k)
+    profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
+  const auto disc = [&](int k) { return r * std::sqrt(1 - static_cast<double>(k * k) / (n * n)); };
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int axle = -n; axle <= n; ++axle) {
+    double centre = nothing;
+    for (int k = -n; k <= n; ++k)
+      centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
+    lowest = std::fmin(lowest, centre - disc(axle));
+  }
+  return lowest > nothing ? std::optional(lowest) : below;
+}
+
 /// Checked waypoints without those less than a centimetre from the one before; both ends stay.
 /// `numbers` receives their indices in the list. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
@@ -137,11 +162,10 @@ class FootingFinder {
   FootingFinder(const G& ground, const GroundVehicleSettings& settings)
       : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
 
-  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the
-  /// four wheels. As their contact depends on the attitude, the plane is iterated from the footing
-  /// before; each round leaves about the square of the slope of the error. Wheels keep to the level
-  /// that this footing leads to. Throws a `SettingError` where there is no ground. Source: slopes
-  /// of a plane through a rectangle are differences of the means of opposite sides.
+  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. As their
+  /// contact depends on the attitude, the plane is iterated from the footing before; each round leaves about the square
+  /// of the slope of the error. Wheels keep to the level that this footing leads to. Throws a `SettingError` where
+  /// there is no ground. Source: slopes of a plane through a rectangle are differences of the means of opposite sides.
   [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
     Footing expected = before_;
     expected.height += step * expected.ahead;

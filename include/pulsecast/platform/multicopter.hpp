@@ -3,10 +3,7 @@
 #ifndef PULSECAST_PLATFORM_MULTICOPTER_HPP
 #define PULSECAST_PLATFORM_MULTICOPTER_HPP
 
-#include <algorithm>
-
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/detail/piecewise_cubic.hpp>
 #include <pulsecast/platform/detail/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <bit>
 
-#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
-#include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

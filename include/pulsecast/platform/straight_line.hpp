@@ -7,8 +7,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along it,
-/// or north.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along it, or north.
 struct StraightLine {
   using refinements = refines<tag::MovesInLanes, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]

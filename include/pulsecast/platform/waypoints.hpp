@@ -116,9 +116,8 @@ class Waypoints {
     for (const Vec3& v : velocities_) require_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
-  /// Velocities between two jumps: at each waypoint that of the parabola through it and its
-  /// neighbours; at the ends, of the parabola through the outer three. Source: de Boor 1978, A
-  /// Practical Guide to Splines, ch. IV; Catmull & Rom 1974 for even times.
+  /// Velocities between two jumps: of the parabola through each waypoint and its neighbours; at ends, the outer three.
+  /// Source: de Boor 1978, A Practical Guide to Splines, ch. IV; Catmull & Rom 1974 for even times.
   void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto velocity = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };

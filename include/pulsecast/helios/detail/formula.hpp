@@ -15,9 +15,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, parentheses,
-/// `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`, and `+ - * / ^`, which
-/// are left-associative, with their usual precedence. Angles in radians.
+/// Formula of one variable, as in `0.01*sin(2*t)`, of numbers, `pi`, `e`, parentheses, `exp ln sqrt abs cos sin tan
+/// acos asin atan cosh sinh tanh atan2(y, x)` [rad], and left-associative `+ - * / ^` in their usual precedence.
 class Formula {
  public:
   /// At most 10,000 characters, parentheses 100 deep. @throws std::invalid_argument with position

@@ -3,23 +3,10 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 #define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
-#include <algorithm>
 #include <map>
-#include <variant>
 
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
-#include <pulsecast/helios/detail/survey_options.hpp>
-#include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/platform/ground_vehicle.hpp>
-#include <pulsecast/platform/multicopter.hpp>
-#include <pulsecast/platform/platform.hpp>
-#include <pulsecast/platform/straight_line.hpp>
-#include <pulsecast/platform/tripod.hpp>
-#include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -55,8 +42,7 @@ struct LegPath {
   std::optional<double> clock{};  ///< start by the clock of a trajectory, if it counts [s]
 };
 
-/// Paths of all legs of a survey on a ground. Settings and options must outlive it.
-/// @throws SettingError with leg and attribute, FileError of a trajectory
+/// Paths of the legs of a survey, which must outlive them. @throws SettingError with leg and attribute, FileError
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)

@@ -3,21 +3,12 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 #define PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 
-#include <algorithm>
-#include <variant>
-
-#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/survey_pipeline.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
-#include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
-#include <pulsecast/survey.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_MOTION_HPP
 #define PULSECAST_HELIOS_DETAIL_MOTION_HPP
 
-#include <algorithm>
 #include <map>
-#include <variant>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 

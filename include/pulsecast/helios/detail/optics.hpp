@@ -3,21 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 #define PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 
-#include <algorithm>
-#include <variant>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/deflector/aim.hpp>
-#include <pulsecast/deflector/fiber_array.hpp>
-#include <pulsecast/deflector/fixed_beam.hpp>
-#include <pulsecast/deflector/oscillating_mirror.hpp>
-#include <pulsecast/deflector/palmer_mirror.hpp>
-#include <pulsecast/deflector/polygon_mirror.hpp>
-#include <pulsecast/deflector/risley_prisms.hpp>
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/survey_optic.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/scanner/scanner.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -51,8 +38,7 @@ struct MirrorGate {
   bool is_cut = false;      ///< the leg requests a gate beyond the sweep of the mirror
 };
 
-/// Gate of a leg. One that is too wide is cut to the sweep of the mirror, and then to the width of
-/// the device about the same centre.
+/// Gate of a leg: too wide, it is cut to the sweep of the mirror, then to the width of the device about its centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic,
                                             const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
@@ -209,9 +195,8 @@ struct OpticBuilder {
   return error;
 }
 
-/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the
-/// mount: they add up, and `boresight` (instrument on the body) does not turn it.
-/// @throws SettingError with the attribute at fault
+/// Optic of a channel in a leg. The beam origin is along the axes of the platform, like that of the mount: they add up,
+/// and `boresight` (instrument on the body) does not turn it. @throws SettingError with the attribute at fault
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg,
                                               double pulse_rate, const Rotation& boresight = no_rotation,
                                               double active = 0) {

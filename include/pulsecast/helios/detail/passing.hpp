@@ -56,8 +56,8 @@ template <class Plan>
   return 0.5 * (low + high);
 }
 
-/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards,
-/// until all misses are below 1 cm.
+/// Flight over its waypoints: up to 8 rounds move them outwards, as turns cut corners, until all miss by less than 1
+/// cm.
 [[nodiscard]] inline MulticopterFlight flight_over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
   const std::vector<FlightPoint> wanted = points;
   MulticopterFlight flight = plan_multicopter(points, s);

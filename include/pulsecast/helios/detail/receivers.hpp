@@ -3,15 +3,10 @@
 #ifndef PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 #define PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/radiometry.hpp>
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
@@ -68,11 +63,10 @@ namespace detail {
                                                  : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }
 
-/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and
-/// `maxFullwaveRange_ns` are one-way times of light and count twice; `binSize_ns` is two-way time.
-/// Echoes are timed by true ranges, but with the library's physics or multi-bounce light by peaks:
-/// a mean range between water and its bottom is meaningless. The library's threshold replaces that of
-/// HELIOS++, which is less than a photon.
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are
+/// one-way times of light and count twice; `binSize_ns` is two-way time. Echoes are timed by true ranges, but with the
+/// library's physics or multi-bounce light by peaks: a mean range between water and its bottom is meaningless. The
+/// library's threshold replaces that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
@@ -122,8 +116,7 @@ struct ReceiverGroups {
     }
   }
 
-  /// Receivers for `Survey`: `make(channel)` of one channel of each group. Those of `scanner` may
-  /// have been changed, all of a group in the same way.
+  /// Receivers for `Survey`: `make(channel)` of a channel of each group. `scanner` may differ, but not within a group.
   template <class Make>
   [[nodiscard]] auto units(const ScannerSettings& scanner, const Make& make) const {
     std::vector<decltype(make(scanner.channels.front()))> all;

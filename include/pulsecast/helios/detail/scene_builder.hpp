@@ -3,18 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SCENE_BUILDER_HPP
 #define PULSECAST_HELIOS_DETAIL_SCENE_BUILDER_HPP
 
-#include <algorithm>
-#include <map>
 #include <numeric>
-#include <variant>
 
 #include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/variation.hpp>
-#include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
 #define PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
 
-#include <algorithm>
 #include <set>
 #include <system_error>
-#include <variant>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>

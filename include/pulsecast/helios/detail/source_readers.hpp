@@ -3,15 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SOURCE_READERS_HPP
 #define PULSECAST_HELIOS_DETAIL_SOURCE_READERS_HPP
 
-#include <algorithm>
-#include <filesystem>
 #include <map>
-#include <variant>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
@@ -20,14 +14,9 @@
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/picture.hpp>
 #include <pulsecast/io/png_heights.hpp>
-#include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/vox.hpp>
 #include <pulsecast/io/world_file.hpp>
 #include <pulsecast/shape/class_materials.hpp>
-#include <pulsecast/shape/height_field.hpp>
-#include <pulsecast/shape/raster.hpp>
-#include <pulsecast/shape/triangle_mesh.hpp>
-#include <pulsecast/shape/voxel_grid.hpp>
 
 /// Reading of the sources of parts.
 namespace PULSECAST_NAMESPACE::helios {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIC_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIC_HPP
 
-#include <algorithm>
 #include <memory>
 #include <variant>
 

@@ -256,8 +256,9 @@ class PointCloudReader {
       if (!(colour[k] >= 0 && colour[k] <= largest))
         points.fail_here(text::message("has the colour ", colour[k], ": expected one from 0 to ", largest));
     const Vec3 share = colour / largest;
-    if (!settings_.colour_max && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
+    if (!settings_.colour_max) brightest_ = std::max(brightest_, max_norm(colour));
     squares_[voxel] += share * share;
+    colour_max_ = std::max(colour_max_, largest);
   }
 
   [[nodiscard]] std::optional<Vec3> normal_of(std::size_t voxel) const {
@@ -291,9 +292,12 @@ class PointCloudReader {
 
   void finish_colours() {
     if (!colours_) return;
-    if (brightest_ > 0 && brightest_ <= 255)
-      cloud_.warnings.push_back(
-          "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
+    for (const double usual : {1, 255})
+      if (brightest_ > 0 && brightest_ <= usual && colour_max_ > usual) {
+        cloud_.warnings.push_back(text::message("no colour exceeds ", usual, " of ", colour_max_,
+                                                ": for colours up to ", usual, ", the maximum should be ", usual));
+        break;
+      }
     cloud_.colours.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
       const Vec3 mean = squares_[voxel] / static_cast<double>(counts_[voxel]);
@@ -306,8 +310,8 @@ class PointCloudReader {
   PointCloud cloud_;
   bool normals_ = false, colours_ = false, classes_ = false, objects_ = false;  // true if gathered in the second pass
   Box bounds_;                                                                  // extent of the points
-  Vec3 origin_{}, first_{}, last_{};  // of the lattice [m]; its first and last cells
-  double brightest_ = 0;              // largest channel in LAS files
+  Vec3 origin_{}, first_{}, last_{};       // of the lattice [m]; its first and last cells
+  double brightest_ = 0, colour_max_ = 0;  // largest channel, and its limit
   CellNumbers cells_;
   VoxelLabels class_counts_, object_counts_;
   // for each voxel:

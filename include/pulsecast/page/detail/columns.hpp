@@ -3,12 +3,7 @@
 #ifndef PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 #define PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
@@ -221,13 +216,12 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 ///
 ///     {"count":N,"columns":[{"name":"x","kind":"linear","offset":0,"step":0.001,"differences":true,"planes":2},...]}
 ///
-/// These are the byte planes of each column in turn, lowest byte first. A value is offset + (code -
-/// 1) step, offset exp((code - 1) step), or the (code - 1)th of `values`; code 0: none. Differences
-/// are to the previous code, doubled, less one if negative. `per_pulse`, times the pulse's number,
-/// is added. Values are exact to half a step: that of the settings for positions and origins of
-/// pulses (`from_x`), time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002, width
-/// 1 ps. Amplitudes are exact to 1 %, integers exactly. A colour is 65536 red + 256 green + blue.
-/// Further columns have their `unit`; real ones are exact to a 130,000th of their extent.
+/// These are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1) step, offset
+/// exp((code - 1) step), or the (code - 1)th of `values`; code 0: none. Differences are to the previous code, doubled,
+/// less one if negative. `per_pulse`, times the pulse's number, is added. Values are exact to half a step: that of the
+/// settings for positions and origins of pulses (`from_x`), time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg,
+/// reflectance 0.002, width 1 ps. Amplitudes are exact to 1 %, integers exactly. A colour is 65536 red + 256 green +
+/// blue. Further columns have their `unit`; real ones are exact to a 130,000th of their extent.
 [[nodiscard]] inline std::string page_columns(const PagePoints& all, const PageColumnSettings& settings = {}) {
   settings.validate();
   using detail::linear_codes;

@@ -67,9 +67,8 @@ class BufferedExchange final : public httplib::Stream {
 
 }  // namespace detail
 
-/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses
-/// the routes and the parser of `httplib::Server`. One thread polls all connections, so that idle
-/// clients cost nothing. A connection is one request, without a body.
+/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`, by the routes and parser of
+/// `httplib::Server`. One thread polls all connections: idle ones cost nothing. Each is one request without a body.
 class LocalServer final : public httplib::Server {
  public:
   explicit LocalServer(const LocalServerLimits& limits = {}) : limits_(limits) {

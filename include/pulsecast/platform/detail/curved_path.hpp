@@ -35,10 +35,9 @@ struct PathPiece {
   [[nodiscard]] Stance end() const noexcept { return after(length); }  ///< at its end
 };
 
-/// Angle of the first and the last arc of a three-point turn on the spot by `angle` in [0, pi]; the
-/// middle one, backwards, turns by the rest. All have one radius; for pi, each is pi/3. Source:
-/// family C|C|C of Reeds & Shepp 1990, with centres 2 r apart, for zero displacement: sin(middle /
-/// 2) = sin(angle / 2) / 2.
+/// Angle of the first and the last arc of a three-point turn on the spot by `angle` in [0, pi]; the middle one,
+/// backwards, turns by the rest. All have one radius; for pi, each is pi/3. Source: family C|C|C of Reeds & Shepp 1990,
+/// with centres 2 r apart, for zero displacement: sin(middle / 2) = sin(angle / 2) / 2.
 [[nodiscard]] inline double outer_arc_of_three_point_turn(double angle) noexcept {
   return 0.5 * angle - std::asin(0.5 * std::sin(0.5 * angle));
 }

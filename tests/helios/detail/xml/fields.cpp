@@ -11,8 +11,6 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/helios/detail/xml/motion.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
 
@@ -419,6 +417,10 @@ TEST_CASE("scale and translate replace, with a warning; rotations add up") {
   REQUIRE(scene.parts.size() == 1);
   CHECK(scene.parts[0].transform.scale == 3);
   CHECK(scene.parts[0].transform.rotations.size() == 2);
+  const std::string by_value =
+      R"(<filter type="rotate"><param type="rotation" key="rotation" value="0;0;45"/></filter>)";
+  CHECK(contains(told("<scene id=\"s\"><part>" + (mesh + by_value) + "</part></scene>", scene),
+                 "attribute 'value' has no effect"));
 }
 
 TEST_CASE("of a scene, what cannot be is told") {

@@ -183,6 +183,13 @@ TEST_CASE("each column of points has an effect in PLY files and in texts with a 
            }
            return std::vector<std::string>{};
          }});
+  for (const char* degrees : {"lat*", "lon*"})
+    cases.push_back(
+        {degrees, [=] {
+           PlyBuilder ply = points_of({}, {{1, 2, 3}});
+           ply.elements[0].properties = {"float " + std::string(degrees, 3) + "itude", "float y", "float z"};
+           return read(ply.bytes()).warnings;
+         }});
   test::check_rules(detail::point_rules, cases);
 }
 

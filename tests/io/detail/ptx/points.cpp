@@ -106,10 +106,25 @@ TEST_CASE("each row of the rules of PTX files is kept") {
                                                CHECK(read(sound).positions[0] == Vec3(500'000, 5'400'001, 100));
                                                return read(sound).warnings;
                                              }},
-                                            {"scanner position", count(elsewhere, 3)},
+                                            {"scanner pose", count(elsewhere, 3)},
                                             {"miss", count(sound, 3)},
                                             {"colour", colours}};
   test::check_rules(detail::ptx_rules, cases);
+}
+
+TEST_CASE("axes of the scanner that the transform does not have are noted, as of one that is zero or scales") {
+  for (const Matrix3& axes : {Matrix3{1} * 0.0, Matrix3{1} * 1000.0}) {
+    std::string text = header(1, 1, Matrix3{1}, {}) + "1 2 3 0.5\n";
+    const std::string other = header(1, 1, axes, {});
+    const auto end_of_axes = [](const std::string& of) {
+      std::size_t at = 0;
+      for (int line = 0; line < 6; ++line) at = of.find('\n', at) + 1;
+      return at;
+    };
+    text = text.substr(0, end_of_axes(text)) + other.substr(end_of_axes(other)) + "1 2 3 0.5\n";
+    REQUIRE(read(text).warnings.size() == 1);
+    CHECK(read(text).warnings[0].find("'scanner pose': differs from the transform") != std::string::npos);
+  }
 }
 
 TEST_CASE("texts of points are no PTX files") {

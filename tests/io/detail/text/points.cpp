@@ -107,8 +107,11 @@ TEST_CASE("one first row of names or a count is skipped with a warning, or gives
     REQUIRE(found.warnings.size() == 1);
     CHECK(found.warnings[0].find("a.xyz, line " + what) != std::string::npos);
   };
-  skipped("75\n", "1: '75' is skipped, as a count of points");
-  skipped("//X;Y;Z;Intensity\n75\n", "2: '75' is skipped");
+  CHECK(read("2\n1;2;3\n-4.5;5e3;.25\n").warnings.empty());
+  CHECK(read("75\n1;2;3\n-4.5;5e3;.25\n").warnings.at(0).find("a.xyz: announces 75 points and has 2") !=
+        std::string::npos);
+  skipped("//X;Y;Z;Intensity\n2\n", "3: has 3 columns, and 4 are named");
+  skipped("x (ft);y (ft);z (ft)\n", "1: 'x (ft);y (ft);z (ft)' is skipped, as names of columns");
   skipped("east,north,height\n", "1: 'east,north,height' is skipped, as names of columns");
   for (const char* names : {"X;Y;Z\n", "\"x\" \"y\" \"z\"\n", "# x y z\n", "//X, Y, Z, Intensity\n"}) {
     CAPTURE(names);
@@ -127,12 +130,28 @@ TEST_CASE("one first row of names or a count is skipped with a warning, or gives
   CHECK(normals.colours == Points{{11, 10, 9}});
   CHECK(read("x y z a b c d e f\n1 2 3 4 5 6 7 8 9\n").normals.empty());
   CHECK(read("z y x\n1 2 3\n", {.position = {0, 2, 1}}).positions == Points{{1, 3, 2}});  // settings have the last word
+  for (const char* names : {"y x z\n", "# y x z\n"})
+    CHECK(read(std::string(names) + "1 2 3\n", {.position = {1, 2, 0}})
+              .warnings.at(0)
+              .find("names other columns than the settings") != std::string::npos);
   CHECK(read("# by x\n1 2 3\n").warnings.empty());
   CHECK(read("time,x,y,z\n9,1,2,3\n", {.position = {1, 2, 3}}).positions == Points{{1, 2, 3}});
   for (const char* bad : {"x y z\nx y z\n1 2 3\n", "2\n2\n1 2 3\n", "x 2 z\n1 2 3\n", "x y\n1 2 3\n", "2.5\n1 2 3\n"}) {
     CAPTURE(bad);
     CHECK_THROWS_AS((void)read(bad), FileError);
   }
+}
+
+TEST_CASE("normals far from a length of one, as of colours, get a note") {
+  CHECK(read("1 2 3 255 128 0\n").warnings.at(0).find("has a normal of length 285.") != std::string::npos);
+  CHECK(read("1 2 3 0 0.6 0.8\n").warnings.empty());
+  CHECK(read("1 2 3 0 0 0\n").warnings.empty());
+}
+
+TEST_CASE("each row of the rules of named columns that is refused has a file") {
+  CHECK(error("lat,lon,z\n47,8,400\n").problem() == "'lat,lon,z': expected coordinates in metres, not degrees");
+  CHECK(error("Longitude;Latitude;z\n8;47;400\n").place() == "line 1");
+  CHECK(read("lat,lon,x,y,z\n47,8,1,2,3\n").positions == Points{{1, 2, 3}});
 }
 
 TEST_CASE("rows that cannot be right are refused, with line and column") {

@@ -215,6 +215,23 @@ TEST_CASE("names in a comment count if they define a pose, as in EuRoC's files")
   CHECK(contains(error("timestamp,x,y,z,roll,pitch,yaw\n" + row).problem(), "nanoseconds in a column named time_ns"));
 }
 
+TEST_CASE("names in a comment that are in another order than those of the format are refused") {
+  const std::string row = "7 1 2 3 0 0.6 0 0.8\n";
+  CHECK(read("# timestamp tx ty tz qx qy qz qw\n" + row, tum_format()).poses.size() == 1);
+  CHECK(contains(error("# timestamp tx ty tz qw qx qy qz\n" + row, tum_format()).problem(),
+                 "'qz': expected 'qw', by the order"));
+  CHECK(read("# of the time x as it was driven\n" + row, tum_format()).poses.size() == 1);
+  CHECK(
+      contains(error("# time, easting, northing, h_ell, omega, phi, kappa\n0,1,2,3,4,5,6\n", helios_format()).problem(),
+               "'h_ell': expected 'yaw'"));
+}
+
+TEST_CASE("keys of comments may be in any case, after blanks") {
+  for (const char* key : {"#HEADER:", "# HEADER:", "#header:"})
+    CHECK(read(key + std::string(" t,x,y,z,roll,pitch,yaw\n0,1,2,3,4,5,6\n"), helios_format()).poses[0].position ==
+          Vec3{1, 2, 3});
+}
+
 TEST_CASE("of several lines before the rows, the one most like names is blamed") {
   const FileError wrong = error("by hand\nt,x,y,height_of,roll,pitch,yaw\nthe end\n0,1,2,3,4,5,6\n");
   CHECK(wrong.place() == "line 2");

@@ -433,8 +433,10 @@ TEST_CASE(
   const TrajectoryTable table = read(named + "7,good,1,2,3,4,5,6,more,and more\n", helios_format());
   REQUIRE(table.poses.size() == 1);
   CHECK(table.poses[0].position == Vec3{4, 5, 6});
-  REQUIRE(table.warnings.size() == 1);
+  REQUIRE(table.warnings.size() == 2);
   CHECK(contains(table.warnings[0], "unknown columns are left out: 'quality'"));
+  CHECK(contains(table.warnings[1], "line 2: has more columns than names, the first of 1: the last ones are left out"));
+  CHECK(read(named + "7,good,1,2,3,4,5,6,\n", helios_format()).warnings.size() == 1);  // an end is no column
   CHECK(contains(error(named + "7,good,1,2,3,4,5\n", helios_format()).problem(), "has 7 columns: expected 8"));
   CHECK(contains(error("0,1,2,3,4,5,6,7\n", helios_format()).problem(), "has 8 columns: expected 7"));  // which ones?
   TrajectoryFormat format = helios_format();
@@ -462,6 +464,14 @@ TEST_CASE("a separator is found, unless it is fixed") {
   format.separator = ';';
   CHECK(read("0;1;2;3;4;5;6\n", format).poses.at(0).position == Vec3{4, 5, 6});
   CHECK(contains(error("0,1,2,3,4,5,6\n", format).problem(), "has 1 columns: expected 7"));
+}
+
+TEST_CASE("longitudes and latitudes that are radians get a note") {
+  TrajectoryFormat format = csv_format();
+  format.projector = [](double east, double north) { return MapPoint{{east, north}, 0}; };
+  const std::string names = "time,longitude,latitude,height,roll,pitch,yaw\n";
+  CHECK(contains(read(names + "1,0.157,0.8464,300,0,0,0\n", format).warnings.at(0), "given in radians? Name such"));
+  CHECK(read(names + "1,9,48.5,300,0,0,0\n", format).warnings.empty());
 }
 
 }  // namespace

@@ -3,12 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 
-#include <array>
-#include <vector>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

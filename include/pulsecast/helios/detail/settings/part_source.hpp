@@ -3,12 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_PART_SOURCE_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_PART_SOURCE_HPP
 
-#include <array>
-#include <filesystem>
 #include <variant>
-#include <vector>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -3,15 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_SCANNER_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_SCANNER_HPP
 
-#include <array>
-#include <limits>
 #include <variant>
-#include <vector>
 
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
-#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -3,13 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
 
-#include <variant>
-
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/helios/detail/settings/part_source.hpp>
 #include <pulsecast/material/media.hpp>

@@ -3,28 +3,15 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_ELEMENT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_ELEMENT_HPP
 
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <initializer_list>
-#include <limits>
-#include <vector>
-
-#include <pugixml.hpp>
-
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
 
 /// Reading of elements. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. `finish`
-/// reports names that were not requested.
+/// Reads an element; `params` of a filter (`<param key value>`) as attributes. `finish` reports names not requested.
 class XmlInput final : public FieldIo {
  public:
   using Read = std::function<void(XmlInput&)>;

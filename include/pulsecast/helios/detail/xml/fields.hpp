@@ -3,7 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -30,6 +29,49 @@ void valid(const FieldIo& io, const Check& check) {
   } catch (const SettingError& wrong) {
     io.fault("", wrong.what());
   }
+}
+
+/// Six noise elements and the error of the mount, of a platform or of a survey; a later one replaces an earlier one.
+inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
+  static constexpr std::array position{"positionXNoise", "positionYNoise", "positionZNoise"};
+  static constexpr std::array attitude{"attitudeXNoise", "attitudeYNoise", "attitudeZNoise"};
+  const auto one = [&](const char* name, std::optional<NoiseSettings>& noise) {
+    if (io.reads() || noise)
+      io.element(name, [&](FieldIo& inner) { (io.reads() ? noise.emplace() : *noise).fields(inner); });
+  };
+  for (std::size_t i = 0; i < 3; ++i) one(position[i], platform.position_noise[i]);
+  for (std::size_t i = 0; i < 3; ++i) one(attitude[i], platform.attitude_noise[i]);
+  if (io.reads() || platform.mount_error != MountErrorSettings{})
+    io.element("mountError", [&](FieldIo& inner) { platform.mount_error.fields(inner); });
+}
+
+/// Convention of angles, of an interpolated platform.
+inline void rotation_spec(FieldIo& io, RotationSpec& spec) {
+  io.choice("rotationSpec", spec, {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
+}
+
+inline void fields(FieldIo& io, PlatformSettings& platform) {
+  io.require({"id", "type"});
+  io.text("id", platform.id);
+  io.text("name", platform.name);
+  using enum PlatformKind;
+  PlatformKind kind = platform.kind;
+  if (!io.reads() && kind == interpolated) kind = stationary;  // its base has no effect
+  io.choice("type", kind,
+            {{"static", stationary},
+             {"linearpath", linear_path},
+             {"multicopter", multicopter},
+             {"groundvehicle", ground_vehicle}});
+  if (io.reads()) platform.kind = kind;
+  io.element("scannerMount", [&](FieldIo& inner) { platform.mount.fields(inner); });
+  noise_fields(io, platform);
+  if (platform.kind == multicopter)
+    platform.multicopter.fields(io);
+  else
+    io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");
+  io.without_effect({"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance",
+                     "pitch_speed_deg", "roll_speed_deg", "roll_offset_deg", "base_pitch_deg"},
+                    "has no effect: paths are planned by speed and acceleration");
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml

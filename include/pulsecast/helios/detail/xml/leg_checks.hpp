@@ -3,17 +3,11 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 
-#include <algorithm>
-#include <variant>
-
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give
-/// no pulse, or exceed the device.
+/// Checks the legs of a survey. Faults: legs that never end, give no pulse, or exceed scanner or platform.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
@@ -38,8 +32,7 @@ class LegChecks {
     if (legs_connect(survey_.platform.kind)) check_way(io, i);
   }
 
-  /// Checks the scanner's part of a leg; `io` is that of its `<scannerSettings>`, which may have a
-  /// `verticalResolution_deg` [rad].
+  /// Checks the `<scannerSettings>` of a leg, which `io` reads, with a `verticalResolution_deg` or 0 [rad].
   void check_scanner(const FieldIo& io, std::size_t i, double resolution = 0) const {
     if (only_ends(survey_, i)) return;
     const LegSettings& settings = survey_.legs[i];

@@ -3,20 +3,10 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 
-#include <algorithm>
-#include <functional>
-#include <variant>
-
-#include <pugixml.hpp>
-
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
-#include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/library.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 

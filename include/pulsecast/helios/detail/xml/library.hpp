@@ -5,13 +5,7 @@
 
 #include <memory>
 #include <unordered_map>
-#include <vector>
 
-#include <pugixml.hpp>
-
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/helios/detail/asset_search.hpp>
-#include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -22,8 +16,7 @@ namespace PULSECAST_NAMESPACE::helios {
   return folders;
 }
 
-/// Document of a survey or of assets, with its elements by id. Its files are searched in the
-/// folders of assets, the folder of the survey, and its own.
+/// Document, its elements by id. Its files are searched in the folders of assets, of the survey, and its own.
 class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders,

@@ -3,22 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <vector>
-
 #include <pugixml.hpp>
 
-#include <pulsecast/base/error.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/fields.hpp>
-#include <pulsecast/helios/detail/xml/number.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Writes an element, as `XmlInput` reads it: what that would refuse is a `SettingError`, what it
-/// would warn of is a note.
+/// Writes an element as `XmlInput` reads it: what that refuses is a `SettingError`, what it warns of a note.
 class XmlOutput final : public FieldCheck {
  public:
   explicit XmlOutput(pugi::xml_node node, bool params = false) : node_(node), params_(params) {}

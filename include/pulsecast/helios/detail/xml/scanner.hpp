@@ -3,15 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_SCANNER_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_SCANNER_HPP
 
-#include <algorithm>
-#include <numbers>
-#include <stdexcept>
-#include <variant>
-
-#include <pulsecast/helios/detail/formula.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 /// `<scanner>` and its children.
 namespace PULSECAST_NAMESPACE::helios::xml {

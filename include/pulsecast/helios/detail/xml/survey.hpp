@@ -3,20 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
 
-#include <algorithm>
-#include <map>
-
-#include <pugixml.hpp>
-
-#include <pulsecast/helios/detail/xml/document.hpp>
-#include <pulsecast/helios/detail/xml/element.hpp>
-#include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/detail/xml/leg_reader.hpp>
-#include <pulsecast/helios/detail/xml/library.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
-#include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 

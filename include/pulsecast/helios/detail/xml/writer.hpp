@@ -4,16 +4,10 @@
 #define PULSECAST_HELIOS_DETAIL_XML_WRITER_HPP
 
 #include <sstream>
-#include <variant>
-
-#include <pugixml.hpp>
 
 #include <pulsecast/helios/detail/xml/leg_checks.hpp>
-#include <pulsecast/helios/detail/xml/output.hpp>
-#include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
 #include <pulsecast/helios/detail/xml/scene.hpp>
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {

@@ -47,7 +47,7 @@ inline constexpr std::array<FormatRule, 9> ply_cloud_rules{{
 }};
 
 /// Columns of points with an effect, by canonical names, in PLY files and texts with a row of names.
-inline constexpr std::array<FormatRule, 11> point_rules{{
+inline constexpr std::array<FormatRule, 13> point_rules{{
     {"x", FormatUse::read, "first coordinate"},
     {"y", FormatUse::read, "second coordinate"},
     {"z", FormatUse::read, "third coordinate"},
@@ -59,6 +59,8 @@ inline constexpr std::array<FormatRule, 11> point_rules{{
     {"blue", FormatUse::read, "colour; also `b`, `diffuse_blue`"},
     {"classification", FormatUse::read, "class; also `class`, `label`, `scalar_Classification`"},
     {"object", FormatUse::read, "number of the object; also `object_id`, `instance`"},
+    {"lat*", FormatUse::refused, "coordinates in metres, not degrees"},
+    {"lon*", FormatUse::refused, "coordinates in metres, not degrees"},
 }};
 
 /// Canonical name of a column or property, by the words that programs write for it.
@@ -71,18 +73,22 @@ inline constexpr std::array<FormatRule, 11> point_rules{{
       " normal_x=nx normal_y=ny normal_z=nz r=red g=green b=blue class=classification label=classification"
       " object_id=object instance=object s=u t=v vertex_index=vertex_indices ";
   const std::size_t at = aliases.find(' ' + name + '=');
-  std::string_view rest = at == aliases.npos ? name : aliases.substr(at + name.size() + 2);
+  if (at == aliases.npos) return name;
+  std::string_view rest = aliases.substr(at + name.size() + 2);
   return std::string(text::take_word(rest, " "));
 }
 
 /// Columns of a point by their names: the first of each.
 struct PointNames {
   std::array<std::optional<std::size_t>, point_rules.size()> column{};  ///< by row of `point_rules`
+  const FormatRule* refused = nullptr;                                  ///< rule of a name without x, y and z, or null
 
   void add(std::string_view written, std::size_t number) {
     const FormatRule* const rule = rule_of(point_rules, canonical_name(written));
-    if (rule && !column[static_cast<std::size_t>(rule - point_rules.data())])
-      column[static_cast<std::size_t>(rule - point_rules.data())] = number;
+    if (!rule) return;
+    if (rule->use == FormatUse::refused) refused = rule;
+    std::optional<std::size_t>& place = column[static_cast<std::size_t>(rule - point_rules.data())];
+    if (!place) place = number;
   }
   /// Columns of a vector from a row of the table on: 0 for the position, 3 for the normal, 6 for the colour.
   [[nodiscard]] std::optional<std::array<std::size_t, 3>> vector(std::size_t row) const {

@@ -14,14 +14,13 @@ namespace detail {
 inline constexpr std::array<FormatRule, 5> ptx_rules{{
     {"scan", FormatUse::read, "a grid of points; several may follow each other"},
     {"transform", FormatUse::read, "places the points; the last of its four rows is the translation"},
-    {"scanner position", FormatUse::noted, "differs from the translation of the transform, which places the points"},
+    {"scanner pose", FormatUse::noted, "differs from the transform, which places the points"},
     {"miss", FormatUse::read, "a point at 0 0 0 is left out"},
     {"colour", FormatUse::read, "red, green, blue after the intensity, from 0 to 255"},
 }};
 }  // namespace detail
 
-/// Reader of the points of a PTX file: scans of columns x rows lines, placed by their transforms. Throws a `FileError`
-/// with path and line.
+/// Reader of the points of a PTX file: scans of columns x rows, placed by transforms. @throws FileError with path, line
 class PtxPoints {
  public:
   /// True if the file begins as a scan: two lines are whole numbers, and the third is none.
@@ -102,15 +101,20 @@ class PtxPoints {
       fail_here(text::message("claims ", points, " points: expected columns and rows that fit into the file"));
     (void)take(3);
     const Vec3 scanner = vector(0);
-    for (int axis = 0; axis < 3; ++axis) (void)take(3);
+    Matrix3 axes{1};
+    for (int axis = 0; axis < 3; ++axis) {
+      (void)take(3);
+      axes[axis] = vector(0);
+    }
     for (int row = 0; row < 4; ++row) {
       (void)take(4);
       (row < 3 ? axes_[row] : translation_) = vector(0);
       if (number(3) != (row < 3 ? 0 : 1))
         fail_here("is no row of an affine transform: expected 0 0 0 1 as the last column of the four rows");
     }
-    if (max_norm(scanner - translation_) > 1e-3)
-      (void)keep_rule(detail::ptx_rules, path(), "item", "scanner position", warnings_);
+    bool differs = max_norm(scanner - translation_) > 1e-3;
+    for (int axis = 0; axis < 3; ++axis) differs = differs || max_norm(axes[axis] - axes_[axis]) > 1e-3;
+    if (differs) (void)keep_rule(detail::ptx_rules, path(), "item", "scanner pose", warnings_);
     left_ = static_cast<std::uint64_t>(points);
     return true;
   }

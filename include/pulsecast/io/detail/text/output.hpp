@@ -14,6 +14,15 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
+/// Settings of a text file.
+struct TextFileSettings {
+  double start_time = 0;  ///< clock time at tick 0 [s]
+  /// Samples of each waveform: shorter ones end with zeros, longer ones are cut; 0: as they are
+  std::uint32_t waveform_samples = 0;
+
+  void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
+};
+
 /// Row of a text table, with a separator between the cells. Independent of the locale.
 class TextRow {
  public:

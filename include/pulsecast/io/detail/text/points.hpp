@@ -3,26 +3,21 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 #define PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/text/text_point_columns.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 /// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are
 /// skipped; so is, with a warning, a first row that is a whole number, as a count, or has no
 /// number, as the names of columns. If such a row or comment has the names x, y and z, then columns
-/// are by names, unless the settings have others than by default. Default separators are semicolons if the first row
-/// has any, else commas, else blanks, several as one. Blanks around a cell are ignored. The first row decides on
-/// normals and colours. Throws a `FileError` with path, line and column.
+/// are by names, unless the settings have others than by default, which is noted where they differ. Default separators
+/// are semicolons if the first row has any, else commas, else blanks, several as one. Blanks around a cell are ignored.
+/// The first row decides on normals and colours. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, TextPointColumns columns)
@@ -46,6 +41,7 @@ class TextPoints {
         if (cells().size() < needed_) too_few();
       }
       cut_ = file_.line_is_open();
+      ++points_;
       return true;
     }
     return false;
@@ -66,6 +62,8 @@ class TextPoints {
   /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> all = notes_;
+    if (count_ && *count_ != points_)
+      all.push_back(detail::warning(path(), 0, "announces ", *count_, " points and has ", points_));
     if (cut_) all.push_back(file_.path() + ": the last line has no line end: the file may be truncated");
     return all;
   }
@@ -93,16 +91,31 @@ class TextPoints {
     cells_.split(text, TextPointColumns::max_column + 1);
   }
 
-  /// Takes the columns of a row of names, if it has x, y and z and the settings are as by default; false otherwise.
+  /// Takes the columns of a row of names, if it has x, y and z; false otherwise. Those of the settings go first.
   [[nodiscard]] bool takes_names(std::string_view text) {
     split(text);
     detail::PointNames names;
-    for (std::size_t k = 0; k < cells().size(); ++k) names.add(cells()[k], k);
+    std::size_t named = 0;
+    for (std::size_t k = 0; k < cells().size(); ++k) {
+      names.add(cells()[k], k);
+      if (!cells()[k].empty()) named = k + 1;
+    }
     const TextPointColumns usual;
     const bool is_usual = columns_.position == usual.position &&
                           columns_.normal.value_or(*usual.normal) == usual.normal &&
                           columns_.colour.value_or(*usual.colour) == usual.colour;
-    if (!names.vector(0) || !is_usual) return false;
+    if (!names.vector(0)) {
+      if (names.refused) fail_here(text::message(text::quoted(text), ": expected ", names.refused->meaning));
+      return false;
+    }
+    if (!is_usual) {
+      const auto differs = [](const auto& set, const auto& of_name) { return set && of_name && *set != *of_name; };
+      if (names.vector(0) != columns_.position || differs(columns_.normal, names.vector(3)) ||
+          differs(columns_.colour, names.vector(6)))
+        note(text::quoted(text) + " names other columns than the settings, which are taken");
+      return true;
+    }
+    named_ = named;
     columns_.position = *names.vector(0);
     if (columns_.normal) columns_.normal = names.vector(3);
     if (columns_.colour) columns_.colour = names.vector(6);
@@ -120,8 +133,9 @@ class TextPoints {
     const auto is_number = [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; };
     const bool has_number = std::ranges::any_of(cells(), is_number);
     if (!is_count && (has_number || cells().size() < 3)) return false;
-    if (!is_count && takes_names(text)) return true;
-    note(text::quoted(text) + " is skipped, as " + (is_count ? "a count of points" : "names of columns"));
+    if (is_count) count_ = text::number_in<std::uint64_t>(text);
+    if (is_count || takes_names(text)) return true;
+    note(text::quoted(text) + " is skipped, as names of columns");
     return true;
   }
 
@@ -131,6 +145,7 @@ class TextPoints {
     const auto last = [](const Columns& columns) { return std::ranges::max(columns) + 1; };
     needed_ = last(columns_.position);
     if (cells().size() < needed_) too_few();
+    if (cells().size() < named_) note(text::message("has ", cells().size(), " columns, and ", named_, " are named"));
     for (std::optional<Columns>* columns : {&columns_.normal, &columns_.colour}) {
       if (*columns && cells().size() < last(**columns)) columns->reset();
       if (*columns) needed_ = std::max(needed_, last(**columns));
@@ -140,6 +155,9 @@ class TextPoints {
       if (column) needed_ = std::max(needed_, *column + 1);
     }
     begun_ = true;
+    if (const double size = has_normals() ? length(normal()) : 0; size > 0 && std::fabs(size - 1) > 0.1)
+      note(text::message("has a normal of length ", size, " in the columns from ", (*columns_.normal)[0] + 1,
+                         " on: expected about 1, unless these are not normals"));
   }
 
   [[nodiscard]] Vec3 vector(const Columns& of) const { return {number(of[0]), number(of[1]), number(of[2])}; }
@@ -147,14 +165,14 @@ class TextPoints {
   [[nodiscard]] double number(std::size_t column) const {
     const std::optional<double> value = text::number_in<double>(cells()[column]);
     if (value && std::fabs(*value) <= 1e12) return *value;
-    if (std::ranges::any_of(cells()[column], [](unsigned char c) { return c < ' '; }))
+    if (std::ranges::any_of(cells()[column], [](unsigned char c) { return c < ' ' && c != '\t'; }))
       fail_here("holds binary data: expected the text of a point cloud");
     file_.fail_at_column(
         column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
   }
 
   [[nodiscard]] std::uint32_t whole(std::size_t column) const {
-    return detail::whole_number(text::number_in<double>(cells()[column]).value_or(0));
+    return text::is_same_word(cells()[column], "nan") ? 0 : detail::whole_number(number(column));
   }
 
   [[noreturn]] void too_few() const {
@@ -164,7 +182,9 @@ class TextPoints {
   InputFile file_;
   TextPointColumns columns_;
   RowCells cells_{"", true};
-  std::size_t needed_ = 0;                         // columns in use
+  std::size_t needed_ = 0, named_ = 0;    // columns in use; those named
+  std::optional<std::uint64_t> count_{};  // of points, as announced
+  std::uint64_t points_ = 0;
   std::optional<std::size_t> class_{}, object_{};  // columns
   std::vector<std::string> notes_;
   bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: first row looked at

@@ -3,9 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
 #define PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
 
-#include <algorithm>
 #include <array>
-#include <vector>
 
 #include <pulsecast/io/input_file.hpp>
 

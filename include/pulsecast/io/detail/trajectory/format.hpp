@@ -3,17 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
-#include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <set>
-#include <string>
-#include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
@@ -244,8 +237,7 @@ struct TrajectoryFormat {
 /// CSV: columns in any order, with names and units in the first line.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees.
-/// Other columns may be between, if named.
+/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees, other columns named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
   return {.names = ColumnNames::comments,
           .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_HEAD_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_HEAD_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
 
@@ -25,7 +22,7 @@ class TrajectoryHead {
     if (has_rows_ && !table_.text().starts_with('#')) return true;
     if (!columns_) table_.forget_separator();
     if (table_.text().starts_with('#')) {
-      if (format_.names != ColumnNames::nowhere && !columns_) comment(table_.text());
+      if (!columns_) comment(table_.text());
       return false;
     }
     has_rows_ = looks_like_row() || !takes_line();
@@ -42,6 +39,8 @@ class TrajectoryHead {
   [[nodiscard]] const TrajectoryColumns& columns() const noexcept { return *columns_; }
   [[nodiscard]] const std::string& left_out() const noexcept { return left_out_; }  ///< names of unknown columns
 
+  [[nodiscard]] bool is_named() const noexcept { return named_; }  ///< columns, by the file
+
   /// True if extra columns are allowed: the file or the format names the others.
   [[nodiscard]] bool may_have_more() const noexcept {
     return format_.more_columns && (named_ || format_.names != ColumnNames::comments);
@@ -49,30 +48,62 @@ class TrajectoryHead {
 
  private:
   /// Reads `#HEADER: "t", "roll"`, the column names; `#TIME_COLUMN: 0`, the column of the time; and names of columns
-  /// without such a word, if they define a pose.
+  /// without such a word, if they define a pose. Where the format names the columns, such names must be in its order.
   void comment(std::string_view text) {
-    if (text.starts_with("#HEADER:")) {
+    if (format_.names == ColumnNames::nowhere) return refuse_other_order();
+    if (is_key(text, "HEADER:")) {
       named_ = true;
       names_.clear();
-      for (text.remove_prefix(8); !text.empty();) {
+      while (!text.empty()) {
         const std::size_t end = std::min(text.find(','), text.size());
         names_.emplace_back(text.substr(0, end));
         std::erase_if(names_.back(), [](char c) { return c == '"' || c == ' ' || c == '\t'; });
         text.remove_prefix(std::min(end + 1, text.size()));
       }
-    } else if (text.starts_with("#TIME_COLUMN:")) {
-      text = text::trimmed(text.substr(13));
+    } else if (is_key(text, "TIME_COLUMN:")) {
+      text = text::trimmed(text);
       const double number = text::finite_number_in(text).value_or(-1);
       if (number < 0 || number > 1000 || number != std::floor(number))
         table_.fail_here(text::quoted(text), " is not a column index: expected a whole number from 0 to 1000");
       time_place_ = static_cast<std::size_t>(number);
     } else if (!named_) {
-      std::vector<std::string> names(table_.cells().begin(), table_.cells().end());
-      names.front().erase(0, names.front().find_first_not_of("# \t"));
-      if (names.front().empty()) names.erase(names.begin());
+      std::vector<std::string> names = names_in_comment();
       named_ = names.size() <= max_columns && is_whole({names, format_.left_out, format_.angle_unit, true});
-      if (named_) names_ = std::move(names);
+      if (!named_) return refuse_other_order();
+      names_ = std::move(names);
     }
+  }
+
+  /// True for a comment that begins with a word in any case, after which its text begins then.
+  [[nodiscard]] static bool is_key(std::string_view& text, std::string_view key) {
+    const std::string_view rest = text.substr(std::min(text.find_first_not_of("# \t"), text.size()));
+    if (!text::is_same_word(rest.substr(0, key.size()), key)) return false;
+    text = rest.substr(key.size());
+    return true;
+  }
+
+  [[nodiscard]] std::vector<std::string> names_in_comment() {
+    std::vector<std::string> names(table_.cells().begin(), table_.cells().end());
+    names.front().erase(0, names.front().find_first_not_of("# \t"));
+    if (names.front().empty()) names.erase(names.begin());
+    return names;
+  }
+
+  /// Refuses a comment whose words are as many as the columns of the format, and mostly names, in another order.
+  void refuse_other_order() {
+    const std::vector<std::string> names = names_in_comment();
+    if (names.size() != format_.columns.size()) return;
+    std::size_t known = 0;
+    std::optional<std::size_t> other;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto named = trajectory_column(names[i], format_.angle_unit);
+      const auto expected = trajectory_column(format_.columns[i], format_.angle_unit);
+      known += named ? 1 : 0;
+      if (named && expected && named->quantity != expected->quantity) other = i;
+    }
+    if (other && 2 * known > names.size())
+      table_.fail_here(*other, text::quoted(names[*other]), ": expected ", text::quoted(format_.columns[*other]),
+                       ", by the order of the format");
   }
 
   /// True if most cells of the line begin like numbers.
@@ -85,8 +116,7 @@ class TrajectoryHead {
     return 2 * static_cast<std::size_t>(numbers) > cells.size();
   }
 
-  /// Takes a line before the first row: names of columns, their units, or a preamble, which is skipped. False for a
-  /// row.
+  /// Takes a line before the first row: names of columns, their units, or a preamble, to skip. False for a row.
   bool takes_line() {
     const std::vector<std::string_view>& cells = table_.cells();
     const auto is_known = [&](std::string_view name) {

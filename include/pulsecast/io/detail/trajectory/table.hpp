@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/head.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
@@ -69,6 +65,7 @@ class TrajectoryReader {
     const std::vector<std::string>& names = head_.names();
     if (cells.size() < names.size() || (cells.size() > names.size() && !head_.may_have_more()))
       table_.fail_here("has ", cells.size(), " columns: expected ", names.size());
+    if (cells.size() > names.size() && head_.is_named() && !cells.back().empty()) longer_.at(table_.line());
     QuantityValues values;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::optional<TrajectoryColumn>& column = head_.columns().all()[i];
@@ -81,7 +78,10 @@ class TrajectoryReader {
       values[column->quantity] = *number / column->per_si;
     }
     TimedPose pose{values[Quantity::time], position(values), rotation(values)};
-    if (head_.columns().has(Quantity::longitude)) project(values, pose);
+    if (head_.columns().has(Quantity::longitude)) {
+      widest_ = std::max({widest_, std::fabs(values[Quantity::longitude]), std::fabs(values[Quantity::latitude])});
+      project(values, pose);
+    }
     rows_.push_back({pose, table_.line()});
   }
 
@@ -154,7 +154,12 @@ class TrajectoryReader {
       table_.warn(0, rule_of(trajectory_rules, "*")->meaning, ": ", head_.left_out().substr(0, 1000));
     table_.warn(unsorted_, "is earlier than the previous pose", ": the poses were sorted by time");
     table_.warn(repeated_, "repeats a pose", ": it is left out");
+    table_.warn(longer_, "has more columns than names", ": the last ones are left out");
     table_.warn(not_unit_, "has a quaternion that is not unit", ": it is normalized");
+    if (widest_ > 0 && widest_ <= radians(3.2))
+      table_.warn(0,
+                  "longitude and latitude are all within 3.2 degrees: given in radians? Name such columns "
+                  "longitude_rad, latitude_rad");
     if (head_.columns().has(Quantity::qw)) return;
     if (turns_by_radians())
       table_.warn(
@@ -246,7 +251,8 @@ class TrajectoryReader {
   TextTable table_;
   TrajectoryHead head_;
   std::vector<Row> rows_;
-  Oddity unsorted_, repeated_, not_unit_;
+  Oddity unsorted_, repeated_, not_unit_, longer_;
+  double widest_ = 0;  // longitude or latitude [rad]
   TrajectoryTable result_;
 };
 
