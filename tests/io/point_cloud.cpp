@@ -262,7 +262,7 @@ TEST_CASE("a LAS file is recognised as it begins, and gives the same voxels as i
     for (auto& channel : point.colour) channel = static_cast<std::uint16_t>(channel / 257);
   CHECK(read(las.bytes(), {.colours = true}).warnings ==
         std::vector<std::string>{
-            "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255"});
+            "no colour of the points exceeds 255 of 65535: for 8-bit colours, the maximum should be 255"});
   const PointCloud bytes = read(las.bytes(), {.colours = true, .colour_max = 255});
   CHECK(bytes.colours == cloud.colours);
   CHECK(bytes.warnings.empty());

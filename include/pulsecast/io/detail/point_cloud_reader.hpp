@@ -293,7 +293,7 @@ class PointCloudReader {
     if (!colours_) return;
     if (brightest_ > 0 && brightest_ <= 255)
       cloud_.warnings.push_back(
-          "no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
+          "no colour of the points exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
     cloud_.colours.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
       const Vec3 mean = squares_[voxel] / static_cast<double>(counts_[voxel]);
