@@ -127,6 +127,9 @@ io::PointLayout point_layout(const Options& o) {
   if (o.near_infrared) add(io::layouts::columns({io::column("near_infrared")}));
   if (o.attributes) add(io::layouts::attributes(o.attributes->names()));
   add(o.fields);
+  for (io::PointField& field : fields)  // Open3D leaves out properties of the types ushort and uint
+    if (o.format == "ply" && (field.type == io::NumberType::uint16 || field.type == io::NumberType::uint32))
+      field.type = field.type == io::NumberType::uint16 ? io::NumberType::int32 : io::NumberType::float64;
   return io::PointLayout::packed(fields);
 }
 

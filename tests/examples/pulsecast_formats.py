@@ -30,6 +30,7 @@ def run(form, *options, into=None):
 def ply(path):
     head, body = path.read_bytes().split(b"end_header\n", 1)
     fields = re.findall(rb"property (\w+) (\w+)", head)
+    assert not {kind for kind, _ in fields} & {b"ushort", b"uint"}, "Open3D does not take these types"
     return np.frombuffer(body, [(name.decode(), TYPES[kind.decode()]) for kind, name in fields])
 
 

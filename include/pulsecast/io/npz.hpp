@@ -168,22 +168,13 @@ class WaveformNpzWriter {
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
       if (shot.samples == 0) continue;
-      const Vec3 &at = shot.origin, &to = shot.direction;
-      const auto first = static_cast<double>(samples_.position() / sizeof(float));
-      const std::array numbers{first,
-                               static_cast<double>(shot.samples),
-                               static_cast<double>(shot.index),
-                               start_time_ + shot.tick.seconds(),
-                               shot.waveform_start,
-                               batch.sample_interval,
-                               at.x,
-                               at.y,
-                               at.z,
-                               to.x,
-                               to.y,
-                               to.z};
-      for (std::size_t k = 0; k < numbers.size(); ++k)
-        (k < 3 ? detail::store_number<std::int64_t> : detail::store_number<double>)(numbers[k], record_.data() + 8 * k);
+      const std::array<std::uint64_t, 3> wholes{samples_.position() / sizeof(float), shot.samples, shot.index};
+      const std::array numbers{start_time_ + shot.tick.seconds(), shot.waveform_start, batch.sample_interval};
+      const std::array vectors{shot.origin, shot.direction};
+      static_assert(sizeof wholes + sizeof numbers + sizeof vectors == 12 * 8);
+      std::memcpy(record_.data(), wholes.data(), sizeof wholes);
+      std::memcpy(record_.data() + 24, numbers.data(), sizeof numbers);
+      std::memcpy(record_.data() + 48, vectors.data(), sizeof vectors);
       columns_.add(record_);
       samples_.write(std::as_bytes(batch.waveform_of(shot)));
     }

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_UDP_HPP
 
 #include <cerrno>
+#include <cstring>
 #include <optional>
 #include <system_error>
 
@@ -30,15 +31,11 @@ class UdpSender {
   /// @throws SettingError for settings out of range @throws FileError without a socket
   UdpSender(const Ipv4Address& address, std::uint16_t port, const UdpSettings& settings = {})
       : settings_(validated(settings)) {
-    std::uint32_t host = 0;
-    for (const std::uint8_t part : address) {
-      host = host << 8 | part;
-      name_ += (name_.empty() ? "" : ".") + std::to_string(part);
-    }
+    for (const std::uint8_t part : address) name_ += (name_.empty() ? "" : ".") + std::to_string(part);
     name_ += ":" + std::to_string(port);
     receiver_.sin_family = AF_INET;
     receiver_.sin_port = htons(port);
-    receiver_.sin_addr.s_addr = htonl(host);
+    std::memcpy(&receiver_.sin_addr, address.data(), sizeof address);
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (socket_ < 0) fail("has no socket");
     const int yes = 1;

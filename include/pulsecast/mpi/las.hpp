@@ -92,25 +92,60 @@ struct MpiLasShare {
   }
 };
 
-/// Sum of the shares of all processes; valid on the first.
-[[nodiscard]] inline MpiLasShare sum_of_shares(MpiGroup& group, const MpiLasShare& own) {
-  MpiLasShare sum;
-  for (const MpiLasShare& one : group.channel().gather(own)) sum.add(one);
-  return sum;
-}
+/// Part that LAS and LAZ files of all processes share. `Whole` is the writer of the first process.
+template <class Whole>
+class MpiLasOutput : public MpiOutput {
+ public:
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() final {
+    return std::make_unique<MpiLasPiece>(points_file_.path(), settings_);
+  }
+  [[nodiscard]] std::uint64_t pulses_cut() const noexcept final { return whole_ ? whole_->pulses_cut() : 0; }
+  [[nodiscard]] std::uint64_t classes_cut() const noexcept final { return whole_ ? whole_->classes_cut() : 0; }
+
+ protected:
+  MpiLasOutput(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
+      : MpiOutput(group), settings_(std::move(settings)), points_file_(path) {}
+
+  /// Records of a piece at its place, whose counts are added to the share of this process.
+  [[nodiscard]] std::span<const std::byte> take(MpiLasPiece& piece, const MpiPlace& place) {
+    const auto records = piece.located(place.first, place.starts[0], place.starts[1]);
+    share_.add({piece.encoder().tally(), piece.spacing()});
+    return records;
+  }
+
+  /// Counts points. Returns the place of the first of them.
+  [[nodiscard]] MpiPlace next_points(const MpiExtent& extent) {
+    if (points_ == 0) first_ = extent.first;
+    return {{std::exchange(points_, points_ + extent.amounts[0])}, first_};
+  }
+
+  /// Sum of the shares of all processes; valid on the first.
+  [[nodiscard]] MpiLasShare sum_of_shares() {
+    MpiLasShare sum;
+    for (const MpiLasShare& one : group().channel().gather(share_)) sum.add(one);
+    return sum;
+  }
+
+  io::LasSettings settings_;
+  std::size_t record_ = io::LasEncoder::record_size(settings_);  // [byte]
+  MpiFile points_file_;
+  std::optional<Whole> whole_;  // on the first process, as are the following
+  std::uint64_t points_ = 0;    // points placed
+  Vec3 first_{};
+
+ private:
+  MpiLasShare share_;
+};
 
 }  // namespace detail
 
 /// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`.
 /// Throws a `SettingError` for intensities scaled to the maximum amplitude.
-class MpiLas final : public MpiOutput {
+class MpiLas final : public detail::MpiLasOutput<io::LasWriter> {
  public:
   /// Collective. @throws SettingError for such intensities @throws FileError
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
-      : MpiOutput(group),
-        settings_(detail::mpi_las_settings(std::move(settings))),
-        record_(io::LasEncoder::record_size(settings_)),
-        points_file_(path),
+      : MpiLasOutput(group, path, detail::mpi_las_settings(std::move(settings))),
         packets_file_(std::filesystem::path(path).replace_extension(".wdp")) {
     if (group.first()) {
       whole_.emplace(path, settings_);
@@ -119,47 +154,30 @@ class MpiLas final : public MpiOutput {
     begin_ = group.channel().from_first(whole_ ? whole_->records_at() : 0);
   }
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override {
-    return std::make_unique<detail::MpiLasPiece>(points_file_.path(), settings_);
-  }
-
   void put(MpiPiece& piece, const MpiPlace& place) override {
     auto& own = static_cast<detail::MpiLasPiece&>(piece);
-    const auto [number, packets_at] = place.starts;
-    points_file_.write(begin_ + number * record_, own.located(place.first, number, packets_at));
-    packets_file_.write(packets_at, own.packet_bytes());
-    share_.add({own.encoder().tally(), own.spacing()});
+    points_file_.write(begin_ + place.starts[0] * record_, take(own, place));
+    packets_file_.write(place.starts[1], own.packet_bytes());
   }
 
   [[nodiscard]] MpiPlace place(const MpiExtent& extent, int /*owner*/) override {
-    if (points_ == 0) first_ = extent.first;
-    const MpiPlace place{{points_, packets_end_}, first_};
-    points_ += extent.amounts[0];
-    packets_end_ += extent.amounts[1];
+    MpiPlace place = next_points(extent);
+    place.starts[1] = std::exchange(packets_end_, packets_end_ + extent.amounts[1]);
     return place;
   }
-
-  [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
-  [[nodiscard]] std::uint64_t classes_cut() const noexcept override { return whole_ ? whole_->classes_cut() : 0; }
 
   void close() override {
     points_file_.close();
     packets_file_.close();
-    const detail::MpiLasShare all = detail::sum_of_shares(group(), share_);
+    const detail::MpiLasShare all = sum_of_shares();
     if (!whole_) return;
     whole_->adopt(all.tally, first_, begin_ + points_ * record_, packets_end_, all.spacing);
     whole_->close();
   }
 
  private:
-  io::LasSettings settings_;
-  std::size_t record_;  // [byte]
-  MpiFile points_file_, packets_file_;
-  detail::MpiLasShare share_;
-  std::uint64_t begin_ = 0;                     // begin of the points [byte]
-  std::optional<io::LasWriter> whole_;          // on the first process, as are the following
-  std::uint64_t points_ = 0, packets_end_ = 0;  // points placed; end of the packets placed [byte]
-  Vec3 first_{};
+  MpiFile packets_file_;
+  std::uint64_t begin_ = 0, packets_end_ = 0;  // begin of the points; end of the packets placed [byte]
 };
 
 }  // namespace PULSECAST_NAMESPACE::mpi

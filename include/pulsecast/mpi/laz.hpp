@@ -17,31 +17,22 @@ namespace PULSECAST_NAMESPACE::mpi {
 
 /// LAZ file written by all processes, with the bytes of `LazWriter`. The process with the first
 /// point of a chunk compresses it; others send their parts. The first sums up the sizes.
-class MpiLaz final : public MpiOutput {
+class MpiLaz final : public detail::MpiLasOutput<io::LazWriter> {
  public:
   /// `threads` per process, 0 as in `thread_count`. Throws a `SettingError` or `FileError`.
   MpiLaz(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
-      : MpiOutput(group),
-        settings_(io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
-        record_(io::LasEncoder::record_size(settings_)),
-        threads_(thread_count(threads)),
-        file_(path) {
+      : MpiLasOutput(group, path, io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
+        threads_(thread_count(threads)) {
     if (group.first()) {
       whole_.emplace(path, settings_, threads);
       end_ = whole_->records_at();
     }
   }
 
-  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override {
-    return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_);
-  }
-
   /// Keeps chunks that begin in the piece; sends the points before to the owner of their chunk.
   void put(MpiPiece& piece, const MpiPlace& place) override {
-    auto& own = static_cast<detail::MpiLasPiece&>(piece);
     std::uint64_t at = place.starts[0];
-    std::span<const std::byte> records = own.located(place.first, at, 0);
-    share_.add({own.encoder().tally(), 0});
+    std::span<const std::byte> records = take(static_cast<detail::MpiLasPiece&>(piece), place);
     while (!records.empty()) {
       const std::uint64_t before = at % chunk_points;
       const auto some = records.first(std::min(records.size(), (chunk_points - before) * record_));
@@ -55,11 +46,9 @@ class MpiLaz final : public MpiOutput {
   }
 
   [[nodiscard]] MpiPlace place(const MpiExtent& extent, int owner) override {
-    if (points_ == 0) first_ = extent.first;
-    const MpiPlace place{{points_, 0}, first_, chunk_owner_};
-    const std::uint64_t begun = chunks_of(points_);
-    points_ += extent.amounts[0];
-    if (chunks_of(points_) > begun) chunk_owner_ = owner;
+    MpiPlace place = next_points(extent);
+    place.chunk_owner = chunk_owner_;
+    if (chunks_of(points_) > chunks_of(place.starts[0])) chunk_owner_ = owner;
     return place;
   }
 
@@ -77,7 +66,7 @@ class MpiLaz final : public MpiOutput {
         return place_chunks();
       case MessageKind::position: {
         const auto [number, position] = message.next<Size>();
-        return file_.write(position, compressed_.extract(number).mapped());
+        return points_file_.write(position, compressed_.extract(number).mapped());
       }
       case MessageKind::all_points:
         all_points_ = message.next<std::uint64_t>();
@@ -108,9 +97,6 @@ class MpiLaz final : public MpiOutput {
 
   [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > max_waiting; }
 
-  [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
-  [[nodiscard]] std::uint64_t classes_cut() const noexcept override { return whole_ ? whole_->classes_cut() : 0; }
-
   void close() override {
     if (group().first())
       for (int rank = 0; rank < group().size(); ++rank)
@@ -123,8 +109,8 @@ class MpiLaz final : public MpiOutput {
       }
       return all_placed_ && compressed_.empty();
     });
-    file_.close();
-    const detail::MpiLasShare all = detail::sum_of_shares(group(), share_);
+    points_file_.close();
+    const detail::MpiLasShare all = sum_of_shares();
     if (!whole_) return;
     whole_->adopt(all.tally, first_, end_);
     whole_->records().adopt(std::move(sizes_of_placed_));
@@ -179,11 +165,7 @@ class MpiLaz final : public MpiOutput {
     }
   }
 
-  io::LasSettings settings_;
-  std::size_t record_;  // [byte]
   unsigned threads_;
-  MpiFile file_;
-  detail::MpiLasShare share_;
   Chunks gathered_;                                             // by number, from several processes
   std::deque<Chunk> ready_;                                     // to be compressed
   std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, without positions
@@ -191,9 +173,7 @@ class MpiLaz final : public MpiOutput {
   bool all_placed_ = false;
 
   // on the first process
-  std::optional<io::LazWriter> whole_;
-  std::uint64_t points_ = 0, end_ = 0;  // points placed; end of the chunks placed [byte]
-  Vec3 first_{};
+  std::uint64_t end_ = 0;                                       // end of the chunks placed [byte]
   int chunk_owner_ = 0;                                         // owner of the chunk begun last
   std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // size, owner; without a position
   std::vector<std::size_t> sizes_of_placed_;                    // [byte]
