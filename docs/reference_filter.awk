@@ -50,6 +50,14 @@ BEGIN {
   says["sample_interval"] = "Time between two samples of a waveform [s]."
   says["passage"] = "Passage of a ray through the solid of a voxel."
   says["meeting"] = "Visitor of the voxels along ray j, for `VoxelIndex::walk`."
+  says["subrays"] = "Subrays of a pulse."
+  says["recorded_subrays"] = "Subrays of a pulse in its results."
+  says["sink"] = "Sink that is given the points."
+  says["layout"] = "Layout of the records."
+  says["scan_start"] = "Start of the scan."
+  says["columns"] = "Number of columns."
+  says["fail_at_line"] = says["fail_at_byte"] = "Throws a FileError of a problem, at a place in this file."
+  says["reads_empty_shots"] = "As the concept ChoosesShots describes."
   says["normal"] = "Unit normal at the hit of ray j; zero for a surface without direction."
   tag = "Empty object, to be filled by `archive`."
   overrides = "Overrides the function of the base class."
@@ -97,6 +105,9 @@ function with(text, line) {
 function explanation(line,   name) {
   if (line ~ /^ +explicit [A-Za-z]+\(DeserializeTag/) return tag
   if (line ~ /^ +(explicit )?[A-Z][A-Za-z0-9]+Lanes\(const /) return "Of components by lane, or of one value in all lanes."
+  if (line ~ /^ +explicit [A-Za-z]+\(OutputFile file/) return "Writes to a file that is open. Errors: as above."
+  if (line ~ /^void list_members\(/) return "Lists the members that a scene cache keeps."
+  if (line ~ / std::string part\(/) return "Part of a message."
   if (line ~ /^ +struct Workspace \{/) return "Scratch memory of one worker."
   if (line ~ /^ +class Columns \{/) return "Data of the voxels that this filling needs, by number of the voxel."
   if (line ~ /^ +.*\(.* override( |;|$)/) return overrides

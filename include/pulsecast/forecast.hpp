@@ -22,6 +22,7 @@ class ProcessorBudget {
  public:
   /// `seconds` of so many `workers` at the same time.
   ProcessorBudget(double seconds, double workers) : ticks_(seconds * workers * CLOCKS_PER_SEC) {}
+  /// True until it is spent.
   [[nodiscard]] bool left() const { return static_cast<double>(std::clock() - start_) < ticks_; }
 
  private:
@@ -65,7 +66,7 @@ class RunForecaster {
     measure_time();
   }
 
-  [[nodiscard]] const RunEstimate& estimate() const noexcept { return estimate_; }
+  [[nodiscard]] const RunEstimate& estimate() const noexcept { return estimate_; }  ///< as measured so far
 
   /// Slots that are spread over the results of a run: those of hits, with `empty_shots` also of misses.
   [[nodiscard]] std::vector<PulseIndex> spread_results(std::size_t count) const {

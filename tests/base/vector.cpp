@@ -78,6 +78,9 @@ TEST_CASE("min, max and the largest magnitude go by coordinate") {
   CHECK(max({1, 5, -3}, {2, 4, -4}) == Vec3{2, 5, -3});
   CHECK(max_norm({1, -5, 3}) == 5);
   CHECK(max_norm({0, 0, -2}) == 2);
+  CHECK(is_within({1, -5, 3}, 5));
+  for (const double beyond : {-6.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    for (const Vec3& v : {Vec3{beyond, 0, 0}, Vec3{0, beyond, 0}, Vec3{0, 0, beyond}}) CHECK_FALSE(is_within(v, 5));
 }
 
 TEST_CASE("a rotation is found again in its matrix") {

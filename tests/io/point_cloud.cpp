@@ -538,6 +538,7 @@ TEST_CASE("settings that cannot be are refused") {
                                              {.voxel_size = 2e12},
                                              {.default_normal = Vec3{0, 0, 0}},
                                              {.default_normal = Vec3{0, nan, 0}},
+                                             {.default_normal = Vec3{nan, 0, 1}},
                                              {.colour_max = 0},
                                              {.columns = {.separators = "e"}},
                                              {.columns = {.position = {0, 1, 5000}}}})

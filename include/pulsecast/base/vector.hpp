@@ -105,7 +105,12 @@ using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 
-/// Maximum norm: largest magnitude of a component.
+/// True if no component is beyond `limit` in magnitude, or not a number.
+[[nodiscard]] inline bool is_within(const Vec3& v, double limit) noexcept {
+  return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
+}
+
+/// Maximum norm: largest magnitude of a component. Components that are not numbers may not count.
 [[nodiscard]] inline double max_norm(const Vec3& v) noexcept {
   const Vec3 m = max(v, -v);
   const double xy = m.x > m.y ? m.x : m.y;

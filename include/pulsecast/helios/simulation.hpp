@@ -39,6 +39,7 @@ class Simulation {
     Attributes attributes{};  ///< named numbers of its points; empty without
   };
 
+  /// Options of loading.
   struct Settings {
     std::uint64_t seed = 0;                       ///< seed of all random numbers
     bool echo_width = false;                      ///< fit echo widths
@@ -78,7 +79,7 @@ class Simulation {
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const noexcept = 0;
   /// Legs and their pulses: helios/survey.hpp.
   [[nodiscard]] virtual const CompiledSurvey& compiled() const noexcept = 0;
-  [[nodiscard]] virtual Scene scene() const = 0;
+  [[nodiscard]] virtual Scene scene() const = 0;  ///< size of the scene
   /// Surfaces, colours and attributes of points, as `io::points_of`; may outlive the simulation.
   /// @throws SettingError if two parts of one object have different attributes of a name
   [[nodiscard]] virtual io::PointSettings points() const = 0;

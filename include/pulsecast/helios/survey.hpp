@@ -11,6 +11,7 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Runnable survey, with data of its legs.
 struct CompiledSurvey {
+  /// Leg of the document.
   struct Leg {
     std::size_t number = 0;              ///< index in the document, from 0
     bool active = true;                  ///< true if pulses are emitted

@@ -108,6 +108,7 @@ class InputFile {
     return rest;
   }
 
+  /// Throws a FileError of a problem, at a place in this file.
   [[noreturn]] void fail(const auto&... problem) const { detail::fail(path_, problem...); }
   [[noreturn]] void fail_at_line(const auto&... problem) const { detail::fail_at(path_, line_, problem...); }
   /// `column` is counted from 0 here, from 1 in the message.

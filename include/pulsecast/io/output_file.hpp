@@ -75,6 +75,7 @@ class OutputFile {
   /// Piece of a file that others assemble: appended to `piece` until `commit()`.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
+  /// Writes bytes, sooner or later. Errors: `FileError`.
   void write(std::span<const std::byte> bytes) {
     if (piece_ != nullptr) {
       position_ += bytes.size();

@@ -46,7 +46,7 @@ struct PointCloudSettings {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
     require_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
     const Vec3 normal = default_normal.value_or(Vec3{1, 0, 0});
-    if (!(max_norm(normal) >= 1e-100 && max_norm(normal) <= 1e100))
+    if (!is_within(normal, 1e100) || !(max_norm(normal) >= 1e-100))
       throw SettingError("PointCloudSettings::default_normal length", length(normal), "", "from 1e-100 to 1e100");
     if (colour_max) require_positive("PointCloudSettings::colour_max", *colour_max, "");
     columns.validate();

@@ -115,7 +115,7 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
     const double time = start_time + pose.time;
     constexpr double largest = detail::max_in_trajectory;
     const bool in_order = i == 0 || time > start_time + poses[i - 1].time || pose.time == poses[i - 1].time;
-    if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
+    if (!(std::fabs(time) <= largest) || !is_within(pose.position, largest) ||
         !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)
       detail::fail(path, "pose ", i,
                    " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not "

@@ -62,6 +62,16 @@ PlyBuilder points_of(const std::vector<std::string>& properties, const std::vect
 }
 const std::array<std::string, 3> formats{"ascii", "binary_little_endian", "binary_big_endian"};
 
+TEST_CASE("a normal with a component that is no number is no normal") {
+  for (const char* const row : {"nan 0 1", "0 nan 1", "0 0 nan", "inf 0 0", "0 1e13 0"}) {
+    const Read all = read(
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float nx\nproperty float ny\n"
+        "property float nz\nproperty float x\nproperty float y\nproperty float z\nend_header\n" +
+        std::string(row) + " 1 2 3\n");
+    CHECK_MESSAGE(all.normals == std::vector<Vec3>{Vec3{}}, row);
+  }
+}
+
 TEST_CASE("points of a PLY file have normals, colours, classes and objects by the names of properties") {
   for (const std::string& format : formats) {
     CAPTURE(format);

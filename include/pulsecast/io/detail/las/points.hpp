@@ -62,7 +62,7 @@ class LasPoints {
     for (int k = 0; k < 3; ++k)
       p[k] = (detail::las_number<std::int32_t>(record_, 4 * static_cast<std::size_t>(k)) * scale_[k] + offset_[k]) *
              unit_[k];
-    if (!(max_norm(p) <= 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
+    if (!is_within(p, 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
     return p;
   }
 

@@ -77,7 +77,7 @@ class MeshMaker {
     };
     each(from.vertex_count(), [&](std::size_t i) {
       const Vec3 at = vertex(i);
-      if (!(max_norm(at) <= 1e12) || !finite(at))
+      if (!is_within(at, 1e12))
         detail::fail(path_, "mesh '", from.name, "': vertex ", i, " is not finite, or beyond 1e12: expected a place");
       to[i] = moved ? shape * at : at;
     });

@@ -39,12 +39,12 @@ class PlyPoints {
   /// Position of the current point. Throws a `FileError` beyond 1e12.
   [[nodiscard]] Vec3 position() const {
     const Vec3 p = vector(0);
-    if (!(max_norm(p) <= 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
+    if (!is_within(p, 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
     return p;
   }
 
   [[nodiscard]] bool has_normals() const noexcept { return names_.vector(3).has_value(); }
-  [[nodiscard]] Vec3 normal() const noexcept { return max_norm(vector(3)) <= 1e12 ? vector(3) : Vec3{}; }
+  [[nodiscard]] Vec3 normal() const noexcept { return is_within(vector(3), 1e12) ? vector(3) : Vec3{}; }
   [[nodiscard]] bool has_colours() const noexcept { return names_.vector(6).has_value(); }
   [[nodiscard]] Vec3 colour() const noexcept { return vector(6); }
   double max_colour = 255;  ///< by the type of the property: the largest whole number, or 1

@@ -49,7 +49,7 @@ class PtxPoints {
   /// Position of the current point, by the transform of its scan. Throws a `FileError` beyond 1e12.
   [[nodiscard]] Vec3 position() const {
     const Vec3 p = axes_ * place_ + translation_;
-    if (!(max_norm(p) <= 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
+    if (!is_within(p, 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
     return p;
   }
 
