@@ -213,11 +213,9 @@ class LasPoints {
       const auto type = static_cast<std::uint8_t>(descriptors[2]), options = static_cast<std::uint8_t>(descriptors[3]);
       const std::size_t size = type == 0 ? options : sizes[(type - 1U) % 10 + 1] * ((type - 1U) / 10 + 1);
       const bool is_number = (type == 1 || type == 3 || type == 5) && (options & 24U) == 0;  // without scale and offset
-      if (descriptors.substr(4, 9) != std::string_view("ObjectId", 9) || at + size > places_.record) {
-        // of other values
-      } else if (!is_number) {
-        ask("other extra bytes ObjectId");
-      } else {
+      const bool is_object = descriptors.substr(4, 9) == std::string_view("ObjectId", 9) && at + size <= places_.record;
+      if (is_object && !is_number) ask("other extra bytes ObjectId");
+      if (is_object && is_number) {
         places_.object = at;
         places_.object_size = size;
       }
