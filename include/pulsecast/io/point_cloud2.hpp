@@ -81,17 +81,6 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
   return static_cast<std::uint32_t>(bytes);
 }
 
-/// Length of a message up to its data, without encapsulation [byte]. Numbers are aligned to their
-/// sizes; a string is length, bytes and zero. Source: OMG CORBA 3.3, part 2, CDR Transfer Syntax.
-[[nodiscard]] inline std::size_t point_cloud2_head(const PointLayout& layout, std::string_view frame_id) noexcept {
-  const auto aligned = [](std::size_t at) { return (at + 3) / 4 * 4; };
-  const auto with_string = [&](std::size_t at, std::string_view text) { return aligned(at) + 4 + text.size() + 1; };
-  std::size_t size = aligned(with_string(8, frame_id)) + 12;  // height, width, fields
-  for (const PointField& field : layout.fields)
-    size = aligned(aligned(with_string(size, field.name)) + 4 + 1) + 4;  // offset, type, count
-  return aligned(size + 1) + 12;                                         // steps, data
-}
-
 }  // namespace detail
 
 /// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`: little-endian CDR
@@ -104,7 +93,8 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
   const std::span<const std::byte> records = scan.records();
   const std::uint32_t length = detail::point_cloud2_length(records.size());
   const std::uint64_t stamp = stamp_ns(scan), nanoseconds_per_second = 1'000'000'000;
-  const std::size_t head = detail::point_cloud2_head(layout, frame_id);
+  std::size_t head = 64 + frame_id.size();  // at most, up to the data: numbers of 4 bytes are aligned
+  for (const PointField& field : layout.fields) head += 24 + field.name.size();
 
   message.assign(detail::cdr_encapsulation.begin(), detail::cdr_encapsulation.end());
   message.reserve(message.size() + head + records.size() + 1);
@@ -120,6 +110,7 @@ inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& f
     cdr << field.name << field.offset << static_cast<std::uint8_t>(std::min(field.type, NumberType::float64))
         << std::uint32_t{1};
   cdr << false << layout.size << length << length;  // is_bigendian, point_step, row_step, data
+  message.resize(detail::cdr_encapsulation.size() + cdr.getSerializedDataLength());
   const std::size_t data = message.size();
   message.insert(message.end(), records.begin(), records.end());
   for (const PointField& field : layout.fields)  // a message has no 64-bit integers

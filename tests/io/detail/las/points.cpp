@@ -314,6 +314,17 @@ TEST_CASE("classes, and objects by the extra bytes ObjectId, are those of the po
   }
 }
 
+TEST_CASE("a class of LAS 1.0 has all eight bits") {
+  for (const unsigned minor : {0U, 1U}) {
+    std::string bytes = LasBuilder{.minor = minor, .format = 1, .points = {{}}}.bytes();
+    LasBuilder::put(bytes, 227 + 15, 72, 1);  // key-point of class 8, or class 72
+    const TemporaryFolder folder;
+    LasPoints points(InputFile(put(folder, bytes), "a point cloud"));
+    REQUIRE(points.next());
+    CHECK(points.classification() == (minor == 0 ? 72 : 8));
+  }
+}
+
 TEST_CASE("each item of the table is read, noted or refused as it says") {
   using support::LazBuilder;
   const auto warnings_of = [](const std::string& bytes) { return [bytes] { return read(bytes).warnings; }; };
@@ -351,6 +362,20 @@ TEST_CASE("each item of the table is read, noted or refused as it says") {
              CHECK(points.next());
              CHECK(points.object() == 65);
              return points.warnings();
+           }},
+          {"other extra bytes ObjectId",
+           [&] {
+             LasBuilder las{.minor = 4, .format = 6, .points = {{}}, .extra = 4};
+             las.more = {{"LASF_Spec", 4, LasBuilder::descriptor("ObjectId", 6)}};
+             return read(las.bytes()).warnings;
+           }},
+          {"two numbers of points",
+           [&] {
+             std::string bytes = LasBuilder{.minor = 4, .format = 1, .points = {{}, {}}}.bytes();
+             LasBuilder::put(bytes, 107, 1, 4);
+             const Read found = read(bytes);
+             CHECK(found.positions.size() == 2);
+             return found.warnings;
            }},
           {"steps below 1e-5", warnings_of(LasBuilder{.scale = {1e-7, 1e-7, 1e-3}, .points = {{}}}.bytes())},
           {"LASF_Projection 2111", warnings_of(at_one({{"LASF_Projection", 2111, "PARAM_MT[\"x\"]"}}).bytes())},

@@ -87,10 +87,7 @@ class CopcTree {
       const auto build_one = [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); };
       for_each_index(built.size(), threads_, build_one);
       for (std::size_t i = first; i < end; ++i) {
-        Built& one = built[i - first];
-        for (const Chunk& chunk : one.chunks) put(chunk);
-        open_.push_back(std::move(one.root));
-        one = {};
+        put(std::exchange(built[i - first], {}));
         close_above(plan, i);
       }
     }
@@ -100,9 +97,7 @@ class CopcTree {
   void write_dense(const CopcRuns& runs, const CopcRoot& root, const CopcBlock& block) {
     const CopcRuns finer = runs.finer(block.extents);
     if (finer.bits() < runs.bits()) return write_below(finer, CopcPlan(finer, sizes_, root, block.key));
-    Built built = build(runs, root, block);
-    for (const Chunk& chunk : built.chunks) put(chunk);
-    open_.push_back(std::move(built.root));
+    put(build(runs, root, block));
   }
 
   /// Picks the points of the nodes above a block that have no block to come.
@@ -205,6 +200,11 @@ class CopcTree {
     for (const Chunk& chunk : chunks) put(chunk);
     open_.resize(first);
     open_.push_back(std::move(node));
+  }
+
+  void put(Built built) {
+    for (const Chunk& chunk : built.chunks) put(chunk);
+    open_.push_back(std::move(built.root));
   }
 
   void put(const Chunk& chunk) {

@@ -80,7 +80,7 @@ class LasPoints {
   [[nodiscard]] bool has_class() const noexcept { return true; }
   [[nodiscard]] std::uint32_t classification() const noexcept {
     const auto at = static_cast<std::uint8_t>(record_[places_.format < 6 ? 15 : 16]);
-    return places_.format < 6 ? at & 31U : at;
+    return places_.format < 6 && minor_ > 0 ? at & 31U : at;  // LAS 1.0 has no flags there
   }
 
   /// Object of the current point, by the extra bytes ObjectId.
@@ -136,7 +136,9 @@ class LasPoints {
     const std::uint64_t begin = detail::las_number<std::uint32_t>(bytes, 96);
     count_ = minor_ == 4 ? detail::las_number<std::uint64_t>(bytes, 247) : 0;
     const std::size_t count_at = count_ > 0 ? 247 : 107;
-    if (count_ == 0) count_ = detail::las_number<std::uint32_t>(bytes, 107);
+    const auto legacy_count = detail::las_number<std::uint32_t>(bytes, 107);
+    if (count_ == 0) count_ = legacy_count;
+    if (legacy_count != 0 && legacy_count != count_) ask("two numbers of points");
     if (begin < header_size || begin > file_.size())
       file_.fail_at_byte(96, "the points begin at byte ", begin, ": expected one from ", header_size,
                          " to the file's size of ", file_.size());
@@ -222,7 +224,9 @@ class LasPoints {
       const auto type = static_cast<std::uint8_t>(descriptors[2]), options = static_cast<std::uint8_t>(descriptors[3]);
       const std::size_t size = type == 0 ? options : sizes[(type - 1U) % 10 + 1] * ((type - 1U) / 10 + 1);
       const bool is_number = (type == 1 || type == 3 || type == 5) && (options & 24U) == 0;  // without scale and offset
-      if (is_number && descriptors.substr(4, 9) == std::string_view("ObjectId", 9) && at + size <= places_.record) {
+      const bool is_object = descriptors.substr(4, 9) == std::string_view("ObjectId", 9) && at + size <= places_.record;
+      if (is_object && !is_number) ask("other extra bytes ObjectId");
+      if (is_object && is_number) {
         places_.object = at;
         places_.object_size = size;
       }

@@ -35,14 +35,12 @@ class LazModel {
   [[nodiscard]] bool last(std::size_t symbol) const noexcept { return symbol + 1 == symbols_; }
 
   /// Symbol with a share, in 2^-15; the last one beyond 1.
-  [[nodiscard]] unsigned at(std::uint32_t share) const noexcept {
-    std::uint32_t first = 0;
-    for (std::uint32_t rest = symbols_; rest > 1;) {
-      const std::uint32_t half = rest / 2;
-      first += below_[first + half] <= share ? half : 0;
-      rest -= half;
-    }
-    return first;
+  [[nodiscard]] unsigned at(std::uint32_t share) noexcept {
+    if (!has_starts_) find_starts();
+    share = std::min(share, (1U << share_bits) - 1);
+    unsigned symbol = start_[share >> start_bits];
+    while (below_[symbol + 1] <= share) ++symbol;
+    return symbol;
   }
 
   void learn(std::size_t symbol) noexcept {
@@ -62,11 +60,26 @@ class LazModel {
       below_[i] = static_cast<std::uint16_t>(scale * sum >> (31 - share_bits));
       sum += count_[i];
     }
+    has_starts_ = false;
     until_renewal_ = cycle_ = std::min(5 * cycle_ / 4, 8 * (symbols_ + 6));
   }
 
+  void find_starts() noexcept {
+    below_[symbols_] = 0xFFFF;  // ends a search
+    unsigned symbol = 0;
+    for (std::uint32_t i = 0; i < start_.size(); ++i) {
+      while (below_[symbol + 1] <= i << start_bits) ++symbol;
+      start_[i] = static_cast<std::uint16_t>(symbol);
+    }
+    has_starts_ = true;
+  }
+
   std::uint32_t symbols_, cycle_, total_ = 0, until_renewal_ = 0;
-  std::array<std::uint16_t, Capacity> below_, count_;
+  std::array<std::uint16_t, Capacity + 1> below_;
+  std::array<std::uint16_t, Capacity> count_;
+  static constexpr unsigned start_bits = share_bits - 6;
+  std::array<std::uint16_t, 64> start_;  // symbol at each 64th of the shares, for decoders
+  bool has_starts_ = false;
 };
 
 class LazBitModel {
@@ -206,7 +219,7 @@ class LazDecoder {
     const auto done = static_cast<unsigned>(std::countl_zero(length)) & 24U;
     value_ -= low;
     length_ = length << done;
-    if (done > 0) take(done / 8);
+    take(done / 8);
   }
 
   void take(unsigned bytes) noexcept {

@@ -97,6 +97,34 @@ class LazIntegers {
   std::vector<LazModel<>> corrections_;  // by length, from 1
 };
 
+/// Context from a number of bits, rounded down to even and limited; plus 1 for an only return.
+[[nodiscard]] inline std::size_t laz_context(unsigned bits, unsigned most, bool only) noexcept {
+  return (bits < most ? bits & ~1U : most) + (only ? 1U : 0U);
+}
+
+/// Coder of x and y as the median of the last five steps in one of `Series`. Source: Isenburg 2013, LASzip, 4.1.
+template <std::size_t Series>
+class LazPlane {
+ public:
+  template <class Coder, class Point>
+  void code(Coder& coder, std::size_t series, bool only, const Point& before, Point& p) {
+    const std::int32_t dx = x_.code(coder, x_step_[series].value(), laz_step(before.x, p.x), only ? 1 : 0);
+    x_step_[series].add(dx);
+    const std::size_t context = laz_context(x_.last_length(), 20, only);
+    const std::int32_t dy = y_.code(coder, y_step_[series].value(), laz_step(before.y, p.y), context);
+    y_step_[series].add(dy);
+    p.x = laz_step(laz_step(dx, 0), before.x);
+    p.y = laz_step(laz_step(dy, 0), before.y);
+  }
+
+  /// Mean bit length of the last corrections.
+  [[nodiscard]] unsigned last_length() const noexcept { return (x_.last_length() + y_.last_length()) / 2; }
+
+ private:
+  LazIntegers x_{32, 2}, y_{32, 22};
+  std::array<LazMedian, Series> x_step_, y_step_;
+};
+
 /// Coder of times, as 64-bit patterns: continuations of one of four series, each with its last time and usual step; in
 /// version 2 also an equal time. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
 class LazTimes {

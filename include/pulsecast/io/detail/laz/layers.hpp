@@ -68,8 +68,7 @@ class LazLayers {
       LazModel<3> channel;
       std::array<LazModel<16>, 16> returns, number;
       LazModel<13> number_at_same_time;
-      LazIntegers x{32, 2}, y{32, 22};
-      std::array<LazMedian, 12> x_step, y_step;
+      LazPlane<12> plane;
     };
     Channels<Models> channels;
     std::array<const LazPoint*, 4> last_of_channel{};
@@ -104,14 +103,8 @@ class LazLayers {
       p.number = static_cast<std::uint8_t>(number & 15U);
 
       const std::size_t series = 2 * kind(p) + (new_time ? 1 : 0);
-      const std::int32_t dx = m.x.code(coder, m.x_step[series].value(), laz_step(before.x, p.x), p.only() ? 1 : 0);
-      m.x_step[series].add(dx);
-      const std::size_t context = laz_context(m.x.last_length(), 20, p.only());
-      const std::int32_t dy = m.y.code(coder, m.y_step[series].value(), laz_step(before.y, p.y), context);
-      m.y_step[series].add(dy);
-      p.x = laz_step(laz_step(dx, 0), before.x);
-      p.y = laz_step(laz_step(dy, 0), before.y);
-      const auto out = static_cast<std::uint8_t>((m.x.last_length() + m.y.last_length()) / 2);
+      m.plane.code(coder, series, p.only(), before, p);
+      const auto out = static_cast<std::uint8_t>(m.plane.last_length());
       steps_.push_back({&before, new_time, out, up > 0 ? p.channel : std::uint8_t{0}});
     }
   }

@@ -56,11 +56,6 @@ struct LazPoint {
   std::int64_t time = 0;  ///< bit pattern of the double
 };
 
-/// Context from a number of bits, rounded down to even and limited; plus 1 for an only return.
-[[nodiscard]] inline std::size_t laz_context(unsigned bits, unsigned most, bool only) noexcept {
-  return (bits < most ? bits & ~1U : most) + (only ? 1U : 0U);
-}
-
 /// Coder of an extra byte as its difference to the last one.
 struct LazExtraByte {
   using Value = std::uint8_t;

@@ -68,10 +68,7 @@ class LazPointwise {
     std::memcpy(&value, bytes, sizeof value);
     return value;
   }
-  template <class Value>
-  static void put(std::byte* bytes, const Value& value) noexcept {
-    std::memcpy(bytes, &value, sizeof value);
-  }
+  static void put(std::byte* bytes, const auto& value) noexcept { std::memcpy(bytes, &value, sizeof value); }
 
   /// Kind of a return's place in its pulse: rows by number of returns, columns by return number.
   [[nodiscard]] static std::size_t kind(unsigned bits) noexcept {
@@ -105,23 +102,12 @@ class LazPointwise {
     p.user = (changed & 2U) != 0 ? users_.code(coder, before.user, p.user) : before.user;
     p.source = (changed & 1U) != 0 ? static_cast<std::uint16_t>(sources_.code(coder, before.source, p.source, 0))
                                    : before.source;
-    code_place(coder, before, p, series);
-    return p;
-  }
-
-  template <class Coder>
-  void code_place(Coder& coder, const LazOldPoint& before, LazOldPoint& p, std::size_t series) {
     const unsigned returns = p.bits >> 3 & 7U, number = p.bits & 7U;
     const bool only = returns == 1;
-    const std::int32_t dx = x_.code(coder, x_step_[series].value(), laz_step(before.x, p.x), only ? 1 : 0);
-    x_step_[series].add(dx);
-    const std::size_t context = laz_context(x_.last_length(), 20, only);
-    const std::int32_t dy = y_.code(coder, y_step_[series].value(), laz_step(before.y, p.y), context);
-    y_step_[series].add(dy);
-    p.x = laz_step(laz_step(dx, 0), before.x);
-    p.y = laz_step(laz_step(dy, 0), before.y);
+    plane_.code(coder, series, only, before, p);
     std::int32_t& height = height_[returns > number ? returns - number : number - returns];
-    p.z = height = z_.code(coder, height, p.z, laz_context((x_.last_length() + y_.last_length()) / 2, 18, only));
+    p.z = height = z_.code(coder, height, p.z, laz_context(plane_.last_length(), 18, only));
+    return p;
   }
 
   bool time_;
@@ -130,10 +116,10 @@ class LazPointwise {
   LazModel<64> changed_;
   Bytes bits_, classes_, users_;
   std::array<LazModel<>, 2> angles_;
-  LazIntegers intensities_{16, 4}, sources_{16, 1}, x_{32, 2}, y_{32, 22}, z_{32, 20};
+  LazIntegers intensities_{16, 4}, sources_{16, 1}, z_{32, 20};
+  LazPlane<16> plane_;
   std::array<std::uint16_t, 16> intensity_{};  // last ones by kind
-  std::array<LazMedian, 16> x_step_, y_step_;
-  std::array<std::int32_t, 8> height_{};  // last ones by number of returns to come
+  std::array<std::int32_t, 8> height_{};       // last ones by number of returns to come
   std::unique_ptr<LazTimes> times_;
   LazColours colours_;
   std::vector<LazExtraByte> steps_;
