@@ -43,10 +43,6 @@ struct MaterialLibrary {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
-#include <istream>
-
-#include <tiny_obj_loader.h>
 
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
 
@@ -54,123 +50,109 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
-class MtlReader : private StatementBuffer {
+class MtlReader : private Statements {
  public:
   MtlReader(InputFile file, const SpectralLibrary& spectra)
-      : StatementBuffer(file.path(), file.take_rest(), 0), spectra_(spectra) {}
+      : Statements(file.path(), file.take_rest(), 0), spectra_(spectra) {}
 
   [[nodiscard]] MaterialLibrary read() {
-    std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
-    std::map<std::string, int> ignored_numbers;
-    std::vector<tinyobj::material_t> found;
-    tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
-    MaterialLibrary library;
-    library.warnings = std::move(warnings_);
-    for (const tinyobj::material_t& m : found)
-      if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
-    library.pictures = std::move(pictures_);
+    while (next_statement()) take();
+    MaterialLibrary library{.materials = {}, .pictures = std::move(pictures_), .warnings = std::move(warnings_)};
+    for (const MtlMaterial& one : found_) library.materials.emplace(one.name, material(one, library.warnings));
     return library;
   }
 
  private:
-  void check(std::string& ready) override {
-    // tinyobjloader drops keys before the first name, and its default exponent is 1
-    static const std::string exponent = "\nNs " + text::to_text(Phong{}.exponent) + "\n";
-    const bool is_first = !std::exchange(begun_, true);
-    const bool is_name = keyword() == "newmtl";
-    if (is_name) current_ = rest();
-    if (is_name) repeated_ = lines_.contains({current_, "newmtl"});
-    note_picture();
-    lines_.try_emplace({current_, std::string(keyword())}, line());
-    if (is_name) {
+  void take() {
+    const std::string key(keyword());
+    if (key == "newmtl") {
       require(!rest().empty(), "the name of a material");
-      ready = statement() + exponent;
+      repeated_ = std::ranges::find(found_, rest(), &MtlMaterial::name) != found_.end();
+      found_.push_back({.name = std::string(rest())});
       return;
     }
+    if (found_.empty()) found_.emplace_back();  // "default"
+    take_picture();
     const std::vector<std::string_view>& given = words();
-    if (const char* const expected = expected_words(keyword(), given)) require(false, expected);
-    if (is_first) ready = "newmtl default" + exponent;
-    if (keyword() == "Kd" || keyword() == "Ks")
-      ready += standard_numbers(given, 3);
-    else if (keyword() == "Ns")
-      ready += standard_numbers(given, 1);
-    // with textures, tinyobjloader would change the colour, depending on the order
-    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
-             keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
-      ready += statement();
+    if (const char* const expected = expected_words(key, given)) require(false, expected);
+    MtlMaterial::Statement& statement = found_.back().statements.try_emplace(key, line()).first->second;
+    const bool is_standard = key == "Kd" || key == "Ks" || key == "Ns";
+    const bool is_light = key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
+    if (is_standard)
+      take_numbers(given, key == "Ns" ? 1 : 3, statement.text);
+    else if (!is_light || (!given.empty() && text::finite_number_in(given[0])))
+      statement.text = rest();
   }
 
-  /// Statement of a standard key with `count` numbers, limited to 0 to 1e12, or one for all; empty
-  /// for other words. Source: MTL specification, Wavefront 1995.
-  [[nodiscard]] std::string standard_numbers(const std::vector<std::string_view>& given, std::size_t count) {
+  /// Takes `count` numbers of a standard key, limited to 0 to 1e12, or one for all; ignores other words. Source: MTL
+  /// specification, Wavefront 1995.
+  void take_numbers(const std::vector<std::string_view>& given, std::size_t count, std::string& to) {
     std::vector<double> numbers;
     for (std::size_t i = 0; i < std::min(given.size(), count); ++i) {
-      const auto number = number_in<double>(given[i]);
+      const auto number = text::finite_number_in(given[i]);
       if (!number) break;
       numbers.push_back(std::clamp(*number, 0.0, max_number));
       if (numbers.back() != *number) note("takes ", numbers.back(), " for ", given[i]);
     }
     const bool is_comment = given.size() > 1 && given[1].starts_with('/');
-    if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
-      note("is ignored: expected ", count == 1 ? "a number" : "one or three numbers");
-      return {};
-    }
+    if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment)))
+      return note("is ignored: expected ", count == 1 ? "a number" : "one or three numbers");
     if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
-    std::string made(keyword());
-    for (std::size_t i = 0; i < count; ++i) made += ' ' + text::to_text(numbers[std::min(i, numbers.size() - 1)]);
-    return made;
+    to.clear();
+    for (std::size_t i = 0; i < count; ++i) to += text::to_text(numbers[std::min(i, numbers.size() - 1)]) + ' ';
   }
 
   void note(const auto&... oddity) {
-    warnings_.push_back(warning(path(), line(), "material '", current_, "': ", quoted(), " ", oddity...));
+    warnings_.push_back(warning(path(), line(), "material '", found_.back().name, "': ", quoted(), " ", oddity...));
   }
 
-  /// Notes the picture that a statement names, for the first material of a name.
-  void note_picture() {
+  /// Takes the picture that a statement names, for the first material of a name.
+  void take_picture() {
     static constexpr std::array<std::string_view, 3> keys{"map_Kd", "map_d", "pulsecast_reflectanceMap"};
-    const auto key = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), keyword()) - keys.begin());
+    const auto key = static_cast<std::size_t>(std::ranges::find(keys, keyword()) - keys.begin());
     if (key == keys.size() || repeated_) return;
     const bool reflectance = key == 2;
     std::string_view named = rest();
     const bool is_pattern = reflectance && named.starts_with("pattern ");
-    if (is_pattern) named = text::trimmed(named.substr(8));
-    std::string name;
-    tinyobj::texture_option_t unused;
-    tinyobj::ParseTextureNameAndOption(&name, &unused, std::string(named).c_str());
-    if (reflectance) require(!name.empty(), "the name of a picture");
-    if (name.empty()) return note("names no picture");
-    std::replace(name.begin(), name.end(), '\\', '/');
-    MaterialPictures& all = pictures_[current_];
+    if (is_pattern) (void)text::take_word(named);
+    if (named.starts_with('-')) note("has options, which have no effect");
+    while (named.starts_with('-')) {
+      const std::string_view option = text::take_word(named);
+      const bool has_numbers = option == "-o" || option == "-s" || option == "-t" || option == "-mm";
+      const auto is_number = [](std::string_view left) { return text::finite_number_in(text::take_word(left)); };
+      for (int i = 0; i < (has_numbers ? 3 : 1) && (!has_numbers || is_number(named)); ++i)
+        (void)text::take_word(named);
+    }
+    if (reflectance) require(!named.empty(), "the name of a picture");
+    if (named.empty()) return note("names no picture");
+    std::string name(named);
+    std::ranges::replace(name, '\\', '/');
+    MaterialPictures& all = pictures_[found_.back().name];
     all.reflectance_pattern |= is_pattern;
     PictureSource* const sources[] = {&all.colour, &all.opacity, &all.reflectance};
     sources[key]->file = std::filesystem::path(path()).parent_path() / name;
   }
 
-  [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
+  [[nodiscard]] Material material(const MtlMaterial& m, std::vector<std::string>& warnings) const {
     const auto warn = [&](const char* key, const auto&... oddity) {
-      const auto known = lines_.find({m.name, key});
-      const std::size_t place = known == lines_.end() ? 0 : known->second;
+      const auto known = m.statements.find(key);
+      const std::size_t place = known == m.statements.end() ? 0 : known->second.line;
       warnings.push_back(warning(path(), place, "material '", m.name, "' ", oddity...));
     };
-    const auto extra = [&](const char* key) {
-      const auto found = m.unknown_parameter.find(key);
-      return found == m.unknown_parameter.end() ? std::string() : found->second;
-    };
     Material made = undescribed(m.name);
-    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2],
-                 specular = m.specular[0] + m.specular[1] + m.specular[2];
-    const double share = specular / (diffuse + specular);
-    if (specular > 0 && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
-      made.law = NormalizedPhong{share, m.shininess};
+    const double diffuse = m.sum("Kd"), specular = m.sum("Ks"), share = specular / (diffuse + specular);
+    const double exponent = m.number("Ns", 0, Phong{}.exponent);
+    if (specular > 0 && m.text("pulsecast_normalizedPhong") == "true")
+      made.law = NormalizedPhong{share, exponent};
     else if (specular > 0)
-      made.law = Phong{share, m.shininess};
+      made.law = Phong{share, exponent};
     else if (diffuse > 0)
       made.law = Lambert{};
-    for (int k = 0; diffuse > 0 && k < 3; ++k) made.colour[k] = std::min(m.diffuse[k], 1.0);
-    const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
+    for (std::size_t k = 0; diffuse > 0 && k < 3; ++k)
+      made.colour[static_cast<int>(k)] = std::min(m.number("Kd", k), 1.0);
+    const std::string_view reflectance = m.text("helios_reflectance"), spectrum = m.text("helios_spectra");
     if (!reflectance.empty()) {
-      made.reflectance = *number_in<double>(reflectance);
+      made.reflectance = m.number("helios_reflectance");
       if (made.reflectance > 1) {
         warn("helios_reflectance", "has the reflectance ", reflectance, ", which is taken as percent");
         made.reflectance /= 100;
@@ -186,47 +168,37 @@ class MtlReader : private StatementBuffer {
       warn("helios_spectra", "refers to the spectrum '", spectrum,
            "', which is in no library: a reflectance of 0.5 is assumed");
     }
-    set_light(made, m, extra, warn);
-    made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
-    const std::string ground = text::lower(extra("helios_isGround"));
+    if (!set_standard_light(made, m))
+      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
+    if (!m.text("pulsecast_water").empty()) made.smooth = water_for_lasers(m, warn);
+    set_own_light(made, m);
+    made.classification = text::number_in<std::uint16_t>(m.text("helios_classification")).value_or(made.classification);
+    const std::string ground = text::lower(m.text("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
       warn("helios_isGround", "has helios_isGround '", ground, "', expected true or false: false is assumed");
     return made;
   }
 
-  void set_light(Material& made, const tinyobj::material_t& m, const auto& extra, const auto& warn) const {
-    if (!set_standard_light(made, m))
-      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
-    std::deque<std::string> texts;
-    const auto words_of = [&](const char* key) {
-      texts.push_back(extra(key));
-      std::vector<std::string_view> words;
-      for (std::string_view left = text::trimmed(texts.back()); !left.empty();) words.push_back(text::take_word(left));
-      return words;
-    };
-    if (const auto words = words_of("pulsecast_water"); !words.empty())
-      made.smooth = water_for_lasers(m.name, words, warn);
-    set_own_light(made, m, words_of);
-  }
-
   /// Water for the wavelength of all lasers; clear, with a warning, if there is none.
-  [[nodiscard]] SmoothInterface water_for_lasers(const std::string& name, const auto& words, const auto& warn) const {
+  [[nodiscard]] SmoothInterface water_for_lasers(const MtlMaterial& m, const auto& warn) const {
     constexpr const char* key = "pulsecast_water";
     const std::vector<double>& all = spectra_.wavelengths;
     if (all.empty()) {
       warn(key, "has water by a type, and no wavelength of a laser is known: it is taken as clear");
       return SmoothInterface::water();
     }
+    const std::vector<std::string_view> words = m.words(key);
+    const std::size_t line = m.statements.at(key).line;
     if (std::ranges::any_of(all, [&](double wavelength) { return wavelength != all.front(); }))
-      fail_at(path(), lines_.at({name, key}),
+      fail_at(path(), line,
               "water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the "
               "coefficients");
     try {
       if (const auto type = jerlov_type(words[0])) return SmoothInterface::water(water(*type, all.front()));
-      return SmoothInterface::water(secchi_water(*number_in<double>(words[1]), all.front()));
+      return SmoothInterface::water(secchi_water(m.number(key, 1), all.front()));
     } catch (const SettingError& refused) {
-      fail_at(path(), lines_.at({name, key}), refused.what());
+      fail_at(path(), line, refused.what());
     }
   }
 
@@ -234,10 +206,9 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;
-  bool begun_ = false, repeated_ = false;                             // after a statement; for a name again
-  std::string current_ = "default";                                   // name of the current material
-  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // by material and keyword
-  std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
+  std::vector<MtlMaterial> found_;                                 // materials, the last is the current one
+  bool repeated_ = false;                                          // true if that has a name again
+  std::map<std::string, MaterialPictures, std::less<>> pictures_;  // by material
 };
 
 }  // namespace detail

@@ -220,24 +220,36 @@ class GltfDocument {
     if (mesh.IsObject()) mesh.RemoveMember("weights");
     for (Json& primitive : elements(member(mesh, "primitives"))) {
       Json* const attributes = member(primitive, "attributes");
-      if (!attributes || !attributes->IsObject() || member(primitive, "extensions", "KHR_draco_mesh_compression"))
-        continue;
-      primitive.RemoveMember("targets");
+      if (!attributes || !attributes->IsObject()) continue;
+      const bool is_compressed = member(primitive, "extensions", "KHR_draco_mesh_compression");
+      if (!is_compressed) primitive.RemoveMember("targets");
       for (rapidjson::SizeType k = attributes->MemberCount(); k-- > 0;) {
         const auto one = attributes->MemberBegin() + static_cast<std::ptrdiff_t>(k);
         const std::string_view name = text_of(&one->name);
-        if (name != "POSITION" && !name.starts_with("TEXCOORD_"))
+        if (name == "POSITION" || name.starts_with("TEXCOORD_"))
+          one->value.SetUint64(as_float(whole(*attributes, name), name == "POSITION", has_bones, is_compressed));
+        else if (!is_compressed)
           attributes->EraseMember(one);
-        else
-          one->value.SetUint64(as_float(whole(*attributes, name), name == "POSITION", has_bones));
       }
+      if (!is_compressed && member(*attributes, "POSITION") && member(primitive, "indices"))
+        require_vertices(whole(primitive, "indices"), whole(item("accessors", whole(*attributes, "POSITION")), "count"));
     }
   }
 
+  /// Refuses vertices that are not there, as assimp drops their faces.
+  void require_vertices(std::uint64_t indices, std::uint64_t count) {
+    const std::vector<std::uint32_t> all = numbers<std::uint32_t>(indices, 1);
+    const auto beyond = std::ranges::find_if(all, [&](std::uint32_t vertex) { return vertex >= count; });
+    if (beyond != all.end())
+      fail("has the vertex ", *beyond, " (accessor ", indices, "): expected less than their number, ", count);
+  }
+
   /// Number of an accessor, or of one of floating-point numbers in its place. Source: KHR_mesh_quantization.
-  [[nodiscard]] std::uint64_t as_float(std::uint64_t number, bool is_place, bool has_bones) {
+  [[nodiscard]] std::uint64_t as_float(std::uint64_t number, bool is_place, bool has_bones, bool is_compressed) {
     const std::uint64_t type = whole(item("accessors", number), "componentType");
     if (type == 5126) return number;
+    if (is_compressed)
+      fail("has whole numbers compressed by Draco (accessor ", number, "): expected floating-point numbers");
     if (type > 5123 || (is_place && !is_quantized_))
       fail("has positions of the component type ", type, " (accessor ", number,
            "): expected 5126, floating-point numbers, or KHR_mesh_quantization");
@@ -255,8 +267,9 @@ class GltfDocument {
   }
 
   /// Elements of an accessor as numbers, `width` each. Source: glTF 2.0, 3.6.2; shares by 3.11 (animations).
-  [[nodiscard]] std::vector<float> numbers(std::uint64_t number, std::size_t width) {
-    constexpr std::array<std::size_t, 7> sizes{1, 1, 2, 2, 0, 0, 4};  // of numbers, by component type [byte]
+  template <class Number = float>
+  [[nodiscard]] std::vector<Number> numbers(std::uint64_t number, std::size_t width) {
+    constexpr std::array<std::size_t, 7> sizes{1, 1, 2, 2, 0, 4, 4};  // of numbers, by component type [byte]
     constexpr std::array<float, 4> greatest{127, 255, 32767, 65535};
     constexpr std::array<std::string_view, 5> shapes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
     Json& accessor = item("accessors", number);
@@ -274,19 +287,20 @@ class GltfDocument {
       fail("has the accessor ", number, " of ", count, " elements: expected them in a buffer, within its view");
     const Json* const normalized = member(accessor, "normalized");
     const bool is_share = normalized && normalized->IsTrue() && type <= 5123;
-    std::vector<float> made(count * width);
+    std::vector<Number> made(count * width);
     for (std::size_t i = 0; i < made.size(); ++i) {
       const char* const at = buffer.data() + first + i / width * stride + i % width * size;
       const auto as = [&](auto value) {
         std::memcpy(&value, at, sizeof value);
-        return static_cast<float>(value);
+        return static_cast<Number>(value);
       };
       made[i] = type == 5120   ? as(std::int8_t{})
                 : type == 5121 ? as(std::uint8_t{})
                 : type == 5122 ? as(std::int16_t{})
                 : type == 5123 ? as(std::uint16_t{})
+                : type == 5125 ? as(std::uint32_t{})
                                : as(float{});
-      if (is_share) made[i] = std::max(made[i] / greatest[type - 5120], -1.0F);
+      if (is_share) made[i] = std::max(static_cast<Number>(made[i] / greatest[type - 5120]), Number(-1));
     }
     return made;
   }

@@ -17,6 +17,8 @@ inline constexpr auto mesh_rules = std::to_array<FormatRule>({
     {"UpAxis", FormatUse::read, "vertical axis"},
     {"<ph>", FormatUse::refused, "polygons without holes, as of an export of triangles"},
     {"<skew", FormatUse::refused, "a matrix in its place"},
+    {"<lookat", FormatUse::refused, "a matrix in its place"},
+    {"<visibility>0", FormatUse::noted, "hidden nodes are shown"},
     {"<animation", FormatUse::noted, "nodes stand as without animation"},
     {"<spline", FormatUse::noted, "curves are left out"},
     {"<convex_mesh", FormatUse::noted, "convex hulls are left out"},

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
-
-#include <tiny_obj_loader.h>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
@@ -19,10 +18,27 @@
 /// Keys of MTL files for light reflected or transmitted specularly.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// True for a standard key among them.
-[[nodiscard]] inline bool is_light_key(std::string_view key) {
-  return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
-}
+/// Statements of a material of an MTL file.
+struct MtlMaterial {
+  struct Statement {
+    std::size_t line = 0;  ///< of the first with its key
+    std::string text{};    ///< after the key, of the last
+  };
+  std::string name = "default";
+  std::map<std::string, Statement, std::less<>> statements{};  ///< by key
+
+  [[nodiscard]] std::string_view text(std::string_view key) const {
+    const auto found = statements.find(key);
+    return found == statements.end() ? "" : std::string_view(found->second.text);
+  }
+  [[nodiscard]] std::vector<std::string_view> words(std::string_view key) const { return words_of(text(key)); }
+  /// Number of a statement, from 0; another one without it.
+  [[nodiscard]] double number(std::string_view key, std::size_t i = 0, double otherwise = 0) const {
+    const std::vector<std::string_view> all = words(key);
+    return i < all.size() ? text::finite_number_in(all[i]).value_or(otherwise) : otherwise;
+  }
+  [[nodiscard]] double sum(std::string_view key) const { return number(key, 0) + number(key, 1) + number(key, 2); }
+};
 
 /// Expected words of an extra key, for a message; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
@@ -30,7 +46,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   const auto is = [&](std::string_view word) { return count > 0 && words[0] == word; };
   const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers in a range
     for (std::size_t i = first; i < std::min(end, count); ++i) {
-      const std::optional<double> number = number_in<double>(words[i]);
+      const std::optional<double> number = text::finite_number_in(words[i]);
       if (!number || *number < low || *number > high) return false;
     }
     return true;
@@ -39,7 +55,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
   if (key == "helios_reflectance")
     return need(count == 1 && are(0, 1, 0, 100), "a fraction from 0 to 1, or up to 100 percent");
   if (key == "helios_classification")
-    return need(count == 1 && number_in<std::uint16_t>(words[0]), "a whole number from 0 to 65535");
+    return need(count == 1 && text::number_in<std::uint16_t>(words[0]), "a whole number from 0 to 65535");
   if (key == "pulsecast_normalizedPhong") return need(count == 1 && (is("true") || is("false")), "true or false");
   if (key == "pulsecast_interface")
     return need((is("mirror") && count == 2 && are(1, 2, 0, 1)) || (is("pane") && count == 2 && are(1, 2, 0, 10)) ||
@@ -68,43 +84,44 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Sets specular light by the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and
 /// 9 glass of the index `Ni`. False for an index out of range: that of glass is set. Source: MTL
 /// specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
-[[nodiscard]] inline bool set_standard_light(Material& made, const tinyobj::material_t& m) {
-  const double rest = 1 - std::min(made.reflectance, 1.0),
-               specular = (m.specular[0] + m.specular[1] + m.specular[2]) / 3;
-  if (m.metallic > 0)
-    made.smooth = SmoothInterface::mirror(std::min<double>(m.metallic, rest));
-  else if (m.illum == 3 || m.illum == 5 || m.illum == 8)
+[[nodiscard]] inline bool set_standard_light(Material& made, const MtlMaterial& m) {
+  const double rest = 1 - std::min(made.reflectance, 1.0), specular = m.sum("Ks") / 3, metallic = m.number("Pm"),
+               illum = std::trunc(m.number("illum")), index = m.number("Ni", 0, 1);
+  if (metallic > 0)
+    made.smooth = SmoothInterface::mirror(std::min(metallic, rest));
+  else if (illum == 3 || illum == 5 || illum == 8)
     made.smooth = SmoothInterface::mirror(std::min(specular > 0 ? specular : 1.0, rest));
-  else if (m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9) {
+  else if (illum == 4 || illum == 6 || illum == 7 || illum == 9) {
     made.smooth = SmoothInterface::glass();
-    if (m.ior < 1 || m.ior > 4) return false;
-    if (m.ior > 1) made.smooth.inside = {.index = m.ior};
+    if (index < 1 || index > 4) return false;
+    if (index > 1) made.smooth.inside = {.index = index};
   }
   return true;
 }
 
-/// Sets specular light by the keys of this library, but for water. `words_of(key)` are right.
-void set_own_light(Material& made, const tinyobj::material_t& m, const auto& words_of) {
+/// Sets specular light by the keys of this library, but for water.
+inline void set_own_light(Material& made, const MtlMaterial& m) {
   const auto number = [](std::string_view word) { return *text::number_in<double>(word); };
-  if (const auto words = words_of("pulsecast_interface"); !words.empty()) {
+  if (const auto words = m.words("pulsecast_interface"); !words.empty()) {
     if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
     if (words[0] == "pane") made.smooth = SmoothInterface::pane(number(words[1]));
     if (words[0] == "glass") made.smooth = SmoothInterface::glass();
     if (words[0] == "water") made.smooth = SmoothInterface::water();
     if (words[0] == "none") made.smooth = {};
-    if (m.ior > 1 && m.ior <= 4 && made.smooth.inside.index > 1) made.smooth.inside = {.index = m.ior};
+    const double index = m.number("Ni", 0, 1);
+    if (index > 1 && index <= 4 && made.smooth.inside.index > 1) made.smooth.inside = {.index = index};
   }
-  if (const auto words = words_of("pulsecast_medium"); !words.empty()) {
+  if (const auto words = m.words("pulsecast_medium"); !words.empty()) {
     Medium& inside = made.smooth.inside = {.index = number(words[0])};
     double* const members[] = {&inside.group_index, &inside.absorption, &inside.scattering, &inside.backscatter};
     for (std::size_t i = 1; i < words.size(); ++i) *members[i - 1] = number(words[i]);
   }
-  const double transmission = (m.transmittance[0] + m.transmittance[1] + m.transmittance[2]) / 3;
+  const double transmission = m.sum("Tf") / 3;
   if (made.smooth.kind == InterfaceKind::pane && made.smooth.thickness > 0 && transmission > 0 && transmission < 1)
     made.smooth.inside.absorption = -std::log(transmission) / made.smooth.thickness;
-  if (const auto words = words_of("pulsecast_retroreflection"); !words.empty()) {
+  if (const auto words = m.words("pulsecast_retroreflection"); !words.empty()) {
     const double coefficient = number(words[0]);
-    const auto of = words_of("pulsecast_retroreflector");
+    const auto of = m.words("pulsecast_retroreflector");
     const std::string_view kind = of.empty() ? "beads" : of[0];
     const std::size_t width = kind == "prisms" ? 2 : 1;
     const double half_angle = of.size() > width ? number(of[width]) : 0;
@@ -114,7 +131,7 @@ void set_own_light(Material& made, const tinyobj::material_t& m, const auto& wor
     else
       made.law = Retroreflector<CubeCorners>{coefficient, half_angle, {kind == "prisms" ? number(of[1]) : 1}};
   }
-  if (const auto words = words_of("pulsecast_roughness"); !words.empty()) made.law = Microfacet{number(words[0])};
+  if (const auto words = m.words("pulsecast_roughness"); !words.empty()) made.law = Microfacet{number(words[0])};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
