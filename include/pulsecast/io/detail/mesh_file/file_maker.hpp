@@ -155,10 +155,7 @@ class MeshFileMaker {
   /// Refuses a mesh of more than a quad's vertices at one point: its numbers are not understood.
   void require_extent(const RawMesh& mesh) const {
     const auto coincide = [](const auto& all) {
-      return all.size() > 4 && std::ranges::all_of(all, [&](const auto& v) {
-               return !(v.x < all[0].x) && !(v.x > all[0].x) && !(v.y < all[0].y) && !(v.y > all[0].y) &&
-                      !(v.z < all[0].z) && !(v.z > all[0].z);
-             });
+      return all.size() > 4 && std::ranges::adjacent_find(all, std::not_equal_to{}) == all.end();
     };
     if (coincide(mesh.vertices) || coincide(mesh.precise))
       detail::fail(path_, "has the mesh ", text::quoted(mesh.name), " of ", mesh.vertex_count(),

@@ -19,6 +19,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 struct Float3 {
   float x = 0, y = 0, z = 0;
+  friend bool operator==(const Float3&, const Float3&) = default;
 };
 using Corners3 = std::array<std::uint32_t, 3>;  ///< vertex indices of a triangle
 
