@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <set>
 #include <vector>
 
 #include <citygml/citygml.h>
@@ -102,9 +103,13 @@ class CityGmlImport {
       if (name_.empty()) name_ = object.getEnvelope().srsName();
       root(object);
     }
-    if (const auto code = epsg_of(name_);
-        name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
-      fail("its coordinates are in degrees, by '", name_, "': expected a projected system in metres");
+    // systems of latitude and longitude have many codes; no model has objects of 5 cm at most
+    if (const auto code = epsg_of(name_); name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 ||
+                                          code == 4979 || (largest_ > 0 && largest_ < 0.05 && farthest_ <= 360))
+      fail("its coordinates are in degrees, by '", name_, "' or its size: expected a projected system in metres");
+    if (files_ > 0)
+      scene_.warnings.push_back(
+          warning(path_.string(), 0, files_, " implicit geometries are files of their own, and left out"));
     for (const std::string& message : log->messages)
       scene_.warnings.push_back(warning(path_.string(), 0, "libcitygml: ", printable(message)));
     scene_.reference = name_;
@@ -126,8 +131,14 @@ class CityGmlImport {
     highest(object, lod, 0);
     if (!lod) return;
     ByClass all;
+    taken_.clear();
     collect(object, *lod, all, object.getId());
     if (all.empty()) return;
+    Box box;
+    for (const auto& [type, surfaces] : all)
+      for (const Vec3& vertex : surfaces.vertices) box.extend(vertex);
+    if (!box.empty()) largest_ = std::max({largest_, box.size().x, box.size().y});
+    if (!box.empty()) farthest_ = std::max({farthest_, max_norm(box.min), max_norm(box.max)});
     const auto first = std::ranges::find_if(all, [](const auto& one) { return !one.second.vertices.empty(); });
     Vec3 origin = first == all.end() ? Vec3{} : first->second.vertices.front();
     for (int k = 0; k < 3; ++k) origin[k] = std::floor(origin[k]);
@@ -148,34 +159,38 @@ class CityGmlImport {
   }
 
   /// Highest level of detail of an object and those in it, to the limit, which libcitygml may pass.
-  void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) const {
+  void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) {
     check_depth(depth);
     if (is_left_out(object.getType())) return;
     const auto offer = [&](unsigned level) {
       if (level <= settings_.max_lod) lod = std::max(lod.value_or(0), level);
     };
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i) offer(object.getGeometry(i).getLOD());
-    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
-      for (unsigned k = 0; k < object.getImplicitGeometry(i).getGeometriesCount(); ++k)
-        offer(object.getImplicitGeometry(i).getGeometry(k).getLOD());
+    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i) {
+      const citygml::ImplicitGeometry& implicit = object.getImplicitGeometry(i);
+      files_ += implicit.getGeometriesCount() == 0 ? 1 : 0;
+      for (unsigned k = 0; k < implicit.getGeometriesCount(); ++k) offer(implicit.getGeometry(k).getLOD());
+    }
     for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
       highest(object.getChildCityObject(i), lod, depth + 1);
   }
 
+  /// Surfaces of an object after those in it, which it may refer to.
   void collect(const citygml::CityObject& object, unsigned lod, ByClass& all, const std::string& id) {
     if (is_left_out(object.getType())) return;
+    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
+      collect(object.getChildCityObject(i), lod, all, id);
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i)
       if (object.getGeometry(i).getLOD() == lod) add(object.getGeometry(i), all[object.getType()], 0);
     for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
       implicit(object.getImplicitGeometry(i), object.getType(), id, lod);
-    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
-      collect(object.getChildCityObject(i), lod, all, id);
   }
 
-  void add(const citygml::Geometry& geometry, Surfaces& to, int depth) const {
+  void add(const citygml::Geometry& geometry, Surfaces& to, int depth) {
     check_depth(depth);
     for (unsigned i = 0; i < geometry.getPolygonsCount(); ++i) {
       const std::shared_ptr<const citygml::Polygon> polygon = geometry.getPolygon(i);
+      if (!taken_.insert(polygon.get()).second) continue;
       const std::size_t first = to.vertices.size(), count = polygon->getVertices().size();
       if (first + count > 0xFFFFFFFFU) fail("an object has too many vertices: expected fewer than 2^32");
       for (const TVec3d& v : polygon->getVertices()) to.vertices.emplace_back(v.x, v.y, v.z);
@@ -231,6 +246,9 @@ class CityGmlImport {
   std::string name_;  ///< of the reference system
   RawScene scene_;
   std::map<CityClass, std::uint32_t> materials_;
+  std::set<const citygml::Polygon*> taken_;  ///< of the current object
+  double largest_ = 0, farthest_ = 0;        ///< size and coordinates of objects, as far as they are their own
+  std::uint64_t files_ = 0;                  ///< implicit geometries without a geometry
   std::map<std::pair<std::vector<const citygml::Geometry*>, CityClass>, std::optional<std::uint32_t>> shared_;
 };
 
