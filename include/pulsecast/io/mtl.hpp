@@ -44,11 +44,131 @@ struct MaterialLibrary {
 #include <array>
 #include <cmath>
 
-#include <pulsecast/io/detail/obj/mtl_light.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/io/detail/obj/statements.hpp>
+#include <pulsecast/material/microfacet.hpp>
+#include <pulsecast/material/retroreflector.hpp>
+#include <pulsecast/material/water_types.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
+
+/// Statements of a material of an MTL file.
+struct MtlMaterial {
+  struct Statement {
+    std::size_t line = 0;  ///< of the first with its key
+    std::string text{};    ///< after the key, of the last
+  };
+  std::string name = "default";
+  std::map<std::string, Statement, std::less<>> statements{};  ///< by key
+
+  [[nodiscard]] std::string_view text(std::string_view key) const {
+    const auto found = statements.find(key);
+    return found == statements.end() ? "" : std::string_view(found->second.text);
+  }
+  [[nodiscard]] std::vector<std::string_view> words(std::string_view key) const { return words_of(text(key)); }
+  /// Number of a statement, from 0; another one without it.
+  [[nodiscard]] double number(std::string_view key, std::size_t i = 0, double otherwise = 0) const {
+    const std::vector<std::string_view> all = words(key);
+    return i < all.size() ? text::finite_number_in(all[i]).value_or(otherwise) : otherwise;
+  }
+  [[nodiscard]] double sum(std::string_view key) const { return number(key, 0) + number(key, 1) + number(key, 2); }
+};
+
+/// Expected words of an extra key, for a message; null if they are right, or the key is another.
+[[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
+  const std::size_t count = words.size();
+  const auto is = [&](std::string_view word) { return count > 0 && words[0] == word; };
+  const auto are = [&](std::size_t first, std::size_t end, double low, double high) {  // numbers in a range
+    for (std::size_t i = first; i < std::min(end, count); ++i) {
+      const std::optional<double> number = text::finite_number_in(words[i]);
+      if (!number || *number < low || *number > high) return false;
+    }
+    return true;
+  };
+  const auto need = [](bool right, const char* expected) { return right ? nullptr : expected; };
+  if (key == "helios_reflectance")
+    return need(count == 1 && are(0, 1, 0, 100), "a fraction from 0 to 1, or up to 100 percent");
+  if (key == "helios_classification")
+    return need(count == 1 && text::number_in<std::uint16_t>(words[0]), "a whole number from 0 to 65535");
+  if (key == "pulsecast_normalizedPhong") return need(count == 1 && (is("true") || is("false")), "true or false");
+  if (key == "pulsecast_interface")
+    return need((is("mirror") && count == 2 && are(1, 2, 0, 1)) || (is("pane") && count == 2 && are(1, 2, 0, 10)) ||
+                    ((is("glass") || is("water") || is("none")) && count == 1),
+                "mirror and its reflectance from 0 to 1, pane and its thickness from 0 to 10 m, glass, water or none");
+  if (key == "pulsecast_medium")
+    return need(count >= 1 && count <= 5 && are(0, 2, 1, 4) && are(2, 5, 0, 1e6),
+                "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering "
+                "and backscatter from 0");
+  if (key == "pulsecast_water")
+    return need((count == 1 && jerlov_type(words[0])) || (is("secchi") && count == 2 && are(1, 2, 0.1, 80)),
+                "a type of Jerlov's, I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C, or secchi and a depth from 0.1 to 80 m");
+  if (key == "pulsecast_roughness")
+    return need(count == 1 && are(0, 1, 1e-3, 2), "a root mean square slope from 0.001 to 2");
+  if (key == "pulsecast_retroreflection")
+    return need(count >= 1 && count <= 2 && are(0, 1, 0, 1e6) && are(1, 2, 1, 85),
+                "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
+  if (key == "pulsecast_retroreflector")
+    return need(((is("beads") || is("cubeCorner")) && count <= 2 && are(1, 2, 0, 0.1)) ||
+                    (is("prisms") && count >= 2 && count <= 3 && are(1, 2, 1, 4) && are(2, 3, 0, 0.1)),
+                "beads, cubeCorner, or prisms and their index from 1 to 4, and then, if given, the half width of "
+                "the light from 0 to 0.1 rad");
+  return nullptr;
+}
+
+/// Sets specular light by the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and
+/// 9 glass of the index `Ni`. False for an index out of range: that of glass is set. Source: MTL
+/// specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
+[[nodiscard]] inline bool set_standard_light(Material& made, const MtlMaterial& m) {
+  const double rest = 1 - std::min(made.reflectance, 1.0), specular = m.sum("Ks") / 3, metallic = m.number("Pm"),
+               illum = std::trunc(m.number("illum")), index = m.number("Ni", 0, 1);
+  if (metallic > 0)
+    made.smooth = SmoothInterface::mirror(std::min(metallic, rest));
+  else if (illum == 3 || illum == 5 || illum == 8)
+    made.smooth = SmoothInterface::mirror(std::min(specular > 0 ? specular : 1.0, rest));
+  else if (illum == 4 || illum == 6 || illum == 7 || illum == 9) {
+    made.smooth = SmoothInterface::glass();
+    if (index < 1 || index > 4) return false;
+    if (index > 1) made.smooth.inside = {.index = index};
+  }
+  return true;
+}
+
+/// Sets specular light by the keys of this library, but for water.
+inline void set_own_light(Material& made, const MtlMaterial& m) {
+  const auto number = [](std::string_view word) { return *text::number_in<double>(word); };
+  if (const auto words = m.words("pulsecast_interface"); !words.empty()) {
+    if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
+    if (words[0] == "pane") made.smooth = SmoothInterface::pane(number(words[1]));
+    if (words[0] == "glass") made.smooth = SmoothInterface::glass();
+    if (words[0] == "water") made.smooth = SmoothInterface::water();
+    if (words[0] == "none") made.smooth = {};
+    const double index = m.number("Ni", 0, 1);
+    if (index > 1 && index <= 4 && made.smooth.inside.index > 1) made.smooth.inside = {.index = index};
+  }
+  if (const auto words = m.words("pulsecast_medium"); !words.empty()) {
+    Medium& inside = made.smooth.inside = {.index = number(words[0])};
+    double* const members[] = {&inside.group_index, &inside.absorption, &inside.scattering, &inside.backscatter};
+    for (std::size_t i = 1; i < words.size(); ++i) *members[i - 1] = number(words[i]);
+  }
+  const double transmission = m.sum("Tf") / 3;
+  if (made.smooth.kind == InterfaceKind::pane && made.smooth.thickness > 0 && transmission > 0 && transmission < 1)
+    made.smooth.inside.absorption = -std::log(transmission) / made.smooth.thickness;
+  if (const auto words = m.words("pulsecast_retroreflection"); !words.empty()) {
+    const double coefficient = number(words[0]);
+    const auto of = m.words("pulsecast_retroreflector");
+    const std::string_view kind = of.empty() ? "beads" : of[0];
+    const std::size_t width = kind == "prisms" ? 2 : 1;
+    const double half_angle = of.size() > width ? number(of[width]) : 0;
+    const Beads beads = words.size() > 1 ? Beads{radians(number(words[1]))} : Beads{};
+    if (kind == "beads")
+      made.law = Retroreflector<Beads>{coefficient, half_angle, beads};
+    else
+      made.law = Retroreflector<CubeCorners>{coefficient, half_angle, {kind == "prisms" ? number(of[1]) : 1}};
+  }
+  if (const auto words = m.words("pulsecast_roughness"); !words.empty()) made.law = Microfacet{number(words[0])};
+}
 
 class MtlReader : private Statements {
  public:

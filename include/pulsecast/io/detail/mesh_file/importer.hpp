@@ -26,7 +26,6 @@
 #include <assimp/Importer.hpp>
 
 #include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
-#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
