@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_CITYGML_HPP
 #define PULSECAST_IO_CITYGML_HPP
 
-#include <filesystem>
-#include <optional>
-
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>

@@ -3,13 +3,6 @@
 #ifndef PULSECAST_IO_MTL_HPP
 #define PULSECAST_IO_MTL_HPP
 
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/material.hpp>
@@ -40,10 +33,6 @@ struct MaterialLibrary {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_MTL)
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/microfacet.hpp>

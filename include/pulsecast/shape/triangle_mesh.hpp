@@ -3,14 +3,6 @@
 #ifndef PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 #define PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 
-#include <algorithm>
-#include <array>
-#include <concepts>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>

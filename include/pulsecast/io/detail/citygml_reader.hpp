@@ -3,13 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_CITYGML_READER_HPP
 #define PULSECAST_IO_DETAIL_CITYGML_READER_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
-#include <new>
 #include <set>
-#include <vector>
 
 #include <citygml/citygml.h>
 #include <citygml/citygmllogger.h>

@@ -3,18 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <optional>
-#include <span>
-#include <vector>
-
-#include <glm/matrix.hpp>
-
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/mtl.hpp>
@@ -42,6 +30,10 @@ struct SplitTransform {
   return Matrix3(cross(m[1], m[2]) / determinant, cross(m[2], m[0]) / determinant, cross(m[0], m[1]) / determinant);
 }
 
+[[nodiscard]] inline Matrix3 transposed(const Matrix3& m) noexcept {
+  return Matrix3(m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1], m[0][2], m[1][2], m[2][2]);
+}
+
 /// Polar decomposition of a transform: those that differ by a similarity have the same shape. Empty
 /// if it flattens, or is not finite. Deviations from a similarity of up to 1e-6 are ignored, as of
 /// single precision. Source: Higham 1986, SIAM J. Sci. Stat. Comput. 7(4), Newton's iteration.
@@ -59,7 +51,7 @@ struct SplitTransform {
     if (greatest(step) < 1e-14) break;
   }
   const double sign = determinant < 0 ? -1 : 1;
-  SplitTransform made{.shape = glm::transpose(turn) * unit * sign};
+  SplitTransform made{.shape = transposed(turn) * unit * sign};
   const Rotation rotation = normalize(pulsecast::rotation_of(turn * sign));
   made.placement = {.rotation = rotation, .scale = scale, .translation = transform.shift};
   made.is_similarity = determinant > 0 && greatest(made.shape - Matrix3(1)) <= tolerance;

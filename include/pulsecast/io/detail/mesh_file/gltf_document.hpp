@@ -3,14 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_GLTF_DOCUMENT_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_GLTF_DOCUMENT_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <functional>
-#include <limits>
-#include <map>
 #include <set>
-#include <vector>
 
 #include <rapidjson/document.h>
 #include <rapidjson/stringbuffer.h>

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 #define PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 
-#include <algorithm>
-#include <vector>
-
 #include <pulsecast/io/input_file.hpp>
 
 /// Statements of OBJ and MTL files.
