@@ -22,7 +22,6 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/io/detail/obj/reader.hpp>
 #include "support/allocations.hpp"
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"

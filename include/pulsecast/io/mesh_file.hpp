@@ -34,6 +34,8 @@ namespace PULSECAST_NAMESPACE::io {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_MESH_FILE)
+#include <algorithm>
+
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
 #include <pulsecast/io/detail/mesh_file/ply.hpp>

@@ -3,6 +3,9 @@
 #ifndef PULSECAST_IO_MTL_HPP
 #define PULSECAST_IO_MTL_HPP
 
+#include <functional>
+#include <map>
+
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/material.hpp>
@@ -33,6 +36,8 @@ struct MaterialLibrary {
 }  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINES(IO_MTL)
+#include <algorithm>
+
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/microfacet.hpp>

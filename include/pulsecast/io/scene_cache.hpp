@@ -3,6 +3,11 @@
 #ifndef PULSECAST_IO_SCENE_CACHE_HPP
 #define PULSECAST_IO_SCENE_CACHE_HPP
 
+#include <cstring>
+#include <functional>
+#include <type_traits>
+#include <typeinfo>
+
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/digest.hpp>

@@ -3,6 +3,8 @@
 #ifndef PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 #define PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 
+#include <algorithm>
+
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>

@@ -3,6 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 
+#include <algorithm>
+#include <functional>
+#include <map>
+
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/mtl.hpp>

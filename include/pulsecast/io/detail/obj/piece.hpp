@@ -3,7 +3,12 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
 #define PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <exception>
+#include <limits>
+#include <vector>
 
 #include <pulsecast/io/detail/obj/polygon.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>

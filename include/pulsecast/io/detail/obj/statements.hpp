@@ -3,6 +3,9 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 #define PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 
+#include <algorithm>
+#include <vector>
+
 #include <pulsecast/io/input_file.hpp>
 
 /// Statements of OBJ and MTL files.
@@ -16,44 +19,19 @@ inline constexpr double max_number = 1e12;  ///< in a file, so that products can
   return words;
 }
 
-/// Text of an OBJ or MTL file, read in pieces.
-class StatementFile : public InputFile {
- public:
-  explicit StatementFile(const std::filesystem::path& path) : InputFile(path, "an OBJ or MTL file") {}
-
-  /// Next whole statements, about `bytes` long; empty at the end of the file.
-  [[nodiscard]] std::string next(std::size_t bytes) {
-    std::string text = std::exchange(rest_, {});
-    std::size_t end = 0;
-    while (end == 0) {
-      const std::string_view more = take(bytes);
-      if (more.empty()) break;
-      text += more;
-      end = end_of_statements(text);
-    }
-    if (end > 0) {
-      rest_.assign(text, end);
-      text.resize(end);
-    }
-    if (!std::exchange(begun_, true)) text.erase(0, text.size() - text::without_byte_order_mark(text).size());
-    return text;
+/// Next whole statements of a file, about `bytes` long; empty at its end.
+[[nodiscard]] inline std::string next_statements(InputFile& file, std::size_t bytes) {
+  std::string text;
+  for (bool goes_on = true; goes_on;) {
+    const std::optional<std::string_view> line = file.take_line();
+    if (!line) break;
+    text += *line;
+    if (!file.line_is_open()) text += '\n';
+    const std::size_t last = line->find_last_not_of(" \t\v\f\r");
+    goes_on = text.size() < bytes || (last != line->npos && (*line)[last] == '\\');
   }
-
- private:
-  /// End of the last line that is not continued in the next; 0 if there is none.
-  static std::size_t end_of_statements(std::string_view text) {
-    while (!text.empty()) {
-      const std::size_t end = text.rfind('\n') + 1;
-      text = text.substr(0, end == 0 ? 0 : end - 1);
-      const std::size_t last = text.find_last_not_of(" \t\v\f\r");
-      if (end > 0 && (last == text.npos || text[last] != '\\')) return end;
-    }
-    return 0;
-  }
-
-  std::string rest_;
-  bool begun_ = false;
-};
+  return text;
+}
 
 /// Statements of a text, one after the other; those of several lines are joined.
 class Statements {
