@@ -189,7 +189,8 @@ class MtlReader : private Statements {
     take_picture();
     const std::vector<std::string_view>& given = words();
     if (const char* const expected = expected_words(key, given)) require(false, expected);
-    MtlMaterial::Statement& statement = found_.back().statements.try_emplace(key, line()).first->second;
+    MtlMaterial::Statement& statement =
+        found_.back().statements.try_emplace(key, MtlMaterial::Statement{line()}).first->second;
     const bool is_standard = key == "Kd" || key == "Ks" || key == "Ns";
     const bool is_light = key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
     if (is_standard)
