@@ -226,6 +226,43 @@ TEST_CASE("codes of reference systems are found in their names") {
   CHECK_FALSE(io::detail::epsg_of("urn:adv:crs:DE_DHDN_3GK2*DE_DHN_92_NH"));
 }
 
+TEST_CASE("a solid that refers to the surfaces of a building has each once, with the class of the surface") {
+  const std::string solid =
+      "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface><gml:surfaceMember xlink:href=\"#p1\"/>"
+      "</gml:CompositeSurface></gml:exterior></gml:Solid></bldg:lod2Solid>";
+  const Folder folder;
+  for (const bool before : {false, true}) {
+    const std::string roof = bounded("RoofSurface", "roof", polygon("p1", small));
+    const std::string building = element("bldg:Building", "b", before ? solid + roof : roof + solid);
+    const MeshFile file = read_citygml(folder.write("a.gml", city({building}))).file;
+    REQUIRE(file.triangle_count() == 1);
+    CHECK(file.materials[0].name == "RoofSurface");
+  }
+}
+
+TEST_CASE("degrees are known by the size of objects, whatever the code of their system, and files of trees are noted") {
+  const Folder folder;
+  const auto square = [](double x, double y, double size) {
+    std::string text;
+    for (const auto& [i, k] : std::vector<std::pair<int, int>>{{0, 0}, {1, 0}, {1, 1}, {0, 0}})
+      text += text::to_text(x + i * size) + ' ' + text::to_text(y + k * size) + " 3 ";
+    text.pop_back();
+    return element("bldg:Building", "b", surfaces("bldg", 1, polygon("p", text)));
+  };
+  const auto read = [&](const std::string& one, const char* code) {
+    return read_citygml(folder.write("a.gml", city({one}, code))).file;
+  };
+  CHECK(contains(support::file_error([&] { (void)read(square(35.6, 139.7, 1e-4), "EPSG:6697"); }).problem(),
+                 "in degrees, by 'EPSG:6697' or its size"));
+  CHECK(read(square(0, 0, 0.1), "EPSG:25832").triangle_count() == 1);
+  CHECK(read(square(500000, 5400000, 0.01), "EPSG:25832").triangle_count() == 1);
+  const MeshFile none = read(
+      tree("t", "<libraryObject>tree.x3d</libraryObject>", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "1 2 3"), "EPSG:25832");
+  CHECK(std::ranges::any_of(none.warnings, [](const std::string& one) {
+    return contains(one, "1 implicit geometries are files of their own, and left out");
+  }));
+}
+
 TEST_CASE("CityGML files that are not for us are explained") {
   const Folder folder;
   const auto problem = [&](const std::string& text) {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_MESH_FILE_HPP
 #define PULSECAST_IO_MESH_FILE_HPP
 
-#include <filesystem>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
@@ -38,8 +35,6 @@ namespace PULSECAST_NAMESPACE::io {
 
 #if PULSECAST_DEFINES(IO_MESH_FILE)
 #include <algorithm>
-#include <array>
-#include <memory>
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>

@@ -4,12 +4,6 @@
 #define PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 
 #include <algorithm>
-#include <array>
-#include <concepts>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>

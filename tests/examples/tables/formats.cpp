@@ -10,7 +10,6 @@
 
 #include <pulsecast/io/detail/geotiff/rules.hpp>
 #include <pulsecast/io/detail/las/rules.hpp>
-#include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>

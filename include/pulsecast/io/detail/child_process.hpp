@@ -4,21 +4,16 @@
 #define PULSECAST_IO_DETAIL_CHILD_PROCESS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <functional>
-#include <memory>
 #include <new>
-#include <span>
 #include <system_error>
 
 #include <fcntl.h>

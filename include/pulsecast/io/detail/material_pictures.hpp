@@ -6,9 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include <pulsecast/material/spectrum.hpp>
 

@@ -422,6 +422,31 @@ TEST_CASE("a mesh of many vertices at one place is refused, as is a file of one 
       "all at one place"));
 }
 
+TEST_CASE("a face of a vertex that is not there, and whole numbers compressed by Draco are refused") {
+  const Folder folder;
+  const auto problem = [&](const auto& indices, int type, const std::string& members, int component = 5126) {
+    Gltf gltf;
+    const std::string number = gltf.accessor(indices, type, "SCALAR", indices.size());
+    const std::string place = gltf.accessor(corners, component, "VEC3", 3);
+    gltf.primitive("\"POSITION\":" + place, ",\"indices\":" + number + members);
+    gltf.mesh("m");
+    gltf.node("\"mesh\":0");
+    gltf.more = R"("extensionsUsed":["KHR_mesh_quantization"],)";
+    return support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", gltf.text())); }).problem();
+  };
+  for (const char* members : {"", ",\"mode\":5"}) {
+    CHECK(problem(std::vector<std::uint16_t>{0, 1, 2}, 5123, members) == "no error");
+    CHECK(contains(problem(std::vector<std::uint8_t>{0, 1, 2, 0, 1, 3}, 5121, members),
+                   "has a face of the vertex 3: expected less than their number, 3"));
+    CHECK(contains(problem(std::vector<std::uint16_t>{0, 1, 2, 65535}, 5123, members), "of the vertex 65535"));
+    CHECK(contains(problem(std::vector<std::uint32_t>{0, 1, 4294967295}, 5125, members), "of the vertex 4294967295"));
+  }
+  CHECK(contains(
+      problem(std::vector<std::uint16_t>{0, 1, 2}, 5123,
+              R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})", 5122),
+      "has compression by Draco and quantized positions: expected"));
+}
+
 TEST_CASE("names of buffers may have escapes of JSON and of URIs, and stay in the folder") {
   const Folder folder;
   const Gltf gltf = quantized_file<std::uint8_t>({1, 2, 3, 255, 0, 0, 0, 9, 0}, 5121);

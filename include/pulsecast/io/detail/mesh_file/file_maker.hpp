@@ -4,20 +4,14 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
-#include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/scene/part.hpp>
+#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -74,7 +68,7 @@ class MeshFileMaker {
  public:
   MeshFileMaker(const std::filesystem::path& path, const RawScene& scene, const MeshFileSettings& settings,
                 const Workers& workers)
-      : path_(path), scene_(scene), settings_(settings), maker_(path.string(), scene, workers) {}
+      : path_(path), scene_(scene), settings_(settings), workers_(workers) {}
 
   [[nodiscard]] MeshFile make() {
     file_.warnings = scene_.warnings;
@@ -83,7 +77,7 @@ class MeshFileMaker {
     const double unit = settings_.unit ? *settings_.unit / scene_.applied_unit : scene_.unit;
     const Affine world{upright * unit, {}};
     for (const RawNode& node : scene_.nodes) add(node, world * node.place);
-    if (maker_.flat() > 0) warn(maker_.flat(), " triangles without area are left out");
+    if (flat_ > 0) warn(flat_, " triangles without area are left out");
     if (reshaped_ > 0)
       warn(reshaped_, " nodes shear, mirror or stretch their meshes, which become ", shapes_, " meshes of their own");
     if (flattened_ > 0) warn(flattened_, " nodes whose transforms flatten their meshes are left out");
@@ -155,10 +149,7 @@ class MeshFileMaker {
   /// Refuses a mesh of more than a quad's vertices at one point: its numbers are not understood.
   void require_extent(const RawMesh& mesh) const {
     const auto coincide = [](const auto& all) {
-      return all.size() > 4 && std::ranges::all_of(all, [&](const auto& v) {
-               return !(v.x < all[0].x) && !(v.x > all[0].x) && !(v.y < all[0].y) && !(v.y > all[0].y) &&
-                      !(v.z < all[0].z) && !(v.z > all[0].z);
-             });
+      return all.size() > 4 && std::ranges::adjacent_find(all, std::not_equal_to{}) == all.end();
     };
     if (coincide(mesh.vertices) || coincide(mesh.precise))
       detail::fail(path_, "has the mesh ", text::quoted(mesh.name), " of ", mesh.vertex_count(),
@@ -180,7 +171,7 @@ class MeshFileMaker {
       materials.push_back(static_cast<std::uint32_t>(place - one.materials.begin()));
       if (place == one.materials.end()) one.materials.push_back(number->second);
     }
-    one.mesh = maker_(shown, materials, shape);
+    one.mesh = joined(shown, materials, shape);
     if (one.mesh.triangles.empty()) {
       empty_ += shown.size();
       return std::nullopt;
@@ -189,16 +180,108 @@ class MeshFileMaker {
     return file_.meshes.size() - 1;
   }
 
+  /// Mesh of meshes by number, each with its place in a table of materials, mapped by `shape`.
+  [[nodiscard]] MeshData joined(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials,
+                                const Matrix3& shape) {
+    MeshData made;
+    std::size_t vertices = 0, triangles = 0;
+    bool textured = false, several = false;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const RawMesh& from = scene_.meshes[meshes[k]];
+      vertices += from.vertex_count();
+      triangles += from.triangles.size();
+      textured = textured || !from.texture.empty();
+      several = several || materials[k] != 0;
+    }
+    if (triangles == 0) return made;
+    MeshData::validate_counts(vertices, triangles);
+    made.vertices.resize(vertices);
+    made.triangles.resize(triangles);
+    if (several) made.materials.resize(triangles);
+    if (textured) made.texture.resize(triangles);
+    const bool mirrors = dot(shape[0], cross(shape[1], shape[2])) < 0;
+    std::size_t vertex = 0, triangle = 0;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const RawMesh& from = scene_.meshes[meshes[k]];
+      place(from, shape, made.vertices.data() + vertex);
+      index(from, static_cast<std::uint32_t>(vertex), triangle, made, mirrors);
+      if (several) std::fill_n(made.materials.data() + triangle, from.triangles.size(), materials[k]);
+      vertex += from.vertex_count();
+      triangle += from.triangles.size();
+    }
+    drop_flat(made);
+    return made;
+  }
+
+  template <class Work>
+  void each(std::size_t count, const Work& work) const {
+    constexpr std::size_t chunk = std::size_t{1} << 16;
+    for_each_index((count + chunk - 1) / chunk, workers_, [&](std::size_t c) {
+      for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) work(i);
+    });
+  }
+
+  void place(const RawMesh& from, const Matrix3& shape, Vec3* to) const {
+    const bool moved = shape != Matrix3(1);
+    const auto vertex = [&](std::size_t i) {
+      if (!from.precise.empty()) return from.precise[i];
+      const Float3& v = from.vertices[i];
+      return Vec3(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+    };
+    each(from.vertex_count(), [&](std::size_t i) {
+      const Vec3 at = vertex(i);
+      if (!is_within(at, 1e12))
+        detail::fail(path_, "mesh '", from.name, "': vertex ", i, " is not finite, or beyond 1e12: expected a place");
+      to[i] = moved ? shape * at : at;
+    });
+  }
+
+  /// Triangles and texture coordinates, from a vertex and a triangle of the mesh on.
+  void index(const RawMesh& from, std::uint32_t vertex, std::size_t triangle, MeshData& to, bool turned) const {
+    const auto at = [&](std::uint32_t corner) {
+      const Float3& t = from.texture[corner];
+      const Vec2 place(static_cast<double>(t.x), static_cast<double>(t.y));
+      if (!(std::fabs(place.x) <= 1e30 && std::fabs(place.y) <= 1e30))
+        detail::fail(path_, "mesh '", from.name, "': a texture coordinate of vertex ", corner, " is not finite");
+      return place;
+    };
+    each(from.triangles.size(), [&](std::size_t i) {
+      Corners3 c = from.triangles[i];
+      if (turned) std::swap(c[1], c[2]);
+      to.triangles[triangle + i] = {c[0] + vertex, c[1] + vertex, c[2] + vertex};
+      if (!from.texture.empty()) to.texture[triangle + i] = {at(c[0]), at(c[1]), at(c[2])};
+    });
+  }
+
+  void drop_flat(MeshData& mesh) {
+    const auto is_flat = [&](std::size_t i) {
+      const Triangle t = mesh.triangle(i);
+      return cross(t.b - t.a, t.c - t.a) == Vec3{};
+    };
+    std::size_t kept = 0;
+    const std::size_t all = mesh.triangles.size();
+    for (std::size_t i = 0; i < all; ++i) {
+      if (is_flat(i)) continue;
+      if (!mesh.materials.empty()) mesh.materials[kept] = mesh.materials[i];
+      if (!mesh.texture.empty()) mesh.texture[kept] = mesh.texture[i];
+      mesh.triangles[kept++] = mesh.triangles[i];
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.materials.empty()) mesh.materials.resize(kept);
+    if (!mesh.texture.empty()) mesh.texture.resize(kept);
+    flat_ += all - kept;
+  }
+
   const std::filesystem::path& path_;
   const RawScene& scene_;
   const MeshFileSettings& settings_;
-  MeshMaker maker_;
+  const Workers& workers_;
   MeshFile file_;
   std::map<std::uint32_t, std::uint32_t> numbers_;  ///< of materials in use, by those of the file
   Numbers used_;
   /// Meshes by what they are made of, and their shape.
   std::map<std::pair<Numbers, std::array<std::int64_t, 9>>, std::optional<std::size_t>> made_;
-  std::uint64_t reshaped_ = 0, shapes_ = 0, flattened_ = 0, empty_ = 0;
+  std::uint64_t reshaped_ = 0, shapes_ = 0, flattened_ = 0, empty_ = 0, flat_ = 0;
   std::map<std::uint32_t, float> extents_;  ///< greatest coordinate of each mesh in use
   double farthest_ = 0;                     ///< greatest coordinate of single precision [m]
 };

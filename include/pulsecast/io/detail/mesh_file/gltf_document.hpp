@@ -4,19 +4,18 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_GLTF_DOCUMENT_HPP
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <set>
-#include <vector>
 
 #include <rapidjson/document.h>
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
-#include <pulsecast/io/detail/mesh_file/gltf_rules.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -131,9 +130,7 @@ class GltfDocument {
   std::uint64_t append(std::string_view list, const auto&... text) {
     Json* const to = member(root_, list);
     if (!to || !to->IsArray()) fail("has no ", list);
-    rapidjson::Document made(&memory());
-    made.Parse(text::message(text...).c_str());
-    to->PushBack(static_cast<Json&>(made), memory());
+    to->PushBack(rapidjson::Document(&memory()).Parse(text::message(text...).c_str()).Move(), memory());
     return to->Size() - 1;
   }
 
@@ -199,17 +196,16 @@ class GltfDocument {
     std::vector<Affine> made;
     const auto each = [&](std::string_view name, std::size_t width, const auto& take) {
       if (!member(attributes, name)) return;
-      const std::vector<float> all = numbers(whole(attributes, name), width);
+      const std::vector<double> all = numbers(whole(attributes, name), width);
       if (made.empty()) made.resize(all.size() / width);
       if (all.size() != made.size() * width) fail("has instances with not as many ", name, " as others");
-      for (std::size_t i = 0; i < made.size(); ++i)
-        take(made[i], std::vector<double>(&all[i * width], &all[i * width] + width));
+      for (std::size_t i = 0; i < made.size(); ++i) take(made[i], &all[i * width]);
     };
-    each("TRANSLATION", 3, [](Affine& one, const auto& v) { one.shift = {v[0], v[1], v[2]}; });
+    each("TRANSLATION", 3, [](Affine& one, const double* v) { one.shift = {v[0], v[1], v[2]}; });
     each("ROTATION", 4,
-         [](Affine& one, const auto& v) { one.linear = matrix_of(normalize(Rotation(v[3], v[0], v[1], v[2]))); });
-    each("SCALE", 3, [](Affine& one, const auto& v) {
-      for (int k = 0; k < 3; ++k) one.linear[k] *= v[static_cast<std::size_t>(k)];
+         [](Affine& one, const double* v) { one.linear = matrix_of(normalize(Rotation(v[3], v[0], v[1], v[2]))); });
+    each("SCALE", 3, [](Affine& one, const double* v) {
+      for (int k = 0; k < 3; ++k) one.linear[k] *= v[k];
     });
     if (made.empty()) fail("has instances without TRANSLATION, ROTATION and SCALE");
     return made;
@@ -220,32 +216,40 @@ class GltfDocument {
     if (mesh.IsObject()) mesh.RemoveMember("weights");
     for (Json& primitive : elements(member(mesh, "primitives"))) {
       Json* const attributes = member(primitive, "attributes");
-      if (!attributes || !attributes->IsObject() || member(primitive, "extensions", "KHR_draco_mesh_compression"))
-        continue;
-      primitive.RemoveMember("targets");
+      if (!attributes || !attributes->IsObject()) continue;
+      const bool is_compressed = member(primitive, "extensions", "KHR_draco_mesh_compression");
+      if (!is_compressed) primitive.RemoveMember("targets");
       for (rapidjson::SizeType k = attributes->MemberCount(); k-- > 0;) {
         const auto one = attributes->MemberBegin() + static_cast<std::ptrdiff_t>(k);
         const std::string_view name = text_of(&one->name);
-        if (name != "POSITION" && !name.starts_with("TEXCOORD_"))
+        const bool is_place = name == "POSITION";
+        const char* const bound = is_compressed ? "compression by Draco" : is_place && has_bones ? "bones" : nullptr;
+        if (is_place || name.starts_with("TEXCOORD_"))
+          one->value.SetUint64(as_float(whole(*attributes, name), is_place, bound));
+        else if (!is_compressed)
           attributes->EraseMember(one);
-        else
-          one->value.SetUint64(as_float(whole(*attributes, name), name == "POSITION", has_bones));
       }
+      if (is_compressed || !member(*attributes, "POSITION") || !member(primitive, "indices")) continue;
+      const std::uint64_t count = whole(item("accessors", whole(*attributes, "POSITION")), "count");
+      for (const double vertex : numbers(whole(primitive, "indices"), 1))  // as assimp drops such faces
+        if (!(vertex < static_cast<double>(count)))
+          fail("has a face of the vertex ", vertex, ": expected less than their number, ", count);
     }
   }
 
   /// Number of an accessor, or of one of floating-point numbers in its place. Source: KHR_mesh_quantization.
-  [[nodiscard]] std::uint64_t as_float(std::uint64_t number, bool is_place, bool has_bones) {
+  [[nodiscard]] std::uint64_t as_float(std::uint64_t number, bool is_place, const char* bound) {
     const std::uint64_t type = whole(item("accessors", number), "componentType");
     if (type == 5126) return number;
     if (type > 5123 || (is_place && !is_quantized_))
       fail("has positions of the component type ", type, " (accessor ", number,
            "): expected 5126, floating-point numbers, or KHR_mesh_quantization");
-    if (is_place && has_bones) fail("has bones and quantized positions: expected a file as gltfpack makes with -noq");
+    if (bound) fail("has ", bound, " and quantized positions: expected a file as gltfpack makes with -noq");
     const auto [known, is_new] = floats_.try_emplace(number, 0);
     if (!is_new) return known->second;
     const std::size_t width = is_place ? 3 : 2;
-    const std::vector<float> values = numbers(number, width);
+    const std::vector<double> exact = numbers(number, width);
+    const std::vector<float> values(exact.begin(), exact.end());
     const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
     const std::uint64_t view = append("bufferViews", R"({"buffer":)", elements(member(root_, "buffers")).size(),
                                       R"(,"byteOffset":)", made_.size(), R"(,"byteLength":)", bytes.size(), "}");
@@ -255,39 +259,34 @@ class GltfDocument {
   }
 
   /// Elements of an accessor as numbers, `width` each. Source: glTF 2.0, 3.6.2; shares by 3.11 (animations).
-  [[nodiscard]] std::vector<float> numbers(std::uint64_t number, std::size_t width) {
-    constexpr std::array<std::size_t, 7> sizes{1, 1, 2, 2, 0, 0, 4};  // of numbers, by component type [byte]
-    constexpr std::array<float, 4> greatest{127, 255, 32767, 65535};
+  [[nodiscard]] std::vector<double> numbers(std::uint64_t number, std::size_t width) {
     constexpr std::array<std::string_view, 5> shapes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
     Json& accessor = item("accessors", number);
-    const std::uint64_t type = whole(accessor, "componentType"), count = whole(accessor, "count");
-    const std::size_t size = type < 5120 || type > 5126 ? 0 : sizes[type - 5120];
-    if (text_of(member(accessor, "type")) != shapes[width] || size == 0 || member(accessor, "sparse"))
+    const std::uint64_t component = whole(accessor, "componentType"), count = whole(accessor, "count");
+    if (text_of(member(accessor, "type")) != shapes[width] || component < 5120 || component > 5126 ||
+        component == 5124 || member(accessor, "sparse"))
       fail("has the accessor ", number, ": expected ", shapes[width], " of a known component type, not sparse");
+    const auto type = static_cast<NumberType>(component - 5119);  // in the same order
     Json& view = item("bufferViews", whole(accessor, "bufferView"));
     const std::string_view buffer = bytes(whole(view, "buffer"));
-    const std::uint64_t begin = whole(view, "byteOffset", 0), end = begin + whole(view, "byteLength");
-    const std::uint64_t row = width * size, stride = whole(view, "byteStride", row);
-    const std::uint64_t first = begin + whole(accessor, "byteOffset", 0);
+    const std::uint64_t begin = whole(view, "byteOffset", 0), end = begin + whole(view, "byteLength"),
+                        first = begin + whole(accessor, "byteOffset", 0), row = width * size_of(type),
+                        stride = whole(view, "byteStride", row);
     if (count == 0 || end > buffer.size() || first + row > end || stride < row ||
         count - 1 > (end - first - row) / stride)
       fail("has the accessor ", number, " of ", count, " elements: expected them in a buffer, within its view");
     const Json* const normalized = member(accessor, "normalized");
-    const bool is_share = normalized && normalized->IsTrue() && type <= 5123;
-    std::vector<float> made(count * width);
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      const char* const at = buffer.data() + first + i / width * stride + i % width * size;
-      const auto as = [&](auto value) {
-        std::memcpy(&value, at, sizeof value);
-        return static_cast<float>(value);
-      };
-      made[i] = type == 5120   ? as(std::int8_t{})
-                : type == 5121 ? as(std::uint8_t{})
-                : type == 5122 ? as(std::int16_t{})
-                : type == 5123 ? as(std::uint16_t{})
-                               : as(float{});
-      if (is_share) made[i] = std::max(made[i] / greatest[type - 5120], -1.0F);
-    }
+    const bool is_share = normalized && normalized->IsTrue() && type <= NumberType::uint16;
+    std::vector<double> made(count * width);
+    visit_number_type(type, [&]<class Number>() {
+      constexpr auto greatest = static_cast<double>(std::numeric_limits<Number>::max());
+      for (std::size_t i = 0; i < made.size(); ++i) {
+        Number value;
+        std::memcpy(&value, buffer.data() + first + i / width * stride + i % width * sizeof value, sizeof value);
+        made[i] = static_cast<double>(value);
+        if (is_share) made[i] = std::max(made[i] / greatest, -1.0);
+      }
+    });
     return made;
   }
 
@@ -316,19 +315,16 @@ class GltfDocument {
     if (!from) return std::nullopt;
     const auto number = [&](std::string_view name, std::size_t i, double otherwise) {
       Json* const value = member(*from, name);
-      const std::span<Json> all = elements(value);
-      const Json* const one = i < all.size() ? &all[i] : value;
+      const Json* const one = i < elements(value).size() ? &elements(value)[i] : value;
       return one && one->IsNumber() ? one->GetDouble() : otherwise;
     };
     const double turn = number("rotation", 0, 0), c = std::cos(turn), s = std::sin(turn);
     const Vec3 u = Vec3(c, -s, 0) * number("scale", 0, 1), v = Vec3(s, c, 0) * number("scale", 1, 1);
     const Matrix3 upward(Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 1, 1));
     const Matrix3 made = upward * Matrix3(u, v, Vec3(number("offset", 0, 0), number("offset", 1, 0), 1)) * upward;
-    if (Json* const found = member(*from, "texCoord")) {
-      Json set(std::move(*found));
-      picture->RemoveMember("texCoord");
-      picture->AddMember("texCoord", set, memory());
-    }
+    const std::uint64_t set = whole(*from, "texCoord", whole(*picture, "texCoord", 0));
+    picture->RemoveMember("texCoord");
+    picture->AddMember("texCoord", set, memory());
     picture->RemoveMember("extensions");
     return made;
   }

@@ -4,18 +4,12 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <new>
-#include <optional>
 #include <set>
-#include <span>
 #include <system_error>
-#include <vector>
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
@@ -26,7 +20,6 @@
 #include <assimp/Importer.hpp>
 
 #include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
-#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
 
@@ -99,10 +92,9 @@ class MeshImport {
     const MappedFile content(path_, "a mesh file");
     const std::string main = main_file(content.text());
     Assimp::Importer& importer = *importer_;
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+    for (const char* off : {AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS,
+                            AI_CONFIG_IMPORT_FBX_READ_CAMERAS, AI_CONFIG_IMPORT_FBX_READ_LIGHTS})
+      importer.SetPropertyBool(off, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
     const aiScene* const found = importer.ReadFile(main, 0);
@@ -240,19 +232,16 @@ class MeshImport {
         ++left_out_;
         continue;
       }
-      check({face.mIndices, face.mNumIndices}, from.mNumVertices);
-      crossings_ += cut_polygon({face.mIndices, face.mNumIndices}, place_of, to) ? 0 : 1;
+      const std::span<const unsigned> corners(face.mIndices, face.mNumIndices);
+      if (corners.size() > max_polygon_corners)
+        fail("a polygon has ", corners.size(), " corners, expected at most ", max_polygon_corners);
+      for (const unsigned one : corners)
+        if (one >= from.mNumVertices)
+          fail("a face has the vertex ", one, ", expected less than the number of vertices, ", from.mNumVertices);
+      crossings_ += cut_polygon(corners, place_of, to) ? 0 : 1;
       to += face.mNumIndices - 2;
     }
     return triangles;
-  }
-
-  void check(std::span<const unsigned> corners, unsigned vertices) const {
-    if (corners.size() > max_polygon_corners)
-      fail("a polygon has ", corners.size(), " corners, expected at most ", max_polygon_corners);
-    for (const unsigned one : corners)
-      if (one >= vertices)
-        fail("a face has the vertex ", one, ", expected less than the number of vertices, ", vertices);
   }
 
   /// Nodes with meshes, each before those below it.

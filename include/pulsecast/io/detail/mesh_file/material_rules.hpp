@@ -4,10 +4,7 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_MATERIAL_RULES_HPP
 
 #include <algorithm>
-#include <filesystem>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 
 #include <filesystem>
-#include <optional>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>

@@ -57,7 +57,7 @@ class PlyMesh {
                                      v = e.find("v");
     if (!x || !y || !z || e.count > 0xFFFFFFFF)
       fail(file_.path(), "has ", e.count, " vertices: expected fewer than 2^32, with properties x, y and z");
-    const bool is_single = !file_.is_text() && e.properties[*x].type == PlyFile::float32;
+    const bool is_single = !file_.is_text() && e.properties[*x].type == NumberType::float32;
     vertices_.reserve(e.count);
     while (file_.next()) {
       vertices_.emplace_back(file_.number(*x), file_.number(*y), file_.number(*z));

@@ -4,8 +4,6 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 
 #include <algorithm>
-#include <optional>
-#include <string>
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>

@@ -4,11 +4,7 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
-#include <memory>
 #include <system_error>
-#include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
@@ -19,6 +15,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 struct Float3 {
   float x = 0, y = 0, z = 0;
+  friend bool operator==(const Float3&, const Float3&) = default;
 };
 using Corners3 = std::array<std::uint32_t, 3>;  ///< vertex indices of a triangle
 

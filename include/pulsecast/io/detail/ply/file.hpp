@@ -4,23 +4,19 @@
 #define PULSECAST_IO_DETAIL_PLY_FILE_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <vector>
 
 #include <pulsecast/io/detail/ply/rules.hpp>
+#include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Rows of a kind in a PLY file, and the properties of each.
 struct PlyElement {
   struct Property {
-    std::string name{};                   ///< canonical
-    std::size_t type = 0;                 ///< of its numbers: place in `PlyFile::sizes`
-    std::optional<std::size_t> length{};  ///< of a list: type of its length
+    std::string name{};                  ///< canonical
+    NumberType type{};                   ///< of its numbers
+    std::optional<NumberType> length{};  ///< of a list: type of its length
   };
   std::string name{};
   std::uint64_t count = 0;  ///< number of rows
@@ -38,9 +34,6 @@ struct PlyElement {
 /// with path and line or byte. Source: Turk 1994, The PLY polygon file format.
 class PlyFile {
  public:
-  static constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};  ///< of int8, uint8 ... float64 [byte]
-  static constexpr std::size_t float32 = 6;                                   ///< place of that type
-
   /// True if the file begins with the PLY signature.
   [[nodiscard]] static bool is_ply(InputFile& file) {
     file.seek(0);
@@ -156,7 +149,7 @@ class PlyFile {
       const auto found = std::ranges::find(names, word);
       if (found == names.end() || elements_.empty())
         fail_at(path(), header_lines_, text::quoted(word), ": expected a type of numbers, as in 'property float x'");
-      return static_cast<std::size_t>(found - names.begin()) / 2;
+      return static_cast<NumberType>(1 + (found - names.begin()) / 2);  // in the order of the types
     };
     PlyElement::Property made;
     const bool is_list = line.starts_with("list");
@@ -172,7 +165,7 @@ class PlyFile {
     auto room = static_cast<double>(file_.size() - file_.position() + 1);
     for (const PlyElement& one : elements_) {
       std::size_t row = 0;  // at least [byte]
-      for (const auto& p : one.properties) row += is_text_ ? 2 : sizes[p.length.value_or(p.type)];
+      for (const auto& p : one.properties) row += is_text_ ? 2 : size_of(p.length.value_or(p.type));
       room -= static_cast<double>(one.count) * static_cast<double>(row);
       if ((row == 0 && one.count > 0) || room < 0)
         file_.fail("claims ", one.count, " rows of the element ", text::quoted(one.name), " with ",
@@ -188,43 +181,24 @@ class PlyFile {
   }
 
   /// Next number of the row; NaN for a text that is none.
-  [[nodiscard]] double take_number(std::size_t type) {
+  [[nodiscard]] double take_number(NumberType type) {
     if (is_text_) {
       if (text_.empty()) fail_here("has fewer values than its header names");
       return text::number_in<double>(text::take_word(text_)).value_or(std::numeric_limits<double>::quiet_NaN());
     }
-    const std::string_view bytes = file_.take(sizes[type]);
-    if (bytes.size() < sizes[type]) fail_here("the file ends: expected more rows");
-    const auto as = [&]<class Number>(Number value) {
-      std::array<char, sizeof value> copy;
-      std::memcpy(copy.data(), bytes.data(), sizeof value);
+    const std::string_view bytes = file_.take(size_of(type));
+    if (bytes.size() < size_of(type)) fail_here("the file ends: expected more rows");
+    return visit_number_type(type, [&]<class Number>() {
+      std::array<char, sizeof(Number)> copy;
+      std::ranges::copy(bytes, copy.begin());
       if (swaps_) std::ranges::reverse(copy);
-      std::memcpy(&value, copy.data(), sizeof value);
-      return static_cast<double>(value);
-    };
-    switch (type) {
-      case 0:
-        return as(std::int8_t{});
-      case 1:
-        return as(std::uint8_t{});
-      case 2:
-        return as(std::int16_t{});
-      case 3:
-        return as(std::uint16_t{});
-      case 4:
-        return as(std::int32_t{});
-      case 5:
-        return as(std::uint32_t{});
-      case float32:
-        return as(float{});
-      default:
-        return as(double{});
-    }
+      return static_cast<double>(std::bit_cast<Number>(copy));
+    });
   }
 
   void take_list(const PlyElement::Property& of, std::vector<double>& list) {
     const double length = take_number(*of.length);
-    const std::uint64_t room = is_text_ ? text_.size() : (file_.size() - file_.position()) / sizes[of.type];
+    const std::uint64_t room = is_text_ ? text_.size() : (file_.size() - file_.position()) / size_of(of.type);
     if (!(length >= 0 && length == std::floor(length) && length <= static_cast<double>(room)))
       fail_here("has a list of ", length, " numbers: expected a whole number that fits into the file");
     list.resize(static_cast<std::size_t>(length));

@@ -23,8 +23,8 @@ class PlyPoints {
     if (!names_.vector(0))
       detail::fail(path(), "has vertices without x, y or z: expected ",
                    names_.refused ? names_.refused->meaning : "the points of a cloud");
-    constexpr std::array<double, 8> most{127, 255, 32767, 65535, 2147483647.0, 4294967295.0, 1, 1};  // by type
-    if (has_colours()) max_colour = most[all[*names_.column[6]].type];
+    constexpr std::array<double, 9> most{0, 127, 255, 32767, 65535, 2147483647.0, 4294967295.0, 1, 1};  // by type
+    if (has_colours()) max_colour = most[static_cast<std::size_t>(all[*names_.column[6]].type)];
   }
 
   /// Advances to the next point; false at the end.
