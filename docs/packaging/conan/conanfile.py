@@ -29,7 +29,8 @@ class Pulsecast(ConanFile):
     def requirements(self):
         self.requires("glm/0.9.9.8", transitive_headers=True)
         if self.options.files:
-            for library in ("eigen/3.4.0", "libtiff/4.6.0", "pugixml/1.14", "stb/cci.20230920", "xxhash/0.8.2", "zlib/1.3.1"):
+            for library in ("eigen/3.4.0", "libtiff/4.6.0", "pugixml/1.14", "stb/cci.20230920", "tinyobjloader/2.0.0-rc10",
+                            "xxhash/0.8.2", "zlib/1.3.1"):
                 self.requires(library, transitive_headers=True)
 
     def validate(self):

@@ -7,8 +7,17 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <ios>
+#include <istream>
 #include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include <tiny_obj_loader.h>
 
 #include <pulsecast/io/detail/obj/polygon.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
@@ -16,7 +25,7 @@
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Statements of part of an OBJ file, evaluated as far as they do not depend on earlier parts.
-class ObjPiece : private Statements {
+class ObjPiece : private StatementBuffer {
  public:
   /// Name of a material, line of its `usemtl`, and number once a triangle needs it.
   struct Use {
@@ -45,12 +54,22 @@ class ObjPiece : private Statements {
   };
 
   ObjPiece(const std::string& path, std::string text, std::size_t lines_before, bool textured = false)
-      : Statements(path, std::move(text), lines_before), textured_(textured) {}
+      : StatementBuffer(path, std::move(text), lines_before), textured_(textured) {}
 
   /// Reads up to the first error.
   void read() {
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) {
+      static_cast<ObjPiece*>(self)->vertex({x, y, z});
+    };
+    callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
+      static_cast<ObjPiece*>(self)->face({corners, static_cast<std::size_t>(count)});
+    };
+    callbacks.usemtl_cb = [](void* self, const char* name, int) { static_cast<ObjPiece*>(self)->use(name); };
     try {
-      while (next_statement()) take();
+      std::istream stream(this);
+      stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
+      tinyobj::LoadObjWithCallback(stream, callbacks, this);
     } catch (...) {
       failure = {line(), std::current_exception()};
     }
@@ -90,7 +109,7 @@ class ObjPiece : private Statements {
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if read
   std::vector<std::size_t> without_place;    ///< by use: corners without texture coordinates
   std::vector<std::size_t> crossings;        ///< lines of polygons whose outline crosses itself
-  Notes unknown, flat, coloured;             ///< unknown statements, faces without an area, vertices with colours
+  Notes unknown, flat;                       ///< unknown statements, and faces without an area
   std::size_t open_line = 0;                 ///< line of a last statement without end; 0: none
   struct {
     std::size_t line = no_line;
@@ -105,61 +124,68 @@ class ObjPiece : private Statements {
   };
 
   /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
-  static constexpr std::array<std::string_view, 13> ignored{"vn", "vt", "vp", "vw",  "o",          "g",        "s",
-                                                            "l",  "p",  "mg", "lod", "shadow_obj", "trace_obj"};
+  static constexpr std::array<std::string_view, 15> ignored{
+      "vn", "vt", "vp", "vw", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
 
-  void take() {
+  void check(std::string& ready) override {
     const std::vector<std::string_view>& given = words();
-    const std::string_view key = keyword();
-    if ((key == "v" || key == "f") && line_is_open()) open_line = line();
-    if (key == "v") {
-      constexpr const char* expected = "three finite numbers, none beyond 1e12";
-      require(given.size() >= 3, expected);
-      vertices.emplace_back(number(given[0], expected), number(given[1], expected), number(given[2], expected));
-      if (given.size() >= 6) coloured.add({1, line()});
-    } else if (key == "f") {
-      given.size() < 3 && !line_is_open() ? flat.add({1, line()}) : face(given);
-    } else if (key == "usemtl") {
-      uses.push_back({given.empty() ? "default" : std::string(rest()), line(), std::nullopt});
-    } else if (key == "vt" && textured_) {
-      constexpr const char* expected = "finite texture coordinates, none beyond 1e12";
-      require(!given.empty() && given.size() <= 3, "one to three texture coordinates");
-      places.emplace_back(number(given[0], expected), given.size() > 1 ? number(given[1], expected) : 0);
-    } else if (key == "mtllib" && !given.empty()) {
-      libraries.push_back({line(), quoted(), std::string(rest())});
-    } else if (std::ranges::find(ignored, key) == ignored.end()) {
-      unknown.add({1, line(), quoted()});
+    if (keyword() == "v") {
+      require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
+              "three finite numbers, none beyond 1e12");
+    } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
+      return flat.add({1, line()});
+    } else if (keyword() == "f") {
+      require(std::ranges::all_of(given, is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
+      require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
+    } else if (keyword() == "usemtl" && given.empty()) {
+      return use("default");
+    } else if (keyword() == "vt" && textured_) {
+      return place(given);
+    } else if (keyword() != "usemtl") {
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first
+        libraries.push_back({line(), quoted(), std::string(rest())});
+      } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
+        unknown.add({1, line(), quoted()});
+      }
+      return;
     }
+    if (line_is_open() && keyword() != "usemtl") open_line = line();
+    ready = statement();
   }
 
-  [[nodiscard]] double number(std::string_view word, const char* expected) const {
-    const std::optional<double> value = text::finite_number_in(word);
-    require(value && std::fabs(*value) <= max_number, expected);
-    return *value;
-  }
-
-  /// Numbers of the vertex, texture coordinates and normal of a corner, 0 for none; empty for other words.
-  [[nodiscard]] static std::optional<std::array<int, 3>> corner_in(std::string_view word) {
-    std::array<int, 3> numbers{};
-    for (std::size_t k = 0; k < 3; ++k) {
+  static bool is_corner(std::string_view word) {
+    for (int k = 0; k < 3; ++k) {
       const std::size_t slash = word.find('/');
-      const std::optional<int> number = text::number_in<int>(word.substr(0, slash));
-      if (!number && !(k == 1 && slash == 0)) return std::nullopt;
-      numbers[k] = number.value_or(0);
-      if (slash == word.npos) return numbers;
+      const std::string_view part = word.substr(0, slash);
+      if (!number_in<int>(part) && !(k == 1 && part.empty() && slash != word.npos)) return false;
+      if (slash == word.npos) return true;
       word.remove_prefix(slash + 1);
     }
-    return std::nullopt;
+    return false;
   }
 
-  void face(const std::vector<std::string_view>& given) {
-    for (const std::string_view word : given) {
-      const std::optional<std::array<int, 3>> corner = corner_in(word);
-      require(corner.has_value(), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
-      corners_.push_back((*corner)[0]);
-      if (textured_) place_corners_.push_back((*corner)[1]);
+  void use(const char* name) { uses.push_back({name, line(), std::nullopt}); }
+
+  void vertex(const Vec3& p) {
+    require(max_norm(p) <= max_number, "three finite numbers, none beyond 1e12");
+    vertices.push_back(p);
+  }
+
+  void place(const std::vector<std::string_view>& given) {
+    Vec2 at{};
+    require(!given.empty() && given.size() <= 3, "one to three texture coordinates");
+    for (std::size_t k = 0; k < std::min(given.size(), std::size_t{2}); ++k) {
+      const auto number = number_in<double>(given[k]);
+      require(number && std::fabs(*number) <= max_number, "finite texture coordinates, none beyond 1e12");
+      at[static_cast<int>(k)] = *number;
     }
-    require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
+    places.push_back(at);
+  }
+
+  void face(std::span<const tinyobj::index_t> given) {
+    for (const tinyobj::index_t& corner : given) corners_.push_back(corner.vertex_index);
+    if (textured_)
+      for (const tinyobj::index_t& corner : given) place_corners_.push_back(corner.texcoord_index);
     const auto whole = [](std::size_t count) { return static_cast<std::uint32_t>(count); };
     faces_.push_back(
         {line(), whole(given.size()), whole(vertices.size()), whole(uses.size() - 1), whole(places.size())});

@@ -17,8 +17,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 inline constexpr std::size_t max_polygon_corners = 4096;  ///< limit, as the time is quadratic
 
-/// Triangles of a polygon, as corner indices, by ear clipping; a convex one becomes the fan about its first corner.
-/// Empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
+/// Triangles of a polygon, as corner indices, by ear clipping (tinyobjloader 2.0 rc10 loses parts
+/// of concave polygons); a convex one becomes the fan about its first corner. Empty if the outline
+/// crosses itself. Source: Meisters 1975, every simple polygon has two ears.
 [[nodiscard]] inline std::vector<std::array<std::size_t, 3>> triangulated(const std::vector<Vec3>& corners) {
   // projection along the axis nearest to the normal. Source: Newell, in Sutherland et al. 1974
   Vec3 normal{};

@@ -4,45 +4,84 @@
 #define PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 
 #include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <streambuf>
 #include <vector>
+
+#include <tiny_obj_loader.h>
 
 #include <pulsecast/io/input_file.hpp>
 
 /// Statements of OBJ and MTL files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
+static_assert(std::same_as<tinyobj::real_t, double>,
+              "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
+
 inline constexpr double max_number = 1e12;  ///< in a file, so that products cannot overflow
 
-[[nodiscard]] inline std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!text.empty()) words.push_back(text::take_word(text));
-  return words;
+/// Number, if tinyobjloader reads the same: it reads others in part, and fails at long ones.
+template <class Number>
+[[nodiscard]] std::optional<Number> number_in(std::string_view word) {
+  const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
+  return value && std::isfinite(static_cast<double>(*value)) ? value : std::nullopt;
 }
 
-/// Next whole statements of a file, about `bytes` long; empty at its end.
-[[nodiscard]] inline std::string next_statements(InputFile& file, std::size_t bytes) {
-  std::string text;
-  for (bool goes_on = true; goes_on;) {
-    const std::optional<std::string_view> line = file.take_line();
-    if (!line) break;
-    text += *line;
-    if (!file.line_is_open()) text += '\n';
-    const std::size_t last = line->find_last_not_of(" \t\v\f\r");
-    goes_on = text.size() < bytes || (last != line->npos && (*line)[last] == '\\');
+/// Text of an OBJ or MTL file, read in pieces.
+class StatementFile : public InputFile {
+ public:
+  explicit StatementFile(const std::filesystem::path& path) : InputFile(path, "an OBJ or MTL file") {}
+
+  /// Next whole statements, about `bytes` long; empty at the end of the file.
+  [[nodiscard]] std::string next(std::size_t bytes) {
+    std::string text = std::exchange(rest_, {});
+    std::size_t end = 0;
+    while (end == 0) {
+      const std::string_view more = take(bytes);
+      if (more.empty()) break;
+      text += more;
+      end = end_of_statements(text);
+    }
+    if (end > 0) {
+      rest_.assign(text, end);
+      text.resize(end);
+    }
+    if (!std::exchange(begun_, true)) text.erase(0, text.size() - text::without_byte_order_mark(text).size());
+    return text;
   }
-  return text;
-}
 
-/// Statements of a text, one after the other; those of several lines are joined.
-class Statements {
- protected:
+ private:
+  /// End of the last line that is not continued in the next; 0 if there is none.
+  static std::size_t end_of_statements(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.rfind('\n') + 1;
+      text = text.substr(0, end == 0 ? 0 : end - 1);
+      const std::size_t last = text.find_last_not_of(" \t\v\f\r");
+      if (end > 0 && (last == text.npos || text[last] != '\\')) return end;
+    }
+    return 0;
+  }
+
+  std::string rest_;
+  bool begun_ = false;
+};
+
+/// Buffer that feeds tinyobjloader by statements, so that checks and errors have their lines.
+class StatementBuffer : public std::streambuf {
+ public:
   /// `text` of whole statements of a file, after `lines_before` lines.
-  Statements(std::string path, std::string text, std::size_t lines_before)
+  StatementBuffer(std::string path, std::string text, std::size_t lines_before)
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
+ protected:
+  /// Sets `ready`, empty at first, to the current statement for tinyobjloader. @throws FileError
+  virtual void check(std::string& ready) = 0;
+
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::size_t line() const { return line_; }   ///< first line of the current statement, from 1
-  [[nodiscard]] bool line_is_open() const { return open_; }  ///< for a last line without end
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< its first line, from 1
+  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< for a last line without end
+  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< one blank after keyword
   [[nodiscard]] std::string_view keyword() const {
     return std::string_view(statement_).substr(0, statement_.find(' '));
   }
@@ -74,11 +113,23 @@ class Statements {
     } while (statement_.empty() || statement_.starts_with('#'));
     if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // not in `usemtl Material #25`
       statement_.resize(std::min(statement_.find(" #"), statement_.size()));
+    const std::string_view word = keyword(), after = rest();
+    if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())
+      statement_ = std::string(word) + (after.empty() ? "" : " ") + std::string(after);
     return true;
   }
 
  private:
-  /// Joins lines continued by a backslash. False at the end of the text.
+  int_type underflow() final {
+    if (!next_statement()) return traits_type::eof();
+    ready_.clear();
+    check(ready_);
+    ready_ += '\n';
+    setg(ready_.data(), ready_.data(), ready_.data() + ready_.size());
+    return traits_type::to_int_type(ready_.front());
+  }
+
+  /// Joins lines continued by a backslash, unlike tinyobjloader. False at the end of the text.
   bool take_statement() {
     joined_.clear();
     line_ = lines_ + 1;
@@ -113,7 +164,7 @@ class Statements {
   }
 
   std::string path_, text_;
-  std::string joined_, statement_;
+  std::string joined_, statement_, ready_;
   std::vector<std::string_view> words_;
   std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: begin of the next line
   bool open_ = false;
