@@ -3,11 +3,6 @@
 #ifndef PULSECAST_CONCEPTS_HPP
 #define PULSECAST_CONCEPTS_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>

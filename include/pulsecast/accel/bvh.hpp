@@ -3,19 +3,7 @@
 #ifndef PULSECAST_ACCEL_BVH_HPP
 #define PULSECAST_ACCEL_BVH_HPP
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <concepts>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include <pulsecast/accel/detail/binary_sah_tree.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,12 +3,8 @@
 #ifndef PULSECAST_ACCEL_KD_TREE_HPP
 #define PULSECAST_ACCEL_KD_TREE_HPP
 
-#include <algorithm>
-
 #include <pulsecast/accel/detail/kd_tree_builder.hpp>
 #include <pulsecast/accel/detail/sah.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

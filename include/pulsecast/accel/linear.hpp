@@ -3,10 +3,7 @@
 #ifndef PULSECAST_ACCEL_LINEAR_HPP
 #define PULSECAST_ACCEL_LINEAR_HPP
 
-#include <algorithm>
-
 #include <pulsecast/accel/detail/sah.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_ACCEL_REFIT_HPP
 #define PULSECAST_ACCEL_REFIT_HPP
 
-#include <algorithm>
-
 #include <pulsecast/accel/bvh.hpp>
-#include <pulsecast/base/parallel.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <concepts>
-#include <type_traits>
 
 #include <pulsecast/base/simd.hpp>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_BASE_FRAME_HPP
 #define PULSECAST_BASE_FRAME_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_LANES_HPP
 
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector_math.hpp>
 

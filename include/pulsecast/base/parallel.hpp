@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <concepts>
 #include <exception>
 #include <memory>
 #include <thread>
-#include <type_traits>
 
 #include <pulsecast/base/require.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_RANDOM_HPP
 
 #include <array>
-#include <cmath>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/tick.hpp>

@@ -5,7 +5,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <concepts>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/optional_member.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_BASE_SUGGESTION_HPP
 #define PULSECAST_BASE_SUGGESTION_HPP
 
-#include <algorithm>
 #include <numeric>
 #include <span>
 #include <vector>

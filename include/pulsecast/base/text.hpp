@@ -4,7 +4,6 @@
 #define PULSECAST_BASE_TEXT_HPP
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <optional>

@@ -4,9 +4,6 @@
 #define PULSECAST_BASE_THREAD_POOL_HPP
 
 #include <condition_variable>
-#include <memory>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #if __has_include(<unistd.h>)

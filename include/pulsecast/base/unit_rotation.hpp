@@ -3,8 +3,6 @@
 #ifndef PULSECAST_BASE_UNIT_ROTATION_HPP
 #define PULSECAST_BASE_UNIT_ROTATION_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 

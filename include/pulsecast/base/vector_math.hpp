@@ -3,14 +3,10 @@
 #ifndef PULSECAST_BASE_VECTOR_MATH_HPP
 #define PULSECAST_BASE_VECTOR_MATH_HPP
 
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <type_traits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/simd.hpp>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // of wide vectors: all functions are inlined

@@ -3,11 +3,7 @@
 #ifndef PULSECAST_DEFLECTOR_AIM_HPP
 #define PULSECAST_DEFLECTOR_AIM_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/lanes.hpp>
-#include <pulsecast/base/vector_math.hpp>
 
 /// Beam poses from angles or directions, for optics.
 namespace PULSECAST_NAMESPACE {

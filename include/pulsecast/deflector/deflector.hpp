@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/stage_arguments.hpp>
 

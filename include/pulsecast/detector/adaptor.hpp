@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
-#include <algorithm>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

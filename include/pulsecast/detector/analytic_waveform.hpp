@@ -3,19 +3,13 @@
 #ifndef PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/edge_age_moments.hpp>
 #include <pulsecast/detector/detail/ideal_samples.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/single_peak_group.hpp>
 #include <pulsecast/detector/echo_width.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,21 +3,13 @@
 #ifndef PULSECAST_DETECTOR_BAND_LIMITED_RECEIVER_HPP
 #define PULSECAST_DETECTOR_BAND_LIMITED_RECEIVER_HPP
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <memory>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/filtered_noise.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

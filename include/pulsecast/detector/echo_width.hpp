@@ -3,9 +3,7 @@
 #ifndef PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 #define PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

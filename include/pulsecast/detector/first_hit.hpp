@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DETECTOR_FIRST_HIT_HPP
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {

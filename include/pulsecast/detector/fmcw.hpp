@@ -3,11 +3,6 @@
 #ifndef PULSECAST_DETECTOR_FMCW_HPP
 #define PULSECAST_DETECTOR_FMCW_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/base/vector_math.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>

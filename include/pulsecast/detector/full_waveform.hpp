@@ -3,21 +3,14 @@
 #ifndef PULSECAST_DETECTOR_FULL_WAVEFORM_HPP
 #define PULSECAST_DETECTOR_FULL_WAVEFORM_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/sample_window.hpp>
 #include <pulsecast/detector/detail/single_peak_group.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_DETECTOR_GAUSSIAN_FIT_HPP
 #define PULSECAST_DETECTOR_GAUSSIAN_FIT_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

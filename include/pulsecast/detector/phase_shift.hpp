@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 #define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
 
-#include <pulsecast/base/vector_math.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
 #define PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
 
 namespace PULSECAST_NAMESPACE {

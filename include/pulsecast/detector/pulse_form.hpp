@@ -4,11 +4,8 @@
 #define PULSECAST_DETECTOR_PULSE_FORM_HPP
 
 #include <algorithm>
-#include <concepts>
-#include <numbers>
 #include <vector>
 
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

@@ -3,15 +3,9 @@
 #ifndef PULSECAST_DETECTOR_RADIOMETRY_HPP
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
-#include <limits>
-#include <span>
-
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/extinction.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_RECEIVER_CHAIN_HPP
 
 #include <algorithm>
-#include <numbers>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>

@@ -3,9 +3,7 @@
 #ifndef PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 #define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/ideal_samples.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

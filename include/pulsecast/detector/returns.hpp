@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_RETURNS_HPP
 #define PULSECAST_DETECTOR_RETURNS_HPP
 
-#include <algorithm>
-
 #include <pulsecast/detector/adaptor.hpp>
 
 namespace PULSECAST_NAMESPACE {

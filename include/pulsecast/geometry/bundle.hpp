@@ -4,10 +4,6 @@
 #define PULSECAST_GEOMETRY_BUNDLE_HPP
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <concepts>
-#include <limits>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>

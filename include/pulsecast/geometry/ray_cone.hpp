@@ -4,11 +4,8 @@
 #define PULSECAST_GEOMETRY_RAY_CONE_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_GEOMETRY_SINGLE_RAY_HPP
 #define PULSECAST_GEOMETRY_SINGLE_RAY_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/geometry/bundle.hpp>
-#include <pulsecast/geometry/ray.hpp>
 
 /// A single ray, and what it looks for: its closest hit, any, or all. Accelerators and shapes take
 /// them as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.

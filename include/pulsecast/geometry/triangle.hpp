@@ -3,15 +3,9 @@
 #ifndef PULSECAST_GEOMETRY_TRIANGLE_HPP
 #define PULSECAST_GEOMETRY_TRIANGLE_HPP
 
-#include <algorithm>
 #include <bit>
-#include <span>
-#include <type_traits>
 
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 
 namespace PULSECAST_NAMESPACE {

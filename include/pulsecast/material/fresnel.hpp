@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MATERIAL_FRESNEL_HPP
 #define PULSECAST_MATERIAL_FRESNEL_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/smooth_interface.hpp>
 

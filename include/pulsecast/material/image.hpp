@@ -3,10 +3,6 @@
 #ifndef PULSECAST_MATERIAL_IMAGE_HPP
 #define PULSECAST_MATERIAL_IMAGE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/scattering_law.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_MATERIAL_MATERIAL_HPP
 #define PULSECAST_MATERIAL_MATERIAL_HPP
 
-#include <algorithm>
-#include <optional>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/image.hpp>
 #include <pulsecast/material/smooth_interface.hpp>
 #include <pulsecast/material/spectrum.hpp>

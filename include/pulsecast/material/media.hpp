@@ -3,16 +3,8 @@
 #ifndef PULSECAST_MATERIAL_MEDIA_HPP
 #define PULSECAST_MATERIAL_MEDIA_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
-#include <pulsecast/material/medium.hpp>
 #include <pulsecast/material/weather.hpp>
 
 namespace PULSECAST_NAMESPACE {

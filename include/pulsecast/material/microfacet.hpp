@@ -3,11 +3,7 @@
 #ifndef PULSECAST_MATERIAL_MICROFACET_HPP
 #define PULSECAST_MATERIAL_MICROFACET_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/lambert.hpp>
 

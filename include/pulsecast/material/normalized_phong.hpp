@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MATERIAL_NORMALIZED_PHONG_HPP
 #define PULSECAST_MATERIAL_NORMALIZED_PHONG_HPP
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/material/phong.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,9 +3,7 @@
 #ifndef PULSECAST_MATERIAL_PHONG_HPP
 #define PULSECAST_MATERIAL_PHONG_HPP
 
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/material/lambert.hpp>
 

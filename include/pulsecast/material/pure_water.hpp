@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MATERIAL_PURE_WATER_HPP
 #define PULSECAST_MATERIAL_PURE_WATER_HPP
 
-#include <array>
 #include <numbers>
 
 #include <pulsecast/base/require.hpp>

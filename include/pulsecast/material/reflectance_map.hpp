@@ -3,10 +3,6 @@
 #ifndef PULSECAST_MATERIAL_REFLECTANCE_MAP_HPP
 #define PULSECAST_MATERIAL_REFLECTANCE_MAP_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {

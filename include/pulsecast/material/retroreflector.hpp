@@ -3,9 +3,6 @@
 #ifndef PULSECAST_MATERIAL_RETROREFLECTOR_HPP
 #define PULSECAST_MATERIAL_RETROREFLECTOR_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/material/lambert.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SCATTERING_LAW_HPP
 #define PULSECAST_MATERIAL_SCATTERING_LAW_HPP
 
-#include <concepts>
-
 #include <pulsecast/base/optional_member.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 #define PULSECAST_MATERIAL_SMOOTH_INTERFACE_HPP
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>
 
 namespace PULSECAST_NAMESPACE {

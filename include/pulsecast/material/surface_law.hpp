@@ -3,17 +3,11 @@
 #ifndef PULSECAST_MATERIAL_SURFACE_LAW_HPP
 #define PULSECAST_MATERIAL_SURFACE_LAW_HPP
 
-#include <algorithm>
 #include <memory>
-#include <optional>
 #include <span>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/hit.hpp>
 #include <pulsecast/material/lambert.hpp>
-#include <pulsecast/material/scattering_law.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_MATERIAL_TABULATED_HPP
 #define PULSECAST_MATERIAL_TABULATED_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>

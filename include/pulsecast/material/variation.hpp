@@ -3,10 +3,7 @@
 #ifndef PULSECAST_MATERIAL_VARIATION_HPP
 #define PULSECAST_MATERIAL_VARIATION_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/material/material.hpp>
 
 /// Variants of a material, for the primitives of one shape, or for copies of it with a table each.

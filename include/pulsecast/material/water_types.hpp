@@ -4,12 +4,8 @@
 #define PULSECAST_MATERIAL_WATER_TYPES_HPP
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 #include <optional>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>
 #include <pulsecast/material/pure_water.hpp>
 

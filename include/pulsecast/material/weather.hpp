@@ -4,12 +4,8 @@
 #define PULSECAST_MATERIAL_WEATHER_HPP
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
 #include <pulsecast/base/extinction.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/material/medium.hpp>
 #include <pulsecast/material/pure_water.hpp>
 

@@ -5,7 +5,6 @@
 
 #include <variant>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {

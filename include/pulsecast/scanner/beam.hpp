@@ -3,10 +3,6 @@
 #ifndef PULSECAST_SCANNER_BEAM_HPP
 #define PULSECAST_SCANNER_BEAM_HPP
 
-#include <limits>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/pulse.hpp>
 
 namespace PULSECAST_NAMESPACE {

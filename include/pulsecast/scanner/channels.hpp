@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SCANNER_CHANNELS_HPP
 #define PULSECAST_SCANNER_CHANNELS_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {

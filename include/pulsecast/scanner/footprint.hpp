@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCANNER_FOOTPRINT_HPP
 #define PULSECAST_SCANNER_FOOTPRINT_HPP
 
-#include <algorithm>
 #include <cstdlib>
 
 #include <pulsecast/base/shared_array.hpp>

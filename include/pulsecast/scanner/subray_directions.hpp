@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SCANNER_SUBRAY_DIRECTIONS_HPP
 #define PULSECAST_SCANNER_SUBRAY_DIRECTIONS_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 

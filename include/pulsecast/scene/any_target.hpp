@@ -3,10 +3,8 @@
 #ifndef PULSECAST_SCENE_ANY_TARGET_HPP
 #define PULSECAST_SCENE_ANY_TARGET_HPP
 
-#include <type_traits>
 #include <variant>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>
 
 namespace PULSECAST_NAMESPACE {

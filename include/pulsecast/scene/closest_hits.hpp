@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SCENE_CLOSEST_HITS_HPP
 #define PULSECAST_SCENE_CLOSEST_HITS_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,12 +3,8 @@
 #ifndef PULSECAST_SCENE_LAYERED_HPP
 #define PULSECAST_SCENE_LAYERED_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <tuple>
-#include <type_traits>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>
 
 namespace PULSECAST_NAMESPACE {

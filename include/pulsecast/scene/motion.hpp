@@ -3,19 +3,9 @@
 #ifndef PULSECAST_SCENE_MOTION_HPP
 #define PULSECAST_SCENE_MOTION_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/detail/motion_sweep.hpp>
 #include <pulsecast/scene/detail/motion_timeline.hpp>
 #include <pulsecast/scene/detail/screw.hpp>
-#include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

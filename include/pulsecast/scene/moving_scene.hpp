@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SCENE_MOVING_SCENE_HPP
 #define PULSECAST_SCENE_MOVING_SCENE_HPP
 
-#include <type_traits>
-
-#include <pulsecast/base/search.hpp>
 #include <pulsecast/scene/detail/moving_index.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/scene.hpp>

@@ -3,11 +3,8 @@
 #ifndef PULSECAST_SCENE_OBJECT_ATTRIBUTES_HPP
 #define PULSECAST_SCENE_OBJECT_ATTRIBUTES_HPP
 
-#include <algorithm>
 #include <map>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/echo.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE {

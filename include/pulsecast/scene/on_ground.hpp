@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SCENE_ON_GROUND_HPP
 #define PULSECAST_SCENE_ON_GROUND_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 

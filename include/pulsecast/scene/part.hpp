@@ -3,11 +3,8 @@
 #ifndef PULSECAST_SCENE_PART_HPP
 #define PULSECAST_SCENE_PART_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <variant>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/single_ray.hpp>

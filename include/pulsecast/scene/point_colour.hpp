@@ -3,12 +3,6 @@
 #ifndef PULSECAST_SCENE_POINT_COLOUR_HPP
 #define PULSECAST_SCENE_POINT_COLOUR_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/echo.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/surface_query.hpp>
 

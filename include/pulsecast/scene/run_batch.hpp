@@ -3,13 +3,7 @@
 #ifndef PULSECAST_SCENE_RUN_BATCH_HPP
 #define PULSECAST_SCENE_RUN_BATCH_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/ray.hpp>
 #include <pulsecast/scene/closest_hits.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,18 +3,11 @@
 #ifndef PULSECAST_SCENE_SCENE_HPP
 #define PULSECAST_SCENE_SCENE_HPP
 
-#include <cmath>
-#include <type_traits>
-
-#include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/refit.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/detail/surface_sample.hpp>
 #include <pulsecast/scene/find_hits.hpp>
-#include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,11 +3,8 @@
 #ifndef PULSECAST_SCENE_SURFACE_QUERY_HPP
 #define PULSECAST_SCENE_SURFACE_QUERY_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,12 +3,8 @@
 #ifndef PULSECAST_SHAPE_CLASS_MATERIALS_HPP
 #define PULSECAST_SHAPE_CLASS_MATERIALS_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/shape/raster.hpp>
 

@@ -3,12 +3,7 @@
 #ifndef PULSECAST_SHAPE_DEFORMING_MESH_HPP
 #define PULSECAST_SHAPE_DEFORMING_MESH_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/accel/refit.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
 namespace PULSECAST_NAMESPACE {

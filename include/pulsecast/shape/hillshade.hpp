@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SHAPE_HILLSHADE_HPP
 #define PULSECAST_SHAPE_HILLSHADE_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE {

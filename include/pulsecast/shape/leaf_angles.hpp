@@ -3,10 +3,6 @@
 #ifndef PULSECAST_SHAPE_LEAF_ANGLES_HPP
 #define PULSECAST_SHAPE_LEAF_ANGLES_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>

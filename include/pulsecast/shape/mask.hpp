@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SHAPE_MASK_HPP
 #define PULSECAST_SHAPE_MASK_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/material/image.hpp>
 
 namespace PULSECAST_NAMESPACE {

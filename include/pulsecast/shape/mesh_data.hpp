@@ -3,10 +3,6 @@
 #ifndef PULSECAST_SHAPE_MESH_DATA_HPP
 #define PULSECAST_SHAPE_MESH_DATA_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/shape/mask.hpp>
 

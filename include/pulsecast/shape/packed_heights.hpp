@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SHAPE_PACKED_HEIGHTS_HPP
 #define PULSECAST_SHAPE_PACKED_HEIGHTS_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 
 #include <pulsecast/base/require.hpp>

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_SHAPE_TRANSMISSIVE_VOXELS_HPP
 #define PULSECAST_SHAPE_TRANSMISSIVE_VOXELS_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/leaf_angles.hpp>
 #include <pulsecast/shape/voxel_data.hpp>

@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SHAPE_VOXEL_DATA_HPP
 #define PULSECAST_SHAPE_VOXEL_DATA_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,16 +3,12 @@
 #ifndef PULSECAST_SHAPE_VOXEL_GRID_HPP
 #define PULSECAST_SHAPE_VOXEL_GRID_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/detail/voxel_index_builder.hpp>
 #include <pulsecast/shape/transmissive_voxels.hpp>
-#include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

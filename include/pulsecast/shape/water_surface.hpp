@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SHAPE_WATER_SURFACE_HPP
 #define PULSECAST_SHAPE_WATER_SURFACE_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/shape/wave_field.hpp>

@@ -3,17 +3,10 @@
 #ifndef PULSECAST_SHAPE_WAVE_FIELD_HPP
 #define PULSECAST_SHAPE_WAVE_FIELD_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

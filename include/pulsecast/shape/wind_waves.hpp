@@ -3,12 +3,7 @@
 #ifndef PULSECAST_SHAPE_WIND_WAVES_HPP
 #define PULSECAST_SHAPE_WIND_WAVES_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/shape/wave_field.hpp>
 
 namespace PULSECAST_NAMESPACE {

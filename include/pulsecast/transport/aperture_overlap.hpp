@@ -3,14 +3,7 @@
 #ifndef PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
 #define PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
 
-#include <algorithm>
-#include <vector>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/radiometry.hpp>
-#include <pulsecast/pulse.hpp>
 #include <pulsecast/scanner/beam.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,14 +3,9 @@
 #ifndef PULSECAST_TRANSPORT_DIRECT_LIGHT_HPP
 #define PULSECAST_TRANSPORT_DIRECT_LIGHT_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/find_hits.hpp>
 #include <pulsecast/transport/detail/plane_spread.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,14 +3,8 @@
 #ifndef PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
 #define PULSECAST_TRANSPORT_ECHO_SIMULATOR_HPP
 
-#include <algorithm>
-#include <memory>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/transport/direct_light.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

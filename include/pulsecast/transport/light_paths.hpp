@@ -3,11 +3,8 @@
 #ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 #define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
 
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/path_tracer.hpp>
 #include <pulsecast/transport/detail/plane_spread.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

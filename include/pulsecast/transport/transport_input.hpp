@@ -3,10 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
 #define PULSECAST_TRANSPORT_TRANSPORT_INPUT_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/subray_directions.hpp>
 

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_ACCEL_DETAIL_BINARY_SAH_TREE_HPP
 #define PULSECAST_ACCEL_DETAIL_BINARY_SAH_TREE_HPP
 
-#include <algorithm>
-#include <bit>
-
 #include <pulsecast/accel/detail/sah.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_ACCEL_DETAIL_KD_TREE_BUILDER_HPP
 #define PULSECAST_ACCEL_DETAIL_KD_TREE_BUILDER_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/accel/detail/sah.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

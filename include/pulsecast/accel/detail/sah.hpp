@@ -3,13 +3,8 @@
 #ifndef PULSECAST_ACCEL_DETAIL_SAH_HPP
 #define PULSECAST_ACCEL_DETAIL_SAH_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 
 /// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray

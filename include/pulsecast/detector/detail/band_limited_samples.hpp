@@ -3,15 +3,10 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_BAND_LIMITED_SAMPLES_HPP
 #define PULSECAST_DETECTOR_DETAIL_BAND_LIMITED_SAMPLES_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/filtered_noise.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_BY_PULSE_LENGTH_HPP
 #define PULSECAST_DETECTOR_DETAIL_BY_PULSE_LENGTH_HPP
 
-#include <utility>
 #include <vector>
 
 #include <pulsecast/pulse.hpp>

@@ -3,12 +3,7 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_CONTINUOUS_WAVEFORM_HPP
 #define PULSECAST_DETECTOR_DETAIL_CONTINUOUS_WAVEFORM_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/exponential.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

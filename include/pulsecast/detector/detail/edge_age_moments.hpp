@@ -3,10 +3,7 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_EDGE_AGE_MOMENTS_HPP
 #define PULSECAST_DETECTOR_DETAIL_EDGE_AGE_MOMENTS_HPP
 
-#include <array>
-
 #include <pulsecast/detector/echo_width.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,11 +3,8 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_FILTERED_NOISE_HPP
 #define PULSECAST_DETECTOR_DETAIL_FILTERED_NOISE_HPP
 
-#include <array>
-#include <cmath>
 #include <numbers>
 
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/random.hpp>
 
 namespace PULSECAST_NAMESPACE {

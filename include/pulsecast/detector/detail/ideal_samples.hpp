@@ -3,11 +3,7 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 #define PULSECAST_DETECTOR_DETAIL_IDEAL_SAMPLES_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

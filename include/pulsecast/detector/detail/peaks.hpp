@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_PEAKS_HPP
 #define PULSECAST_DETECTOR_DETAIL_PEAKS_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_PULSE_SUM_HPP
 #define PULSECAST_DETECTOR_DETAIL_PULSE_SUM_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>

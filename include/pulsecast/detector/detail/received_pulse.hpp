@@ -3,13 +3,6 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_RECEIVED_PULSE_HPP
 #define PULSECAST_DETECTOR_DETAIL_RECEIVED_PULSE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
-#include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/detector/detail/filtered_noise.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
 

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
 #define PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
 
-#include <array>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
-#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,14 +3,8 @@
 #ifndef PULSECAST_DETECTOR_DETAIL_SINGLE_PEAK_GROUP_HPP
 #define PULSECAST_DETECTOR_DETAIL_SINGLE_PEAK_GROUP_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/exponential.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/detail/pulse_sum.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

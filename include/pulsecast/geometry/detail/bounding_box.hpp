@@ -7,8 +7,6 @@
 #include <bit>
 #include <concepts>
 #include <iterator>
-#include <limits>
-#include <type_traits>
 
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/box.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
 #define PULSECAST_GEOMETRY_DETAIL_BUNDLE_BUDGET_HPP
 
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

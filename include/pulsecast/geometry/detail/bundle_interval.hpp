@@ -3,13 +3,6 @@
 #ifndef PULSECAST_GEOMETRY_DETAIL_BUNDLE_INTERVAL_HPP
 #define PULSECAST_GEOMETRY_DETAIL_BUNDLE_INTERVAL_HPP
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <type_traits>
-
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/detail/bounding_box.hpp>
 

@@ -3,12 +3,6 @@
 #ifndef PULSECAST_SCENE_DETAIL_MOTION_SWEEP_HPP
 #define PULSECAST_SCENE_DETAIL_MOTION_SWEEP_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/detail/motion_timeline.hpp>
 #include <pulsecast/scene/detail/screw.hpp>
 #include <pulsecast/scene/part.hpp>

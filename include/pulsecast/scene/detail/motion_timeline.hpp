@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/scene/detail/screw.hpp>
 

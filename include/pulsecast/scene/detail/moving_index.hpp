@@ -3,12 +3,7 @@
 #ifndef PULSECAST_SCENE_DETAIL_MOVING_INDEX_HPP
 #define PULSECAST_SCENE_DETAIL_MOVING_INDEX_HPP
 
-#include <algorithm>
-#include <cmath>
-
 #include <pulsecast/accel/bvh.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,12 +3,6 @@
 #ifndef PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
 #define PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
-
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SCENE_DETAIL_SCREW_HPP
 #define PULSECAST_SCENE_DETAIL_SCREW_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 

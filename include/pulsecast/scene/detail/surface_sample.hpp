@@ -3,9 +3,7 @@
 #ifndef PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 #define PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_CELL_BLOCK_HPP
 #define PULSECAST_SHAPE_DETAIL_CELL_BLOCK_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
 #include <pulsecast/shape/packed_heights.hpp>
 #include <pulsecast/shape/raster.hpp>

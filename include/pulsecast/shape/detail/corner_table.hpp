@@ -3,10 +3,8 @@
 #ifndef PULSECAST_SHAPE_DETAIL_CORNER_TABLE_HPP
 #define PULSECAST_SHAPE_DETAIL_CORNER_TABLE_HPP
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <utility>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_SHAPE_DETAIL_HEIGHT_PYRAMID_HPP
 #define PULSECAST_SHAPE_DETAIL_HEIGHT_PYRAMID_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 /// Min-max pyramid of the heights of a raster: its layout and its construction.

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
 #define PULSECAST_SHAPE_DETAIL_LATTICE_RAY_HPP
 
-#include <cmath>
-
 #include <pulsecast/geometry/bundle.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_LINE_TEST_HPP
 #define PULSECAST_SHAPE_DETAIL_LINE_TEST_HPP
 
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_PACKED_NUMBERS_HPP
 #define PULSECAST_SHAPE_DETAIL_PACKED_NUMBERS_HPP
 
-#include <algorithm>
-#include <utility>
-
 #include <pulsecast/base/shared_array.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

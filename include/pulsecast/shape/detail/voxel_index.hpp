@@ -3,12 +3,10 @@
 #ifndef PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 #define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 
-#include <algorithm>
 #include <bit>
 
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/shape/detail/lattice_ray.hpp>
 
 namespace PULSECAST_NAMESPACE {

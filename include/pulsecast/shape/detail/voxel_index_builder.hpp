@@ -3,11 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_BUILDER_HPP
 #define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_BUILDER_HPP
 
-#include <algorithm>
-#include <bit>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/shape/detail/voxel_index.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_BEAM_PARTICLES_HPP
 #define PULSECAST_TRANSPORT_DETAIL_BEAM_PARTICLES_HPP
 
-#include <algorithm>
-#include <array>
-
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

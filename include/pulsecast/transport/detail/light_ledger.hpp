@@ -3,10 +3,8 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 #define PULSECAST_TRANSPORT_DETAIL_LIGHT_LEDGER_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

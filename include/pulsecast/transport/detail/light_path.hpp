@@ -3,9 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_LIGHT_PATH_HPP
 #define PULSECAST_TRANSPORT_DETAIL_LIGHT_PATH_HPP
 
-#include <algorithm>
-#include <array>
-
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/fresnel.hpp>
 #include <pulsecast/material/material.hpp>

@@ -3,16 +3,10 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_MEDIA_PASSAGE_HPP
 #define PULSECAST_TRANSPORT_DETAIL_MEDIA_PASSAGE_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/base/search.hpp>
-#include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/volume_profile.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

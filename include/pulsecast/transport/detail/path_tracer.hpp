@@ -3,11 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_PATH_TRACER_HPP
 #define PULSECAST_TRANSPORT_DETAIL_PATH_TRACER_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/material/media.hpp>
 #include <pulsecast/scene/find_hits.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
@@ -16,7 +11,6 @@
 #include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/detail/scattered_paths.hpp>
 #include <pulsecast/transport/detail/volume_profile.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

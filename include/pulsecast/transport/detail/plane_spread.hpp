@@ -3,11 +3,7 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
 #define PULSECAST_TRANSPORT_DETAIL_PLANE_SPREAD_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scanner/beam.hpp>
-#include <pulsecast/scanner/subray_directions.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE {

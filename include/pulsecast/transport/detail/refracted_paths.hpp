@@ -3,13 +3,9 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 #define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/media_passage.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

@@ -3,15 +3,10 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_SCATTERED_PATHS_HPP
 #define PULSECAST_TRANSPORT_DETAIL_SCATTERED_PATHS_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/material/media.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/multiple_scattering.hpp>
-#include <pulsecast/transport/transport_input.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

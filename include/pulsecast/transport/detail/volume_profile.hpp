@@ -3,10 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_VOLUME_PROFILE_HPP
 #define PULSECAST_TRANSPORT_DETAIL_VOLUME_PROFILE_HPP
 
-#include <algorithm>
-#include <array>
-
-#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 
