@@ -89,9 +89,11 @@ TEST_CASE("laws of the library's own have keys of its own") {
   CHECK(library.materials.at("plain").law.get<Phong>());
   CHECK(library.materials.at("sign").law.get<Retroreflector<>>());
   CHECK(library.materials.at("sign").law.get<Retroreflector<>>()->coefficient == 70);
-  CHECK(library.materials.at("sign").law.get<Retroreflector<>>()->optics.half_angle == support::relative(pi / 6, 1e-12));
+  CHECK(library.materials.at("sign").law.get<Retroreflector<>>()->optics.half_angle ==
+        support::relative(pi / 6, 1e-12));
   CHECK(library.materials.at("mark").law.get<Retroreflector<>>()->coefficient == 300.5);
-  CHECK(library.materials.at("mark").law.get<Retroreflector<>>()->optics.half_angle == support::relative(pi / 4, 1e-12));
+  CHECK(library.materials.at("mark").law.get<Retroreflector<>>()->optics.half_angle ==
+        support::relative(pi / 4, 1e-12));
   for (const char* wrong :
        {"pulsecast_retroreflection -1", "pulsecast_retroreflection 70 0", "pulsecast_retroreflection 70 30 5",
         "pulsecast_retroreflection", "pulsecast_normalizedPhong maybe"})
@@ -302,6 +304,8 @@ TEST_CASE("pictures are named beside the file, without their options, and for th
       mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap "
           "pattern bark.jpg\n"
           "newmtl bare\nnewmtl leaf\nmap_Kd other.png\n");
+  REQUIRE(library.warnings.size() == 2);
+  CHECK(contains(library.warnings[0], "line 2: material 'leaf': 'map_Kd -s 2 2 1 pictures\\my leaf.png' has options"));
   REQUIRE(library.pictures.size() == 1);
   const MaterialPictures& leaf = library.pictures.at("leaf");
   CHECK(leaf.colour.file == folder.path() / "pictures/my leaf.png");

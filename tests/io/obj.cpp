@@ -79,6 +79,21 @@ std::string polygon(const std::vector<Vec3>& outline) {
 
 }  // namespace
 
+TEST_CASE("colours of vertices and maps of pictures are noted, and a weight of curves is not") {
+  const Folder folder;
+  const std::string faces = corners + "f 1 2 3\n";
+  const auto noted = [&](const std::string& more) { return folder.obj(faces + more + "f 1 2 3\n").warnings; };
+  CHECK(noted("v 0 0 0 1\n").empty());
+  for (const char* more : {"v 0 0 0 0.1 0.2 0.3\n", "v 0 0 0 1 0.1 0.2 0.3\n"}) {
+    REQUIRE(noted(more).size() == 1);
+    CHECK(contains(noted(more)[0], "colours of vertices have no effect"));
+  }
+  for (const char* more : {"usemap wood\n", "maplib wood.map\n"}) {
+    REQUIRE(noted(more).size() == 1);
+    CHECK(contains(noted(more)[0], "is not known and left out"));
+  }
+}
+
 TEST_CASE("a triangle is read as it stands") {
   const ObjModel model = Folder().obj("v 1.5 -2 3e1\nv +4 5 6\nv 7 8 9.25\nf 1 2 3\n");
   REQUIRE(model.mesh.triangles.size() == 1);

@@ -135,6 +135,7 @@ class MtlReader : private StatementBuffer {
     std::string_view named = rest();
     const bool is_pattern = reflectance && named.starts_with("pattern ");
     if (is_pattern) named = text::trimmed(named.substr(8));
+    if (named.starts_with('-')) note("has options, which have no effect");
     std::string name;
     tinyobj::texture_option_t unused;
     tinyobj::ParseTextureNameAndOption(&name, &unused, std::string(named).c_str());

@@ -109,7 +109,7 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if read
   std::vector<std::size_t> without_place;    ///< by use: corners without texture coordinates
   std::vector<std::size_t> crossings;        ///< lines of polygons whose outline crosses itself
-  Notes unknown, flat;                       ///< unknown statements, and faces without an area
+  Notes unknown, flat, coloured;             ///< unknown statements, faces without an area, vertices with colours
   std::size_t open_line = 0;                 ///< line of a last statement without end; 0: none
   struct {
     std::size_t line = no_line;
@@ -124,14 +124,15 @@ class ObjPiece : private StatementBuffer {
   };
 
   /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
-  static constexpr std::array<std::string_view, 15> ignored{
-      "vn", "vt", "vp", "vw", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
+  static constexpr std::array<std::string_view, 13> ignored{"vn", "vt", "vp", "vw",  "o",          "g",        "s",
+                                                            "l",  "p",  "mg", "lod", "shadow_obj", "trace_obj"};
 
   void check(std::string& ready) override {
     const std::vector<std::string_view>& given = words();
     if (keyword() == "v") {
       require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
               "three finite numbers, none beyond 1e12");
+      if (given.size() >= 6) coloured.add({1, line()});
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
       return flat.add({1, line()});
     } else if (keyword() == "f") {

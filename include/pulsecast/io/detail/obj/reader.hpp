@@ -33,6 +33,7 @@ class ObjReader {
     if (unknown_.count > 0)
       warn(unknown_.line, unknown_.text, " is not known and left out, the first of ", unknown_.count);
     if (flat_.count > 0) warn(flat_.line, "a face without area is left out, the first of ", flat_.count);
+    if (coloured_.count > 0) warn(coloured_.line, "colours of vertices have no effect, pictures and MTL files do");
     if (model_.mesh.triangles.empty())
       warn(0, "holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
@@ -95,6 +96,7 @@ class ObjReader {
     use_ = piece.uses.back();
     unknown_.add(piece.unknown);
     flat_.add(piece.flat);
+    coloured_.add(piece.coloured);
     open_line_ = std::max(open_line_, piece.open_line);
   }
 
@@ -168,7 +170,7 @@ class ObjReader {
   Use use_;                                                        // in force
   std::vector<Use> uses_;                                          // in use by triangles
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
-  ObjPiece::Notes unknown_, flat_;
+  ObjPiece::Notes unknown_, flat_, coloured_;
   std::map<std::string, std::size_t> without_place_;  // corners, by material
   std::size_t open_line_ = 0;
 };
