@@ -3,11 +3,6 @@
 #ifndef PULSECAST_ANY_SURVEY_HPP
 #define PULSECAST_ANY_SURVEY_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <memory>
-#include <utility>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

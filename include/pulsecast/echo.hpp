@@ -3,14 +3,9 @@
 #ifndef PULSECAST_ECHO_HPP
 #define PULSECAST_ECHO_HPP
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <span>
 
 #include <pulsecast/base/scan_angle.hpp>
-#include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/hit.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,13 +3,9 @@
 #ifndef PULSECAST_FORECAST_HPP
 #define PULSECAST_FORECAST_HPP
 
-#include <algorithm>
-#include <array>
 #include <ctime>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/detail/sample_statistics.hpp>
-#include <pulsecast/sample.hpp>
 
 /// Forecasts of whole runs from samples of their slots, in about a second each:
 ///

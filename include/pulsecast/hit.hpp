@@ -3,11 +3,8 @@
 #ifndef PULSECAST_HIT_HPP
 #define PULSECAST_HIT_HPP
 
-#include <cstdint>
-#include <limits>
 #include <optional>
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
 /// Results of intersecting a ray: `Hit` of any map, `RayHit` of a scene, and the `SurfaceInteraction` there.

@@ -3,17 +3,11 @@
 #ifndef PULSECAST_PULSE_HPP
 #define PULSECAST_PULSE_HPP
 
-#include <array>
-#include <concepts>
 #include <optional>
-#include <type_traits>
 
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scan_angle.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_PULSE_LANES_HPP
 #define PULSECAST_PULSE_LANES_HPP
 
-#include <cstddef>
-
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/concepts.hpp>
 
 /// Poses of any motion and pulses of any source in SIMD batches.

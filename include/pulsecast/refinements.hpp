@@ -4,15 +4,8 @@
 #define PULSECAST_REFINEMENTS_HPP
 
 #include <memory>
-#include <optional>
 #include <span>
-#include <type_traits>
 
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/lanes.hpp>
-#include <pulsecast/base/optional_member.hpp>
-#include <pulsecast/base/simd.hpp>
-#include <pulsecast/base/tick.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray_cone.hpp>
 #include <pulsecast/pulse.hpp>

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_REFLECTION_HPP
 #define PULSECAST_REFLECTION_HPP
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>

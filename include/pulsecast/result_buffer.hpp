@@ -3,9 +3,6 @@
 #ifndef PULSECAST_RESULT_BUFFER_HPP
 #define PULSECAST_RESULT_BUFFER_HPP
 
-#include <array>
-#include <vector>
-
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,20 +3,14 @@
 #ifndef PULSECAST_RUN_HPP
 #define PULSECAST_RUN_HPP
 
-#include <algorithm>
 #include <functional>
-#include <limits>
-#include <memory>
 #include <stop_token>
-#include <utility>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/progress.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
 #include <pulsecast/detail/chunk_queue.hpp>
-#include <pulsecast/result_buffer.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -5,12 +5,6 @@
 
 #include <time.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include <pulsecast/any_survey.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/result_buffer.hpp>

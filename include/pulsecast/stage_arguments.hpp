@@ -3,11 +3,6 @@
 #ifndef PULSECAST_STAGE_ARGUMENTS_HPP
 #define PULSECAST_STAGE_ARGUMENTS_HPP
 
-#include <concepts>
-#include <cstddef>
-#include <type_traits>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 /// Arguments of `Deflector`, `Platform` and `Survey`. Deduction guides that take all others name the mistake, by static

@@ -3,20 +3,8 @@
 #ifndef PULSECAST_SURVEY_HPP
 #define PULSECAST_SURVEY_HPP
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/stage_arguments.hpp>
-#include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/echo_simulator.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -97,9 +85,10 @@ class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
 };
 
 template <WorldSource Source, Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
-Survey<Source, Footprint, Target, Detector, Transport>::Survey(
-    Source source, std::vector<ReceiverUnit<Footprint, Detector>> receivers, const Target& target, Transport transport,
-    std::uint64_t seed)
+Survey<Source, Footprint, Target, Detector, Transport>::Survey(Source source,
+                                                               std::vector<ReceiverUnit<Footprint, Detector>> receivers,
+                                                               const Target& target, Transport transport,
+                                                               std::uint64_t seed)
     : Echoes(std::move(receivers), target, std::move(transport), emitters_of(source), seed),
       source_(std::move(source)) {}
 

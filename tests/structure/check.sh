@@ -94,6 +94,40 @@ rule 'concepts, never enable_if' found 'enable_if'
 rule 'an optional member has a concept of its own' found \
      'if constexpr \((.*[ (!])?requires *[({]|constexpr bool [a-z_]+ = requires|requires requires|requires \{ requires'
 
+# What a header reaches stays as it is: an include that another one brings is a line that says nothing. Those that a comment explains may
+# stand, and two headers list others: the contract and the umbrella.
+repeated_includes() {
+  # shellcheck disable=SC2086
+  awk '
+  function visit(header, top,    n, k, names) {
+    n = split(includes[header], names, " ")
+    for (k = 1; k <= n; ++k)
+      if (!((top, names[k]) in reached)) {
+        reached[top, names[k]] = 1
+        visit(names[k], top)
+      }
+  }
+  FNR == 1 { depth = 0; header = substr(FILENAME, 9) }
+  /^#if/ { ++depth }
+  /^#endif/ { --depth }
+  depth == 1 && match($0, /^#include <[^>]*>/) {
+    name = substr($0, 11, RLENGTH - 11)
+    includes[header] = includes[header] name " "
+    if (RLENGTH == length($0) && name !~ /\.h$|^[^p].*\//) bare[header, name] = 1
+  }
+  END {
+    for (header in includes) {
+      n = split(includes[header], names, " ")
+      for (k = 1; k <= n; ++k) visit(names[k], names[k])
+      for (k = 1; k <= n; ++k)
+        for (j = 1; j <= n; ++j)
+          if ((header, names[k]) in bare && j != k && (names[j], names[k]) in reached)
+            print "include/" header ": " names[k] " comes with " names[j]
+    }
+  }' $headers | grep -vE '^include/pulsecast/(concepts|pulsecast)\.hpp' | sort
+}
+rule 'a header includes nothing that its other includes bring' repeated_includes
+
 # The single header keeps the guards of the headers that it holds, and so goes with all others in either order.
 without_guard() {
   # shellcheck disable=SC2086

@@ -63,6 +63,7 @@ hook='an optional member has a concept of its own'
 notices "$hook" "echo 'void f(const auto& a) { if constexpr (requires { a.soon(); }) a.soon(); }' >> include/pulsecast/echo.hpp"
 notices "$hook" "echo 'template <class T> constexpr bool soon = requires(T a) { a.soon(); };' >> include/pulsecast/echo.hpp"
 notices "$hook" "echo 'template <class T> requires requires(T a) { a.soon(); } void f(T);' >> include/pulsecast/echo.hpp"
+notices 'a header includes nothing that its other includes bring' "$add #include <pulsecast/base/vector.hpp>\" include/pulsecast/shape/mesh_data.hpp"
 guard='a header has the include guard of its path'
 notices "$guard" 'sed -i "s/PULSECAST_ECHO_HPP/PULSECAST_PULSE_HPP/" include/pulsecast/echo.hpp'
 notices "$guard" 'sed -i "/^#endif/d" include/pulsecast/echo.hpp'

@@ -4,7 +4,6 @@
 #define PULSECAST_ACCEL_KD_TREE_HPP
 
 #include <pulsecast/accel/detail/kd_tree_builder.hpp>
-#include <pulsecast/accel/detail/sah.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {

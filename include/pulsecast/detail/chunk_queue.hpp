@@ -3,9 +3,6 @@
 #ifndef PULSECAST_DETAIL_CHUNK_QUEUE_HPP
 #define PULSECAST_DETAIL_CHUNK_QUEUE_HPP
 
-#include <cstddef>
-#include <cstdint>
-
 #include <pulsecast/result_buffer.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

@@ -3,15 +3,10 @@
 #ifndef PULSECAST_DETAIL_REORDER_BUFFER_HPP
 #define PULSECAST_DETAIL_REORDER_BUFFER_HPP
 
-#include <algorithm>
-#include <bit>
 #include <condition_variable>
 #include <exception>
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <stop_token>
-#include <utility>
 
 #include <pulsecast/base/scratch_memory.hpp>
 #include <pulsecast/detail/chunk_queue.hpp>

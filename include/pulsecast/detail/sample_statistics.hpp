@@ -3,15 +3,6 @@
 #ifndef PULSECAST_DETAIL_SAMPLE_STATISTICS_HPP
 #define PULSECAST_DETAIL_SAMPLE_STATISTICS_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include <pulsecast/sample.hpp>
 
 namespace PULSECAST_NAMESPACE {

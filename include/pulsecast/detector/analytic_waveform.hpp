@@ -4,12 +4,9 @@
 #define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <pulsecast/detector/adaptor.hpp>
-#include <pulsecast/detector/detail/continuous_waveform.hpp>
 #include <pulsecast/detector/detail/edge_age_moments.hpp>
 #include <pulsecast/detector/detail/ideal_samples.hpp>
-#include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/detail/single_peak_group.hpp>
-#include <pulsecast/detector/echo_width.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

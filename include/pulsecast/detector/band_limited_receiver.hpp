@@ -5,11 +5,6 @@
 
 #include <pulsecast/detector/detail/band_limited_samples.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
-#include <pulsecast/detector/detail/filtered_noise.hpp>
-#include <pulsecast/detector/detail/received_pulse.hpp>
-#include <pulsecast/detector/echo_timing.hpp>
-#include <pulsecast/detector/pulse_form.hpp>
-#include <pulsecast/detector/receiver_chain.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

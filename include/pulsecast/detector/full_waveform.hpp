@@ -5,11 +5,8 @@
 
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/detail/by_pulse_length.hpp>
-#include <pulsecast/detector/detail/peaks.hpp>
 #include <pulsecast/detector/detail/sample_window.hpp>
 #include <pulsecast/detector/detail/single_peak_group.hpp>
-#include <pulsecast/detector/echo_timing.hpp>
-#include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
 
 namespace PULSECAST_NAMESPACE {

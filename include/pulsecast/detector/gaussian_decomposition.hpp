@@ -3,8 +3,6 @@
 #ifndef PULSECAST_DETECTOR_GAUSSIAN_DECOMPOSITION_HPP
 #define PULSECAST_DETECTOR_GAUSSIAN_DECOMPOSITION_HPP
 
-#include <pulsecast/detector/adaptor.hpp>
-#include <pulsecast/detector/detail/by_pulse_length.hpp>
 #include <pulsecast/detector/detail/system_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_INSTRUMENT_HPP
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/scanner/channels.hpp>
 

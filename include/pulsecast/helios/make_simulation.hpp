@@ -3,7 +3,6 @@
 #ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
-#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/simulation.hpp>
 
 /// Loading of surveys: slow to compile, unless `pulsecast::compiled` is linked. Include it once.

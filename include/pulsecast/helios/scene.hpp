@@ -5,14 +5,12 @@
 
 #include <set>
 
-#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/shape/height_field.hpp>
-#include <pulsecast/shape/raster.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/shape/voxel_grid.hpp>
 

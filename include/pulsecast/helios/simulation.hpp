@@ -4,13 +4,10 @@
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
 #include <pulsecast/any_survey.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.

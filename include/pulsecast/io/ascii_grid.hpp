@@ -4,10 +4,8 @@
 #define PULSECAST_IO_ASCII_GRID_HPP
 
 #include <filesystem>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/shape/raster.hpp>

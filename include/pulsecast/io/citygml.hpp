@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_CITYGML_HPP
 #define PULSECAST_IO_CITYGML_HPP
 
-#include <algorithm>
-#include <map>
-#include <new>
 #include <set>
 
 #include <citygml/citygml.h>
@@ -16,9 +13,6 @@
 #include <citygml/polygon.h>
 #include <citygml/transformmatrix.h>
 
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/plain_xml.hpp>
 #include <pulsecast/io/mesh_file.hpp>

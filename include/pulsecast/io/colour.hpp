@@ -3,12 +3,6 @@
 #ifndef PULSECAST_IO_COLOUR_HPP
 #define PULSECAST_IO_COLOUR_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <span>
-
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/material/image.hpp>
 

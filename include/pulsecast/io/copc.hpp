@@ -3,24 +3,8 @@
 #ifndef PULSECAST_IO_COPC_HPP
 #define PULSECAST_IO_COPC_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/copc/hierarchy.hpp>
-#include <pulsecast/io/detail/copc/octree.hpp>
-#include <pulsecast/io/detail/copc/plan.hpp>
-#include <pulsecast/io/detail/copc/runs.hpp>
 #include <pulsecast/io/detail/copc/tree.hpp>
-#include <pulsecast/io/detail/las/bytes.hpp>
-#include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/settings.hpp>
-#include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/laz.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

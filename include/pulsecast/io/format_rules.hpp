@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_FORMAT_RULES_HPP
 #define PULSECAST_IO_FORMAT_RULES_HPP
 
-#include <algorithm>
-#include <span>
-#include <vector>
-
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

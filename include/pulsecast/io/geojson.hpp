@@ -3,14 +3,8 @@
 #ifndef PULSECAST_IO_GEOJSON_HPP
 #define PULSECAST_IO_GEOJSON_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

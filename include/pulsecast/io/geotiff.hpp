@@ -4,11 +4,8 @@
 #define PULSECAST_IO_GEOTIFF_HPP
 
 #include <filesystem>
-#include <optional>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/shape/raster.hpp>
 

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_GZIP_HPP
 #define PULSECAST_IO_GZIP_HPP
 
-#include <algorithm>
 #include <new>
 
 #include <zlib.h>

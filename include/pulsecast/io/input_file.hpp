@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_INPUT_FILE_HPP
 #define PULSECAST_IO_INPUT_FILE_HPP
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -11,7 +10,6 @@
 #include <ios>
 #include <new>
 #include <span>
-#include <system_error>
 #include <vector>
 
 #include <fcntl.h>

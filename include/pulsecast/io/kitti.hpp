@@ -3,15 +3,7 @@
 #ifndef PULSECAST_IO_KITTI_HPP
 #define PULSECAST_IO_KITTI_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <map>
-#include <system_error>
-
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/scan_splitter.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

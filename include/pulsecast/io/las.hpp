@@ -4,11 +4,7 @@
 #define PULSECAST_IO_LAS_HPP
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

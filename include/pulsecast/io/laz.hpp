@@ -3,18 +3,9 @@
 #ifndef PULSECAST_IO_LAZ_HPP
 #define PULSECAST_IO_LAZ_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/las/bytes.hpp>
-#include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/detail/laz/chunk.hpp>
-#include <pulsecast/io/detail/laz/coder.hpp>
-#include <pulsecast/io/detail/laz/integers.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

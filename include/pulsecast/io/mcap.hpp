@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_MCAP_HPP
 #define PULSECAST_IO_MCAP_HPP
 
-#include <algorithm>
 #include <bit>
-#include <concepts>
-#include <cstring>
-#include <limits>
 #include <map>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/version.hpp>
 

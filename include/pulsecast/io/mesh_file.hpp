@@ -4,9 +4,7 @@
 #define PULSECAST_IO_MESH_FILE_HPP
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
-#include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
 /// Meshes of PLY and OBJ files, and of glTF, GLB, STL, DAE, FBX files by assimp (others: untested).

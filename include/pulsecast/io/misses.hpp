@@ -3,14 +3,6 @@
 #ifndef PULSECAST_IO_MISSES_HPP
 #define PULSECAST_IO_MISSES_HPP
 
-#include <array>
-#include <type_traits>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/echo.hpp>
-#include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/text_files.hpp>
 
 /// Pulses without echoes: as points, and as a table.

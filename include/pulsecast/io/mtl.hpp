@@ -3,18 +3,10 @@
 #ifndef PULSECAST_IO_MTL_HPP
 #define PULSECAST_IO_MTL_HPP
 
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/normalized_phong.hpp>
-#include <pulsecast/material/phong.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

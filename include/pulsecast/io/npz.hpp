@@ -3,15 +3,12 @@
 #ifndef PULSECAST_IO_NPZ_HPP
 #define PULSECAST_IO_NPZ_HPP
 
-#include <array>
 #include <exception>
-#include <new>
 
 #include <archive.h>
 #include <archive_entry.h>
 
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

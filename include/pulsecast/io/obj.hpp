@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_OBJ_HPP
 #define PULSECAST_IO_OBJ_HPP
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>

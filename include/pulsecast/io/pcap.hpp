@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_PCAP_HPP
 #define PULSECAST_IO_PCAP_HPP
 
-#include <array>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/packets/packet.hpp>
 #include <pulsecast/io/output_file.hpp>
 

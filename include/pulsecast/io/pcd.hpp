@@ -3,15 +3,9 @@
 #ifndef PULSECAST_IO_PCD_HPP
 #define PULSECAST_IO_PCD_HPP
 
-#include <array>
-#include <cstring>
-#include <limits>
-
 #include <liblzf/lzf.h>
 
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/detail/text/output.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

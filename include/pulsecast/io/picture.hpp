@@ -3,14 +3,8 @@
 #ifndef PULSECAST_IO_PICTURE_HPP
 #define PULSECAST_IO_PICTURE_HPP
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/material/image.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/material/reflectance_map.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_IO_PLY_HPP
 #define PULSECAST_IO_PLY_HPP
 
-#include <array>
-
 #include <pulsecast/io/detail/packed_points.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -3,17 +3,8 @@
 #ifndef PULSECAST_IO_PNG_HPP
 #define PULSECAST_IO_PNG_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include <stb/stb_image_write.h>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/detail/png/camera.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/scene/part.hpp>

@@ -6,9 +6,7 @@
 #include <filesystem>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

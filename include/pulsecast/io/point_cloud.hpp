@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_POINT_CLOUD_HPP
 #define PULSECAST_IO_POINT_CLOUD_HPP
 
-#include <array>
 #include <filesystem>
-#include <optional>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/text_point_columns.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 

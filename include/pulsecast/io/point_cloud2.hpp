@@ -3,15 +3,9 @@
 #ifndef PULSECAST_IO_POINT_CLOUD2_HPP
 #define PULSECAST_IO_POINT_CLOUD2_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/tick.hpp>
 #include <pulsecast/io/point_records.hpp>
 
 /// Scans as ROS 2 messages, without ROS. Recording with `io/mcap` and `io/scan_splitter`:

@@ -3,22 +3,9 @@
 #ifndef PULSECAST_IO_POINT_COLUMNS_HPP
 #define PULSECAST_IO_POINT_COLUMNS_HPP
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <type_traits>
-
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/suggestion.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/point_colour.hpp>
-#include <pulsecast/scene/surface_query.hpp>
 
 /// Table of all columns that a point can have, for every format of points, Python and the page.
 namespace PULSECAST_NAMESPACE::io {

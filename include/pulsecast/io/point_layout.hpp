@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_POINT_LAYOUT_HPP
 #define PULSECAST_IO_POINT_LAYOUT_HPP
 
-#include <algorithm>
-#include <initializer_list>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/point_columns.hpp>
 
 /// Layouts of point records, as of PCD, PLY, NPZ and PointCloud2: fields, types and offsets.

@@ -3,17 +3,6 @@
 #ifndef PULSECAST_IO_POINT_RECORDS_HPP
 #define PULSECAST_IO_POINT_RECORDS_HPP
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <type_traits>
-
-#include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/io/point_layout.hpp>
 
 /// Records of points in a layout, which point files and messages consist of.

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_PTX_HPP
 #define PULSECAST_IO_PTX_HPP
 
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 

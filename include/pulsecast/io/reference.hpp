@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_REFERENCE_HPP
 #define PULSECAST_IO_REFERENCE_HPP
 
-#include <cmath>
 #include <memory>
 
 #include <proj.h>

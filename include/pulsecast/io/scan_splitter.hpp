@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_SCAN_SPLITTER_HPP
 #define PULSECAST_IO_SCAN_SPLITTER_HPP
 
-#include <functional>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -3,24 +3,15 @@
 #ifndef PULSECAST_IO_SCENE_CACHE_HPP
 #define PULSECAST_IO_SCENE_CACHE_HPP
 
-#include <cstring>
-#include <functional>
-#include <type_traits>
-#include <typeinfo>
-
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>
 #include <pulsecast/material/normalized_phong.hpp>
-#include <pulsecast/material/phong.hpp>
 #include <pulsecast/material/reflectance_map.hpp>
 #include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/material/tabulated.hpp>
 #include <pulsecast/scene/motion.hpp>
-#include <pulsecast/scene/part.hpp>
 #include <pulsecast/version.hpp>
 
 /// Cache of a built scene: one memory-mapped file.

@@ -3,17 +3,11 @@
 #ifndef PULSECAST_IO_SENSOR_CALIBRATION_HPP
 #define PULSECAST_IO_SENSOR_CALIBRATION_HPP
 
-#include <algorithm>
-#include <cmath>
-
-#include <pulsecast/base/text.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/packets/calibration_file.hpp>
 #include <pulsecast/io/ouster_packets.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/velodyne_packets.hpp>
 #include <pulsecast/sensor/ouster.hpp>
-#include <pulsecast/sensor/spinning_sensor.hpp>
 
 /// Writers and readers of the files that describe a sensor's lasers to decoders.
 namespace PULSECAST_NAMESPACE::io {

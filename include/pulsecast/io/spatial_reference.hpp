@@ -4,7 +4,6 @@
 #define PULSECAST_IO_SPATIAL_REFERENCE_HPP
 
 #include <functional>
-#include <string>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_TRAJECTORY_HPP
 #define PULSECAST_IO_TRAJECTORY_HPP
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/detail/trajectory/table.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_UDP_HPP
 
 #include <cerrno>
-#include <cstring>
 #include <optional>
 #include <system_error>
 

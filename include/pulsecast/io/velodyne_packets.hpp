@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_VELODYNE_PACKETS_HPP
 #define PULSECAST_IO_VELODYNE_PACKETS_HPP
 
-#include <cmath>
-
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/packets/packet_stream.hpp>
 #include <pulsecast/io/point_records.hpp>
 

@@ -5,11 +5,8 @@
 
 #include <filesystem>
 #include <optional>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

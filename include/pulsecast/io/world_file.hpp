@@ -3,11 +3,7 @@
 #ifndef PULSECAST_IO_WORLD_FILE_HPP
 #define PULSECAST_IO_WORLD_FILE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
-#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/text.hpp>

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_MPI_LAS_HPP
 #define PULSECAST_MPI_LAS_HPP
 
-#include <algorithm>
-
 #include <pulsecast/io/las.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

@@ -3,14 +3,7 @@
 #ifndef PULSECAST_MPI_LAZ_HPP
 #define PULSECAST_MPI_LAZ_HPP
 
-#include <algorithm>
-#include <deque>
-#include <map>
-
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
-#include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/las.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_MPI_ROWS_HPP
 #define PULSECAST_MPI_ROWS_HPP
 
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

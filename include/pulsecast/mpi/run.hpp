@@ -3,20 +3,9 @@
 #ifndef PULSECAST_MPI_RUN_HPP
 #define PULSECAST_MPI_RUN_HPP
 
-#include <algorithm>
-#include <chrono>
-#include <deque>
-#include <functional>
-#include <type_traits>
-
-#include <pulsecast/mpi/detail/blocks.hpp>
-#include <pulsecast/mpi/detail/channel.hpp>
-#include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/detail/stream.hpp>
-#include <pulsecast/mpi/las.hpp>
 #include <pulsecast/mpi/laz.hpp>
 #include <pulsecast/mpi/rows.hpp>
-#include <pulsecast/run.hpp>
 
 /// Survey runs on the processes of an MPI communicator, each with its own threads.
 ///

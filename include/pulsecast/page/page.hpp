@@ -3,11 +3,7 @@
 #ifndef PULSECAST_PAGE_PAGE_HPP
 #define PULSECAST_PAGE_PAGE_HPP
 
-#include <map>
-
 #include <pulsecast/io/colour.hpp>
-#include <pulsecast/io/output_file.hpp>
-#include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/page/detail/columns.hpp>
 #include <pulsecast/version.hpp>
 

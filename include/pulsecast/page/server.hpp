@@ -5,9 +5,6 @@
 
 #include <sys/random.h>
 
-#include <mutex>
-
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/page/detail/local_server.hpp>
 #include <pulsecast/page/page.hpp>
 #include <pulsecast/run.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
 #define PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
 
-#include <algorithm>
-
 #include <pulsecast/platform/straight_line.hpp>
 
 namespace PULSECAST_NAMESPACE {

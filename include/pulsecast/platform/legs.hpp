@@ -3,10 +3,7 @@
 #ifndef PULSECAST_PLATFORM_LEGS_HPP
 #define PULSECAST_PLATFORM_LEGS_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/search.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {

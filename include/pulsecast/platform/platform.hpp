@@ -4,7 +4,6 @@
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
 #include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/stage_arguments.hpp>
 

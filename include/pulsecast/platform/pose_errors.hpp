@@ -3,9 +3,6 @@
 #ifndef PULSECAST_PLATFORM_POSE_ERRORS_HPP
 #define PULSECAST_PLATFORM_POSE_ERRORS_HPP
 
-#include <algorithm>
-#include <bit>
-
 #include <pulsecast/platform/platform.hpp>
 
 namespace PULSECAST_NAMESPACE {

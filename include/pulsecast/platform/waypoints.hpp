@@ -3,11 +3,8 @@
 #ifndef PULSECAST_PLATFORM_WAYPOINTS_HPP
 #define PULSECAST_PLATFORM_WAYPOINTS_HPP
 
-#include <algorithm>
-
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/pulse_lanes.hpp>
 
 namespace PULSECAST_NAMESPACE {

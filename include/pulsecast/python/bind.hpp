@@ -6,19 +6,12 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <chrono>
 #include <future>
 #include <iterator>
-#include <memory>
-#include <stop_token>
-#include <variant>
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
-#include <pulsecast/python/detail/point_arrays.hpp>
-#include <pulsecast/python/detail/pulse_rows.hpp>
-#include <pulsecast/run.hpp>
 
 /// Python bindings of surveys: any compile-time pipeline becomes a class with runs to NumPy arrays.
 ///

@@ -5,18 +5,8 @@
 
 #include <pybind11/numpy.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/unit_rotation.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
 #include <pulsecast/python/detail/rows.hpp>
-#include <pulsecast/scene/closest_hits.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 

@@ -4,8 +4,6 @@
 #define PULSECAST_SCENE_MOTION_HPP
 
 #include <pulsecast/scene/detail/motion_sweep.hpp>
-#include <pulsecast/scene/detail/motion_timeline.hpp>
-#include <pulsecast/scene/detail/screw.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

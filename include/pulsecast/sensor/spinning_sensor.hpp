@@ -3,10 +3,6 @@
 #ifndef PULSECAST_SENSOR_SPINNING_SENSOR_HPP
 #define PULSECAST_SENSOR_SPINNING_SENSOR_HPP
 
-#include <algorithm>
-
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SENSOR_VELODYNE_HPP
 #define PULSECAST_SENSOR_VELODYNE_HPP
 
-#include <array>
-
 #include <pulsecast/sensor/spinning_sensor.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,21 +3,10 @@
 #ifndef PULSECAST_SHAPE_HEIGHT_FIELD_HPP
 #define PULSECAST_SHAPE_HEIGHT_FIELD_HPP
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/geometry/detail/bundle_interval.hpp>
-#include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/shape/detail/cell_block.hpp>
 #include <pulsecast/shape/detail/height_pyramid.hpp>
 #include <pulsecast/shape/detail/packed_numbers.hpp>
-#include <pulsecast/shape/packed_heights.hpp>
-#include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -3,13 +3,6 @@
 #ifndef PULSECAST_SHAPE_RASTER_HPP
 #define PULSECAST_SHAPE_RASTER_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 #include <pulsecast/shape/packed_heights.hpp>
 

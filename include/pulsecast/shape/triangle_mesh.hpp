@@ -3,17 +3,10 @@
 #ifndef PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 #define PULSECAST_SHAPE_TRIANGLE_MESH_HPP
 
-#include <algorithm>
-
 #include <pulsecast/accel/bvh.hpp>
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
-#include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/shape/detail/corner_table.hpp>
 #include <pulsecast/shape/detail/line_test.hpp>
-#include <pulsecast/shape/mask.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE {

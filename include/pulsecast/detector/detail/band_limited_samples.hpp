@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_BAND_LIMITED_SAMPLES_HPP
 
 #include <pulsecast/detector/detail/continuous_waveform.hpp>
-#include <pulsecast/detector/detail/filtered_noise.hpp>
 #include <pulsecast/detector/detail/received_pulse.hpp>
 #include <pulsecast/detector/receiver_chain.hpp>
 

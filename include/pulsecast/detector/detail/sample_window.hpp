@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_DETAIL_SAMPLE_WINDOW_HPP
 
 #include <pulsecast/detector/detail/peaks.hpp>
-#include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -3,10 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 #define PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 
-#include <algorithm>
 #include <filesystem>
 #include <regex>
-#include <system_error>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>

@@ -3,12 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_FORMULA_HPP
 #define PULSECAST_HELIOS_DETAIL_FORMULA_HPP
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <vector>
 
 #include <pulsecast/base/text.hpp>

@@ -3,16 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LEG_HPP
 #define PULSECAST_HELIOS_DETAIL_LEG_HPP
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/helios/instrument.hpp>
-#include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
-#include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 

@@ -5,7 +5,6 @@
 
 #include <map>
 
-#include <pulsecast/base/frame.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 

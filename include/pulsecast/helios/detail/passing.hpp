@@ -3,11 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_PASSING_HPP
 #define PULSECAST_HELIOS_DETAIL_PASSING_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/tick.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 

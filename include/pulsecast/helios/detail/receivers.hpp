@@ -5,9 +5,7 @@
 
 #include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
 
 #include <set>
-#include <system_error>
 
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>

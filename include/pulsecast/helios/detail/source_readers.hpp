@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SOURCE_READERS_HPP
 #define PULSECAST_HELIOS_DETAIL_SOURCE_READERS_HPP
 
-#include <map>
-
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>

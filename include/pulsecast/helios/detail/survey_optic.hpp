@@ -3,10 +3,8 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIC_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIC_HPP
 
-#include <memory>
 #include <variant>
 
-#include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fiber_array.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
@@ -16,7 +14,6 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
-#include <pulsecast/pulse_lanes.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Optics of survey documents, as one type.

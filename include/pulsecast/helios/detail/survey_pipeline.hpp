@@ -5,7 +5,6 @@
 
 #include <variant>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/transport/direct_light.hpp>

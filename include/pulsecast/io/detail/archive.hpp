@@ -3,18 +3,11 @@
 #ifndef PULSECAST_IO_DETAIL_ARCHIVE_HPP
 #define PULSECAST_IO_DETAIL_ARCHIVE_HPP
 
-#include <array>
-#include <cstring>
 #include <functional>
 #include <map>
-#include <memory>
-#include <stdexcept>
-#include <type_traits>
 #include <typeinfo>
 #include <variant>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/material/image.hpp>
 

@@ -3,18 +3,11 @@
 #ifndef PULSECAST_IO_DETAIL_CHILD_PROCESS_HPP
 #define PULSECAST_IO_DETAIL_CHILD_PROCESS_HPP
 
-#include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
-#include <fstream>
-#include <functional>
-#include <new>
-#include <system_error>
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_DIGEST_HPP
 
 #include <memory>
-#include <system_error>
 
 #include <xxhash.h>
 

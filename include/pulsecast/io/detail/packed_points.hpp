@@ -3,15 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
 #define PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <type_traits>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/point_records.hpp>
 

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PLAIN_XML_HPP
 #define PULSECAST_IO_DETAIL_PLAIN_XML_HPP
 
-#include <algorithm>
-#include <array>
-
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

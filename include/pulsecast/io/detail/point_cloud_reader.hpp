@@ -3,23 +3,15 @@
 #ifndef PULSECAST_IO_DETAIL_POINT_CLOUD_READER_HPP
 #define PULSECAST_IO_DETAIL_POINT_CLOUD_READER_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include <pulsecast/geometry/box.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/las/points.hpp>
 #include <pulsecast/io/detail/ply/points.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>
 #include <pulsecast/io/detail/text/points.hpp>
 #include <pulsecast/io/point_cloud.hpp>
-#include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_REFERENCE_READER_HPP
 #define PULSECAST_IO_DETAIL_REFERENCE_READER_HPP
 
-#include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
 
 #include <pulsecast/io/format_rules.hpp>
 #include <pulsecast/io/spatial_reference.hpp>

@@ -6,10 +6,8 @@
 #include <cstring>
 #include <deque>
 #include <exception>
-#include <limits>
 #include <list>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #define OMPI_SKIP_MPICXX 1  // C++ bindings, removed in MPI 3.0, of Open MPI and MPICH

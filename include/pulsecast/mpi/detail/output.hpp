@@ -3,16 +3,9 @@
 #ifndef PULSECAST_MPI_DETAIL_OUTPUT_HPP
 #define PULSECAST_MPI_DETAIL_OUTPUT_HPP
 
-#include <cerrno>
-#include <functional>
-#include <map>
-#include <system_error>
-
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>

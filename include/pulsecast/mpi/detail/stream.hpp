@@ -3,12 +3,6 @@
 #ifndef PULSECAST_MPI_DETAIL_STREAM_HPP
 #define PULSECAST_MPI_DETAIL_STREAM_HPP
 
-#include <algorithm>
-#include <functional>
-#include <map>
-
-#include <pulsecast/echo.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
 namespace PULSECAST_NAMESPACE::mpi {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 #define PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 
-#include <pulsecast/base/search.hpp>
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PAGE_DETAIL_JSON_HPP
 #define PULSECAST_PAGE_DETAIL_JSON_HPP
 
-#include <array>
 #include <cmath>
 #include <concepts>
 

@@ -3,15 +3,6 @@
 #ifndef PULSECAST_PAGE_DETAIL_SAMPLE_HPP
 #define PULSECAST_PAGE_DETAIL_SAMPLE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <limits>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/echo.hpp>
 #include <pulsecast/io/point_records.hpp>
 
 namespace PULSECAST_NAMESPACE::page {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_DETAIL_CURVED_PATH_HPP
 #define PULSECAST_PLATFORM_DETAIL_CURVED_PATH_HPP
 
-#include <cmath>
 #include <span>
 #include <vector>
 

@@ -5,14 +5,10 @@
 
 #include <pybind11/numpy.h>
 
-#include <algorithm>
-#include <cstring>
-
 #include <pulsecast/io/misses.hpp>
 #include <pulsecast/python/detail/arrow.hpp>
 #include <pulsecast/python/detail/point_arrays.hpp>
 #include <pulsecast/python/detail/pulse_rows.hpp>
-#include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/run.hpp>
 
 namespace PULSECAST_NAMESPACE {

@@ -5,9 +5,6 @@
 
 #include <pybind11/numpy.h>
 
-#include <array>
-#include <cstring>
-
 #include <pulsecast/io/point_records.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 

@@ -4,7 +4,6 @@
 #define PULSECAST_SCENE_DETAIL_MOTION_SWEEP_HPP
 
 #include <pulsecast/scene/detail/motion_timeline.hpp>
-#include <pulsecast/scene/detail/screw.hpp>
 #include <pulsecast/scene/part.hpp>
 
 /// Boxes around all that a body passes on its timeline.

@@ -4,7 +4,6 @@
 #define PULSECAST_SHAPE_DETAIL_CELL_BLOCK_HPP
 
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
-#include <pulsecast/shape/packed_heights.hpp>
 #include <pulsecast/shape/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

@@ -4,7 +4,6 @@
 #define PULSECAST_TRANSPORT_DETAIL_MEDIA_PASSAGE_HPP
 
 #include <pulsecast/transport/detail/beam_particles.hpp>
-#include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/volume_profile.hpp>
 

@@ -4,13 +4,8 @@
 #define PULSECAST_TRANSPORT_DETAIL_PATH_TRACER_HPP
 
 #include <pulsecast/scene/find_hits.hpp>
-#include <pulsecast/transport/detail/light_ledger.hpp>
-#include <pulsecast/transport/detail/light_path.hpp>
-#include <pulsecast/transport/detail/media_passage.hpp>
 #include <pulsecast/transport/detail/refracted_paths.hpp>
-#include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/detail/scattered_paths.hpp>
-#include <pulsecast/transport/detail/volume_profile.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 

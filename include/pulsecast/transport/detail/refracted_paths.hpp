@@ -3,8 +3,6 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 #define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
 
-#include <pulsecast/transport/detail/light_ledger.hpp>
-#include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/media_passage.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {

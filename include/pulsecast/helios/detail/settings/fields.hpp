@@ -3,18 +3,11 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_FIELDS_HPP
 #define PULSECAST_HELIOS_DETAIL_SETTINGS_FIELDS_HPP
 
-#include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
-#include <limits>
-#include <numbers>
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>

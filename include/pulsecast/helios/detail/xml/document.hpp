@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 
-#include <array>
-
 #include <pugixml.hpp>
 
 #include <pulsecast/base/search.hpp>

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_PLAN_HPP
 #define PULSECAST_IO_DETAIL_COPC_PLAN_HPP
 
-#include <algorithm>
-#include <bit>
-
-#include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/detail/copc/runs.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_RUNS_HPP
 #define PULSECAST_IO_DETAIL_COPC_RUNS_HPP
 
-#include <algorithm>
-#include <cstring>
-
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/output_file.hpp>

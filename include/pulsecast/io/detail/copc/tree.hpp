@@ -3,20 +3,11 @@
 #ifndef PULSECAST_IO_DETAIL_COPC_TREE_HPP
 #define PULSECAST_IO_DETAIL_COPC_TREE_HPP
 
-#include <algorithm>
-#include <cstring>
-#include <functional>
-#include <limits>
-
-#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/copc/hierarchy.hpp>
-#include <pulsecast/io/detail/copc/octree.hpp>
 #include <pulsecast/io/detail/copc/plan.hpp>
-#include <pulsecast/io/detail/copc/runs.hpp>
 #include <pulsecast/io/detail/copc/subtree.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/laz/chunk.hpp>
-#include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

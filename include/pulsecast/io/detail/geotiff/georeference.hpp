@@ -3,19 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_GEOTIFF_GEOREFERENCE_HPP
 #define PULSECAST_IO_DETAIL_GEOTIFF_GEOREFERENCE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
-
 #include <tiffio.h>
 
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
 #include <pulsecast/io/detail/side_files.hpp>
-#include <pulsecast/io/world_file.hpp>
-#include <pulsecast/shape/raster.hpp>
 
 /// Place and heights of the pixels of a GeoTIFF by its tags.
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -3,13 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_GEOTIFF_RASTER_LAYOUT_HPP
 #define PULSECAST_IO_DETAIL_GEOTIFF_RASTER_LAYOUT_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <string>
-#include <type_traits>
-
 #include <tiffio.h>
 
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>

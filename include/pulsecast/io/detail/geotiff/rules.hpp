@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_GEOTIFF_RULES_HPP
 #define PULSECAST_IO_DETAIL_GEOTIFF_RULES_HPP
 
-#include <array>
-
 #include <pulsecast/io/format_rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
 #define PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
 
-#include <algorithm>
-#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <memory>
-#include <new>
-#include <type_traits>
-#include <vector>
 
 #include <tiffio.h>
 

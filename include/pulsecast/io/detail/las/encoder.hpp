@@ -3,17 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_ENCODER_HPP
 #define PULSECAST_IO_DETAIL_LAS_ENCODER_HPP
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <type_traits>
-
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 

@@ -3,10 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
 #define PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
 
-#include <algorithm>
 #include <bitset>
-#include <cmath>
-#include <initializer_list>
 
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/output_file.hpp>

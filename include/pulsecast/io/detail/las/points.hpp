@@ -3,18 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_POINTS_HPP
 #define PULSECAST_IO_DETAIL_LAS_POINTS_HPP
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <vector>
-
-#include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/las/rules.hpp>
 #include <pulsecast/io/detail/laz/reader.hpp>
 #include <pulsecast/io/detail/reference_reader.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 

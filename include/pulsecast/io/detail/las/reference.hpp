@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_LAS_REFERENCE_HPP
 
 #include <algorithm>
-#include <array>
 
 #include <pulsecast/io/spatial_reference.hpp>
 

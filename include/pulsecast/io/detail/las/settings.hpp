@@ -3,13 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 #define PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <memory>
 
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/point_records.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 

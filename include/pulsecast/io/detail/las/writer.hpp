@@ -3,18 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 #define PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <limits>
-
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/encoder.hpp>
-#include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
-#include <pulsecast/io/detail/las/settings.hpp>
-#include <pulsecast/io/output_file.hpp>
 #include <pulsecast/version.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -3,16 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_CHUNK_HPP
 #define PULSECAST_IO_DETAIL_LAZ_CHUNK_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <span>
-#include <vector>
-
-#include <pulsecast/io/detail/laz/coder.hpp>
-#include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/layers.hpp>
-#include <pulsecast/io/detail/laz/point.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_LAZ_CODER_HPP
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <span>

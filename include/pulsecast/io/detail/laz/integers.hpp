@@ -3,13 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_INTEGERS_HPP
 #define PULSECAST_IO_DETAIL_LAZ_INTEGERS_HPP
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include <pulsecast/io/detail/laz/coder.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

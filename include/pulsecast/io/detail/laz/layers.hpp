@@ -3,13 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_LAYERS_HPP
 #define PULSECAST_IO_DETAIL_LAZ_LAYERS_HPP
 
-#include <algorithm>
-#include <array>
 #include <memory>
-#include <utility>
-#include <vector>
 
-#include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
 

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_POINT_HPP
 #define PULSECAST_IO_DETAIL_LAZ_POINT_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-
 #include <pulsecast/io/detail/laz/coder.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {

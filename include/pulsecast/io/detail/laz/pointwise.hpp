@@ -3,14 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_POINTWISE_HPP
 #define PULSECAST_IO_DETAIL_LAZ_POINTWISE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <memory>
-#include <span>
-#include <vector>
 
-#include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
 

@@ -3,19 +3,9 @@
 #ifndef PULSECAST_IO_DETAIL_LAZ_READER_HPP
 #define PULSECAST_IO_DETAIL_LAZ_READER_HPP
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include <pulsecast/io/detail/las/rules.hpp>
-#include <pulsecast/io/detail/laz/coder.hpp>
-#include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/layers.hpp>
 #include <pulsecast/io/detail/laz/pointwise.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

@@ -3,15 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_FILE_MAKER_HPP
 
-#include <algorithm>
-#include <functional>
-#include <map>
-
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
-#include <pulsecast/io/mtl.hpp>
-#include <pulsecast/scene/part.hpp>
-#include <pulsecast/shape/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_GLTF_DOCUMENT_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_GLTF_DOCUMENT_HPP
 
-#include <algorithm>
-#include <cstring>
-#include <functional>
-#include <map>
 #include <set>
 
 #include <rapidjson/document.h>

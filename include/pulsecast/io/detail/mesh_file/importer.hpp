@@ -3,14 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
-#include <algorithm>
-#include <cstring>
-#include <functional>
-#include <map>
-#include <new>
-#include <set>
-#include <system_error>
-
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/commonMetaData.h>

@@ -3,14 +3,9 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_MATERIAL_RULES_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_MATERIAL_RULES_HPP
 
-#include <algorithm>
-#include <system_error>
-
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>
-#include <pulsecast/material/phong.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 

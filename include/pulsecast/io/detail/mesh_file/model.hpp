@@ -3,11 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_MODEL_HPP
 
-#include <filesystem>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
-#include <pulsecast/material/material.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_MATERIAL_HPP
 
-#include <algorithm>
-
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>

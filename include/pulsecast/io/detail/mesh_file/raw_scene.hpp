@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
 
-#include <algorithm>
-#include <system_error>
-
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 

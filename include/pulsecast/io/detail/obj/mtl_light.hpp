@@ -3,13 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
 #define PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/material/material.hpp>
 #include <pulsecast/material/microfacet.hpp>

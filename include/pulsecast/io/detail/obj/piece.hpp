@@ -3,19 +3,8 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
 #define PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <exception>
-#include <ios>
 #include <istream>
-#include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <tiny_obj_loader.h>
 

@@ -3,13 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_READER_HPP
 #define PULSECAST_IO_DETAIL_OBJ_READER_HPP
 
-#include <algorithm>
-#include <functional>
-#include <map>
-#include <memory>
 #include <set>
-#include <system_error>
-#include <vector>
 
 #include <pulsecast/io/detail/obj/piece.hpp>
 #include <pulsecast/io/mtl.hpp>

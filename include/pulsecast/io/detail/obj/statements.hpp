@@ -3,11 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 #define PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <concepts>
 #include <streambuf>
-#include <vector>
 
 #include <tiny_obj_loader.h>
 

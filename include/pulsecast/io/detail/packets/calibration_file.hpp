@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 #define PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
 
-#include <vector>
-
 #include <yaml-cpp/yaml.h>
 
 #include <pulsecast/io/input_file.hpp>

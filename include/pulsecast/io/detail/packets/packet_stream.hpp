@@ -3,10 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PACKETS_PACKET_STREAM_HPP
 #define PULSECAST_IO_DETAIL_PACKETS_PACKET_STREAM_HPP
 
-#include <algorithm>
-
-#include <pulsecast/base/require.hpp>
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/packets/packet.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>
 

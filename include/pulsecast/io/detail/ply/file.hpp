@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PLY_FILE_HPP
 #define PULSECAST_IO_DETAIL_PLY_FILE_HPP
 
-#include <algorithm>
-#include <bit>
-
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/point_records.hpp>
 

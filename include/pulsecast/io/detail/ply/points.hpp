@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_PLY_POINTS_HPP
 #define PULSECAST_IO_DETAIL_PLY_POINTS_HPP
 
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/ply/file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

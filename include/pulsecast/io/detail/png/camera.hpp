@@ -3,16 +3,7 @@
 #ifndef PULSECAST_IO_DETAIL_PNG_CAMERA_HPP
 #define PULSECAST_IO_DETAIL_PNG_CAMERA_HPP
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <span>
-#include <vector>
-
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/colour.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

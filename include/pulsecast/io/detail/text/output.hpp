@@ -3,12 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_OUTPUT_HPP
 #define PULSECAST_IO_DETAIL_TEXT_OUTPUT_HPP
 
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <concepts>
-#include <limits>
-
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
 

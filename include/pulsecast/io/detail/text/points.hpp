@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 #define PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 
-#include <cmath>
-
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/text/table.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
 #define PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
 
-#include <array>
-
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TEXT_TEXT_POINT_COLUMNS_HPP
 #define PULSECAST_IO_DETAIL_TEXT_TEXT_POINT_COLUMNS_HPP
 
-#include <array>
 #include <optional>
 
 #include <pulsecast/base/require.hpp>

@@ -3,9 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_ATTITUDE_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_ATTITUDE_HPP
 
-#include <array>
-#include <cmath>
-
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
-#include <initializer_list>
 #include <set>
 
 #include <pulsecast/base/suggestion.hpp>

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_IO_DETAIL_TRAJECTORY_RULES_HPP
 #define PULSECAST_IO_DETAIL_TRAJECTORY_RULES_HPP
 
-#include <array>
-
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/io/format_rules.hpp>
 
