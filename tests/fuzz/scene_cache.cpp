@@ -119,7 +119,11 @@ FUZZ_TARGET(scene_cache) {
   const std::span<const std::byte> bytes(memory.get(), file.size());
   fuzz::expect(!io::detail::defect_of(bytes, io::detail::program_of<Tested::Part>(), key));  // the header is right
   try {
-    trace(Tested(io::detail::parts_in<Tested::Part>(bytes, memory)));
+    io::ArchiveReader reader(bytes.subspan(sizeof(io::detail::CacheHeader)), memory);
+    std::vector<Tested::Part> parts;
+    reader(parts);
+    reader.require_end();
+    trace(Tested(std::move(parts)));
   } catch (const ArchiveError&) {
   } catch (const SettingError&) {
   }
