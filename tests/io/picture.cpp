@@ -135,7 +135,8 @@ TEST_CASE("an OBJ file brings its pictures: colour, outline and reflectance") {
   CHECK(model.pictures[0].reflectance_pattern);
   REQUIRE(model.mesh.texture.size() == 2);
   add_pictures(model.mesh, model.materials, model.pictures, model.warnings);
-  CHECK(model.warnings.empty());
+  REQUIRE(model.warnings.size() == 1);
+  CHECK(contains(model.warnings[0], "'map_d -clamp on outline.png' has options, which have no effect"));
   REQUIRE(model.materials[0].picture);
   CHECK(model.materials[0].picture->colour({0.5, 0.75}) == Vec3{1, 0, 0});
   CHECK(model.materials[0].picture->colour({0.5, 0.25}) == Vec3{0, 0, 1});
