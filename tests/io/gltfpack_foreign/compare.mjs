@@ -69,7 +69,8 @@ try {
       left.delete(same);
     }
   });
-  assert.deepEqual(read[0], triangles);  // OBJ keeps all digits and the order
+  // OBJ keeps the order, and all digits but for a few units in the last place
+  triangles.forEach((triangle, i) => assert.ok(triangle.every((x, k) => Math.abs(read[0][i][k] - x) < 1e-14), `tree.obj: triangle ${i}`));
   console.log(`${triangles.length} triangles of each of ${files.length} files are the same`);
 } finally {
   rmSync(folder, { recursive: true });
