@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Prints the corners of the triangles of mesh files in their own frame, a triangle a line, and a blank line after each file.
+// Prints the corners of the triangles of mesh files in their own frame, a triangle a line, and a blank line after each
+// file.
 
 #include <cstdio>
 #include <span>
