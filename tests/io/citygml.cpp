@@ -253,7 +253,7 @@ TEST_CASE("degrees are known by the size of objects, whatever the code of their 
     return read_citygml(folder.write("a.gml", city({one}, code))).file;
   };
   CHECK(contains(support::file_error([&] { (void)read(square(35.6, 139.7, 1e-4), "EPSG:6697"); }).problem(),
-                 "in degrees, by 'EPSG:6697' or its size"));
+                 "in degrees or geocentric, by 'EPSG:6697' or its size"));
   CHECK(read(square(0, 0, 0.1), "EPSG:25832").triangle_count() == 1);
   CHECK(read(square(500000, 5400000, 0.01), "EPSG:25832").triangle_count() == 1);
   const MeshFile none = read(
@@ -263,12 +263,24 @@ TEST_CASE("degrees are known by the size of objects, whatever the code of their 
   }));
 }
 
+TEST_CASE("systems of CityGML that may not be in metres are noted by their code") {
+  const Folder folder;
+  const auto is_noted = [&](const std::string& system) {
+    const auto warnings = read_citygml(folder.write("a.gml", city({house()}, system))).file.warnings;
+    return std::ranges::any_of(warnings, [](const std::string& one) { return contains(one, "metres are assumed"); });
+  };
+  for (const char* in_metres : {"EPSG:25832", "urn:ogc:def:crs:EPSG::28992", "EPSG:7415", "EPSG:5555", "EPSG:32633"})
+    CHECK_FALSE_MESSAGE(is_noted(in_metres), in_metres);
+  for (const char* in_feet : {"EPSG:2263", "urn:ogc:def:crs:EPSG::2225"}) CHECK_MESSAGE(is_noted(in_feet), in_feet);
+}
+
 TEST_CASE("CityGML files that are not for us are explained") {
   const Folder folder;
   const auto problem = [&](const std::string& text) {
     return support::file_error([&] { (void)read_citygml(folder.write("a.gml", text)); }).problem();
   };
   CHECK(contains(problem(city({house()}, "urn:ogc:def:crs:EPSG::4326")), "in degrees"));
+  CHECK(contains(problem(city({house()}, "EPSG:4978")), "geocentric"));
   CHECK(contains(problem(city({house()}, "EPSG:25832", "<!DOCTYPE a [<!ENTITY b SYSTEM \"file:///etc/passwd\">]>\n")),
                  "document type"));
   CHECK(contains(

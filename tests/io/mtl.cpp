@@ -299,6 +299,15 @@ TEST_CASE("Kd is the colour of points, white without one") {
   CHECK(library.materials.at("c").colour == Vec3{0.5, 0.5, 0.5});
 }
 
+TEST_CASE("transparency without a picture is noted, as surfaces are opaque") {
+  CHECK(mtl("newmtl a\nd 1\nTr 0\n").warnings.empty());
+  for (const char* statement : {"d 0.5", "Tr 0.3", "d 0"}) {
+    const MaterialLibrary library = mtl(std::string("newmtl a\n") + statement + "\n");
+    REQUIRE(library.warnings.size() == 1);
+    CHECK(contains(library.warnings[0], "has no effect: the surface is opaque"));
+  }
+}
+
 TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {
   const MaterialLibrary library =
       mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap "

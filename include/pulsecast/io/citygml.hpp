@@ -15,6 +15,7 @@
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/plain_xml.hpp>
+#include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/mesh_file.hpp>
 
 /// City models of CityGML 1 and 2 files, by libcitygml.
@@ -124,9 +125,14 @@ class CityGmlImport {
       root(object);
     }
     // systems of latitude and longitude have many codes; no model has objects of 5 cm at most
-    if (const auto code = epsg_of(name_); name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 ||
-                                          code == 4979 || (largest_ > 0 && largest_ < 0.05 && farthest_ <= 360))
-      fail("its coordinates are in degrees, by '", name_, "' or its size: expected a projected system in metres");
+    const auto code = epsg_of(name_);
+    if (name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4978 || code == 4979 ||
+        (largest_ > 0 && largest_ < 0.05 && farthest_ <= 360))
+      fail("its coordinates are in degrees or geocentric, by '", name_,
+           "' or its size: expected a projected system in metres");
+    if (code && !is_between(systems_in_metres, *code))
+      scene_.warnings.push_back(
+          warning(path_.string(), 0, "is in EPSG:", *code, ", which may be in feet: metres are assumed"));
     if (files_ > 0)
       scene_.warnings.push_back(
           warning(path_.string(), 0, files_, " implicit geometries are files of their own, and left out"));

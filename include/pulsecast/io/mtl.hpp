@@ -83,6 +83,10 @@ class MtlReader : private StatementBuffer {
     const std::vector<std::string_view>& given = words();
     if (const char* const expected = expected_words(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
+    if (keyword() == "d" || keyword() == "Tr")
+      if (const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
+          share && *share != (keyword() == "d" ? 1 : 0))
+        note("has no effect: the surface is opaque; map_d cuts holes, pulsecast_interface makes panes");
     if (keyword() == "Kd" || keyword() == "Ks")
       ready += standard_numbers(given, 3);
     else if (keyword() == "Ns")

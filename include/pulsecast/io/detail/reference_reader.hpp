@@ -73,6 +73,11 @@ inline constexpr std::array<std::uint16_t, 60> systems_in_metres{
     5703, 5705,  5707,  5714,  5716,  5733,  5755,  5788,  5874,  6125,  7374,  7405,  7408,  7586,  7651,
     7968, 20135, 22293, 24600, 26722, 26891, 27260, 27391, 29333, 30339, 32000, 32180, 32663, 32700, 32760};
 
+[[nodiscard]] constexpr bool is_between(const auto& ranges, std::uint16_t code) noexcept {
+  const auto end = std::ranges::upper_bound(ranges, code);
+  return (end - ranges.begin()) % 2 == 1 || (end != ranges.begin() && *std::prev(end) == code);
+}
+
 /// Vertical systems of depths. Source: EPSG registry 10.076.
 inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
     5336, 5612, 5614, 5706, 5715, 5734, 5739, 5789, 5831, 5861, 5862, 5863, 5864, 5865, 5866,
@@ -258,10 +263,6 @@ class ReferenceReader {
   /// (ft)`. EPSG tells the feet of all vertical systems in their names, and of most others but those in `wrong`.
   void read_names(std::string_view name, std::string_view vertical_name) {
     constexpr std::array<std::uint16_t, 4> wrong{3359, 3359, 26814, 26846};
-    const auto is_in = [](const auto& ranges, std::uint16_t code) {
-      const auto end = std::ranges::upper_bound(ranges, code);
-      return (end - ranges.begin()) % 2 == 1 || (end != ranges.begin() && *std::prev(end) == code);
-    };
     const auto in_name = [](std::string_view in) -> std::optional<double> {
       if (in.find("(ftUS)") != in.npos) return us_foot;
       return in.find("(ft)") != in.npos ? std::optional(foot) : std::nullopt;
@@ -271,11 +272,11 @@ class ReferenceReader {
     if (std::ranges::find(systems_of_depths, made_.vertical_epsg) != systems_of_depths.end() ||
         vertical_name.find("depth") != vertical_name.npos)
       keep_heights();
-    if (!unit_ && is_in(systems_in_metres, made_.epsg)) unit_ = 1;
-    if (!unit_ && !is_in(wrong, made_.epsg)) unit_ = in_name(name.substr(0, plus));
+    if (!unit_ && is_between(systems_in_metres, made_.epsg)) unit_ = 1;
+    if (!unit_ && !is_between(wrong, made_.epsg)) unit_ = in_name(name.substr(0, plus));
     if (!height_) height_ = in_name(vertical_name);
     const bool is_named = !vertical_name.empty() && vertical_name.find("(ft") == vertical_name.npos;
-    if (!height_ && has_heights_ && (is_named || is_in(systems_in_metres, made_.vertical_epsg))) height_ = 1;
+    if (!height_ && has_heights_ && (is_named || is_between(systems_in_metres, made_.vertical_epsg))) height_ = 1;
   }
 
   void ask_database() {
