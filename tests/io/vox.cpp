@@ -214,6 +214,7 @@ TEST_CASE("headers that cannot be right are refused, with the line") {
         {begin + "#split: 1 1\n", "line 3", "'split' is ' 1 1': expected three numbers within 1e12"},
         {begin + "#split: 1 1 0\n", "line 3", "'split' is ' 1 1 0': expected three whole numbers from 1 to 2^32"},
         {begin + "#split: 1 1 1.5\n", "line 3", "'split' is ' 1 1 1.5': expected three whole numbers"},
+        {begin + "#res: 1 #Min_Corner: 1 1 1\n", "line 3", "'min_corner' stands a second time: expected each key once"},
         {begin + "#max_pad: -1\n", "line 3", "'max_pad' is ' -1': expected a number above 0"},
         {begin + "#max_corner: a b c\n", "line 3", "'max_corner' is ' a b c': expected three numbers within 1e12"}}) {
     CAPTURE(c.text);

@@ -434,11 +434,14 @@ TEST_CASE("a face of a vertex that is not there, and whole numbers compressed by
     gltf.more = R"("extensionsUsed":["KHR_mesh_quantization"],)";
     return support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", gltf.text())); }).problem();
   };
+  CHECK(contains(problem(std::vector<std::uint16_t>{0, 1, 2, 0}, 5123, ""), "has triangles of 4 corners"));
+  CHECK(
+      contains(problem(std::vector<std::uint16_t>{0, 1, 2, 0, 1}, 5123, ",\"mode\":4"), "has triangles of 5 corners"));
   for (const char* members : {"", ",\"mode\":5"}) {
     CHECK(problem(std::vector<std::uint16_t>{0, 1, 2}, 5123, members) == "no error");
     CHECK(contains(problem(std::vector<std::uint8_t>{0, 1, 2, 0, 1, 3}, 5121, members),
                    "has a face of the vertex 3: expected less than their number, 3"));
-    CHECK(contains(problem(std::vector<std::uint16_t>{0, 1, 2, 65535}, 5123, members), "of the vertex 65535"));
+    CHECK(contains(problem(std::vector<std::uint16_t>{0, 1, 2, 0, 1, 65535}, 5123, members), "of the vertex 65535"));
     CHECK(contains(problem(std::vector<std::uint32_t>{0, 1, 4294967295}, 5125, members), "of the vertex 4294967295"));
   }
   CHECK(contains(

@@ -227,7 +227,10 @@ class GltfDocument {
       }
       if (is_compressed || !member(*attributes, "POSITION") || !member(primitive, "indices")) continue;
       const std::uint64_t count = whole(item("accessors", whole(*attributes, "POSITION")), "count");
-      for (const double vertex : numbers(whole(primitive, "indices"), 1))  // as assimp drops such faces
+      const std::vector<double> corners = numbers(whole(primitive, "indices"), 1);
+      if (corners.size() % 3 != 0 && (!member(primitive, "mode") || whole(primitive, "mode") == 4))
+        fail("has triangles of ", corners.size(), " corners: expected three each");
+      for (const double vertex : corners)  // as assimp drops such faces
         if (!(vertex < static_cast<double>(count)))
           fail("has a face of the vertex ", vertex, ": expected less than their number, ", count);
     }
