@@ -119,11 +119,7 @@ FUZZ_TARGET(scene_cache) {
   const std::span<const std::byte> bytes(memory.get(), file.size());
   fuzz::expect(!io::detail::defect_of(bytes, io::detail::program_of<Tested::Part>(), key));  // the header is right
   try {
-    io::ArchiveReader reader(bytes.subspan(sizeof(io::detail::CacheHeader)), memory);
-    std::vector<Tested::Part> parts;
-    reader(parts);
-    reader.require_end();
-    trace(Tested(std::move(parts)));
+    trace(Tested(io::detail::parts_in<Tested::Part>(bytes, memory)));
   } catch (const ArchiveError&) {
   } catch (const SettingError&) {
   }

@@ -50,6 +50,7 @@ using KnownLaw = std::variant<Lambert, DirectionIndependent, Phong, NormalizedPh
 
 template <Archived... Shapes>
 void require_archived(std::span<const Part<Shapes...>> parts);
+
 }  // namespace detail
 
 /// Scene of parts whose shapes are all `Archived`: `Scene` and `MovingScene`.
@@ -163,6 +164,16 @@ template <class P>
   return header.checksum != checksum_of(header, rest) ? "is damaged: its checksum is wrong" : nullptr;
 }
 
+/// Parts in a checked cache, which `owner` keeps alive. @throws ArchiveError @throws SettingError
+template <class P>
+[[nodiscard]] std::vector<P> parts_in(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) {
+  ArchiveReader reader(bytes.subspan(sizeof(CacheHeader)), std::move(owner));
+  std::vector<P> parts;
+  reader(parts);
+  reader.require_end();
+  return parts;
+}
+
 }  // namespace detail
 
 /// Key of the present sources. The order of the files matters, their paths do not. `content` gives
@@ -216,11 +227,7 @@ template <CacheableScene S, class... Further>
     const auto file = std::make_shared<const MappedFile>(path);
     const char* const defect = detail::defect_of(file->bytes(), detail::program_of<typename S::Part>(), key);
     if (defect) return {std::nullopt, defect};
-    ArchiveReader reader(file->bytes().subspan(sizeof(detail::CacheHeader)), file);
-    std::vector<typename S::Part> parts;
-    reader(parts);
-    reader.require_end();
-    return {S(std::move(parts), further...), {}};
+    return {S(detail::parts_in<typename S::Part>(file->bytes(), file), further...), {}};
   } catch (const FileError& error) {
     return {std::nullopt, error.problem()};
   } catch (const ArchiveError& error) {

@@ -55,7 +55,7 @@ struct VoxelFile {
 
 #if PULSECAST_DEFINES(IO_VOX)
 #include <cmath>
-#include <map>
+#include <set>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
@@ -100,7 +100,7 @@ class VoxelFileReader {
       std::string key = text::lower(entry.substr(0, colon));
       std::erase(key, ' ');
       const std::string_view value = entry.substr(colon + 1);
-      if (++given_[key] == 2) table_.fail_here("'", key, "' stands a second time: expected each key once");
+      if (!given_.insert(key).second) table_.fail_here("'", key, "' stands a second time: expected each key once");
       if (key == "min_corner") {
         min_corner_ = vector(key, value);
       } else if (key == "max_corner") {
@@ -288,7 +288,7 @@ class VoxelFileReader {
   double density_max_ = 0;  // over all rows
   Oddity no_density_, too_dense_;
   CellNumbers cells_;                    // of all rows
-  std::map<std::string, int> given_;     // keys
+  std::set<std::string> given_;          // keys
   std::vector<CellNumbers::Cell> kept_;  // of rows that become voxels
   std::vector<float> densities_;         // of these
 };
