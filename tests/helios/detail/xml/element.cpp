@@ -243,7 +243,12 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   const std::string warnings = reading.warnings();
   CHECK(contains(warnings, "a second <c> in <a>: the first one is used"));
   CHECK(contains(warnings, "element <d> in <a> is not known"));
-  CHECK(contains(Reading("<a>text</a>").warnings(), "holds the text 'text'"));
+  for (const char* text : {"text", "<![CDATA[text]]>", "<!-- note -->text", "<?php?>text"})
+    CHECK(contains(Reading("<a>" + std::string(text) + "</a>").warnings(), "<a> holds the text 'text': it has no"));
+  Reading number("<a>1<!-- note -->2<![CDATA[3]]></a>");
+  CHECK(number.io.content() == "1");
+  CHECK(contains(number.warnings(), "holds the text '2'"));
+  CHECK(contains(number.warnings(), "holds the text '3'"));
   Reading lacks("<a b=\"\"/>");
   lacks.io.require({"b", "c"});
   lacks.io.know({"b"});
@@ -283,4 +288,6 @@ TEST_CASE("params are checked as attributes are") {
   CHECK(contains(warning(R"(<param key="count" value="3"/><param key="count" value="3"/>)", 3), "is given twice"));
   CHECK(contains(warning(R"(<parm key="count" value="3"/>)", 0), "did you mean 'param'?"));
   CHECK(contains(warning(R"(<param key="count" value="3"><rot/></param>)", 3), "element <rot> in <param>"));
+  CHECK(contains(warning(R"(<param key="count" value="3"><![CDATA[4]]></param>)", 3), "<param> holds the text '4'"));
+  CHECK(contains(warning(R"(<param key="count" value="3"/>4)", 3), "<filter> holds the text '4'"));
 }

@@ -17,7 +17,7 @@ class XmlInput final : public FieldIo {
   using Read = std::function<void(XmlInput&)>;
   XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search,
            bool params = false)
-      : document_(document), node_(node), report_(report), search_(search), params_(params), takes_text_(params) {
+      : document_(document), node_(node), report_(report), search_(search), params_(params) {
     if (params) known_children_ = {"param"};
   }
   [[nodiscard]] bool reads() const noexcept override { return true; }
@@ -193,9 +193,8 @@ class XmlInput final : public FieldIo {
         warn_at(child, "",
                 "element " + tag(child) + " in " + tag(node_) + " is not known" +
                     text::suggestion(child.name(), known_children_));
-      if (child.type() == pugi::node_pcdata && !takes_text_)
-        warn("", tag(node_) + " holds the text " + text::quoted(child.value()) + ": expected elements only");
     }
+    check_texts(node_, takes_text_ ? node_.text().data() : pugi::xml_node());
     if (params_) check_params();
   }
 
@@ -234,6 +233,13 @@ class XmlInput final : public FieldIo {
     return std::ranges::find(known, name) != known.end();
   }
 
+  /// Reports texts in a node, but for one that is read.
+  void check_texts(pugi::xml_node node, pugi::xml_node read = {}) const {
+    for (const pugi::xml_node inner : node.children())
+      if (inner != read && (inner.type() == pugi::node_pcdata || inner.type() == pugi::node_cdata))
+        warn_at(node, "", tag(node) + " holds the text " + text::quoted(inner.value()) + ": it has no effect");
+  }
+
   void check_params() const {
     std::vector<std::string_view> keys;
     for (const pugi::xml_node child : node_.children("param")) {
@@ -262,6 +268,7 @@ class XmlInput final : public FieldIo {
     static const std::vector<std::string> types{"string",  "boolean", "bool", "double",
                                                 "integer", "int",     "vec3", "rotation"};
     check_attributes(child, names);
+    check_texts(child);
     const std::string_view type = child.attribute("type").value();
     if (!type.empty() && !is_among(types, type))
       warn_at(child, "type", said("type", type) + " is not known" + text::suggestion(type, types));
@@ -277,7 +284,7 @@ class XmlInput final : public FieldIo {
   XmlReport& report_;
   const AssetSearch& search_;
   std::vector<std::string> known_{}, known_children_{}, required_{};
-  bool params_, takes_text_;
+  bool params_, takes_text_ = false;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios
